@@ -1,7 +1,5 @@
 #include "mesh/gltf_document.h"
 
-#include <meshoptimizer.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "mesh/gltf_uri.h"
 #include "mesh/load_formats.h"
+#include "mesh/meshopt_stream.h"
 
 namespace strata::mesh {
 namespace {
@@ -17,14 +16,14 @@ using nlohmann::json;
 
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 constexpr std::size_t kMostJson = std::size_t{256} << 20;
-// More than this many times its size no meshopt stream can become: two bits stand for 16 bytes of a vertex.
-constexpr std::uint64_t kMostMeshoptGain = 64;
+// Bytes that compressed views may become, all together: twice what the largest mesh needs.
+constexpr std::uint64_t kMostDecoded = std::uint64_t{4} << 30;
 
 // Extensions that a file may require and that are read, or that change only how it looks.
-constexpr std::array<std::string_view, 10> kKnownExtensions{
-    "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization", "KHR_texture_transform",
-    "KHR_lights_punctual",        "KHR_texture_basisu",      "EXT_texture_webp",      "MSFT_texture_dds",
-    "EXT_texture_avif",           "KHR_animation_pointer"};
+constexpr std::array<std::string_view, 12> kKnownExtensions{
+    "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression", "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",    "KHR_texture_transform",   "KHR_lights_punctual",     "KHR_texture_basisu",
+    "EXT_texture_webp",           "MSFT_texture_dds",        "EXT_texture_avif",        "KHR_animation_pointer"};
 
 std::uint32_t little_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
   std::uint32_t value;
@@ -180,8 +179,9 @@ Result<GltfDocument::View> GltfDocument::view(std::uint64_t index) {
   const auto found = element("bufferViews", index);
   if (!found) return tl::unexpected(found.error());
   const json& view = **found;
-  const json& compressed = object_in(object_in(view, "extensions"), "EXT_meshopt_compression");
-  if (!compressed.empty()) return decompress(view, compressed, index);
+  for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+    if (const json& compressed = object_in(object_in(view, "extensions"), extension); !compressed.empty())
+      return decompress(view, compressed, extension, index);
   const auto buffer_index = whole_number(view, "buffer"), offset = whole_number(view, "byteOffset", 0),
              length = whole_number(view, "byteLength"), stride = whole_number(view, "byteStride", 0);
   for (const auto* number : {&buffer_index, &offset, &length, &stride})
@@ -193,7 +193,8 @@ Result<GltfDocument::View> GltfDocument::view(std::uint64_t index) {
   return View{bytes->subspan(*offset, *length), *stride};
 }
 
-Result<GltfDocument::View> GltfDocument::decompress(const json& view, const json& extension, std::uint64_t index) {
+Result<GltfDocument::View> GltfDocument::decompress(const json& view, const json& extension,
+                                                    const std::string& extension_name, std::uint64_t index) {
   const auto buffer_index = whole_number(extension, "buffer"), offset = whole_number(extension, "byteOffset", 0),
              length = whole_number(extension, "byteLength"), stride = whole_number(extension, "byteStride"),
              count = whole_number(extension, "count");
@@ -207,31 +208,12 @@ Result<GltfDocument::View> GltfDocument::decompress(const json& view, const json
   if (!whole) return tl::unexpected(whole.error());
   if (*offset > whole->size() || *length > whole->size() - *offset)
     return refuse_file(name + " reaches beyond its buffer.");
-  const auto bytes = whole->subspan(*offset, *length);
-
-  const std::string mode = text_of(extension, "mode"), filter = text_of(extension, "filter");
-  const auto broken = [&] { return refuse_file(name + " is not what EXT_meshopt_compression makes: it is damaged."); };
-  if (*stride == 0 || *stride > 256 || *count > 64 + (bytes.size() + 64) * kMostMeshoptGain / *stride) return broken();
-  std::vector<std::uint8_t> out(*count * *stride);
-  int failed = 1;
-  if (mode == "ATTRIBUTES" && *stride % 4 == 0) {
-    failed = meshopt_decodeVertexBuffer(out.data(), *count, *stride, bytes.data(), bytes.size());
-  } else if (mode == "TRIANGLES" && *count % 3 == 0 && (*stride == 2 || *stride == 4)) {
-    failed = meshopt_decodeIndexBuffer(out.data(), *count, *stride, bytes.data(), bytes.size());
-  } else if (mode == "INDICES" && (*stride == 2 || *stride == 4)) {
-    failed = meshopt_decodeIndexSequence(out.data(), *count, *stride, bytes.data(), bytes.size());
-  }
-  if (failed != 0) return broken();
-  if (filter == "OCTAHEDRAL" && (*stride == 4 || *stride == 8)) {
-    meshopt_decodeFilterOct(out.data(), *count, *stride);
-  } else if (filter == "QUATERNION" && *stride == 8) {
-    meshopt_decodeFilterQuat(out.data(), *count, *stride);
-  } else if (filter == "EXPONENTIAL" && *stride % 4 == 0) {
-    meshopt_decodeFilterExp(out.data(), *count, *stride);
-  } else if (!filter.empty() && filter != "NONE") {
-    return broken();
-  }
-  return View{decoded_views_.emplace(index, std::move(out)).first->second, shape.stride};
+  auto out = decode_meshopt(whole->subspan(*offset, *length),
+                            {text_of(extension, "mode"), text_of(extension, "filter"), *count, *stride},
+                            kMostDecoded - decoded_bytes_);
+  if (!out) return refuse_file(name + " is not what " + extension_name + " makes: " + out.error() + ".");
+  decoded_bytes_ += out->size();
+  return View{decoded_views_.emplace(index, std::move(*out)).first->second, shape.stride};
 }
 
 Result<GltfDocument::Image> GltfDocument::image(std::uint64_t index) {

@@ -12,7 +12,7 @@
 namespace strata::mesh {
 
 // The parts of a glTF 2.0 file (Khronos, "glTF 2.0 Specification"): its JSON, and its buffers wherever they are — in the GLB,
-// in files of their own, in data URIs, compressed by EXT_meshopt_compression. Every offset, count and index is checked
+// in files of their own, in data URIs, compressed by EXT_meshopt_compression or KHR_meshopt_compression. Every offset, count and index is checked
 // here; nothing is copied that need not be. Refusals are as of `refuse_file`. Thread: any, one at a time.
 class GltfDocument {
  public:
@@ -30,17 +30,23 @@ class GltfDocument {
   };
   Result<View> view(std::uint64_t index);
 
-  // The values of an accessor as real numbers, `components` each; normalised whole numbers become 0…1 or −1…1. Sparse
-  // values are put in.
+  // What an accessor says of its values, wherever a compression extension keeps them. `what` names them in refusals.
+  struct Form {
+    std::uint64_t count = 0;
+    int component_type = 0, components = 0;
+    bool normalized = false;
+  };
+  Result<Form> form(std::uint64_t accessor, const std::string& what) const;
+
+  // The values of an accessor as real numbers, `components` each; normalised whole numbers become 0…1 or −1…1, those that are
+  // not, too, with `normalize`. Sparse values are put in.
   struct Values {
     std::uint64_t count = 0;
     int components = 0;
     std::vector<float> numbers;
   };
-  Result<Values> values(std::uint64_t accessor, const std::string& what);
+  Result<Values> values(std::uint64_t accessor, const std::string& what, bool normalize = false);
   Result<std::vector<std::uint32_t>> indices(std::uint64_t accessor);
-  // How many elements an accessor says it has; for those whose data a compression extension holds.
-  Result<std::uint64_t> count(std::uint64_t accessor) const;
 
   // An image's encoded bytes, copied; nothing where its file was not sent along.
   struct Image {
@@ -57,22 +63,24 @@ class GltfDocument {
   Result<void> read_container();
   Result<void> check_version_and_extensions() const;
   Result<std::span<const std::uint8_t>> buffer(std::uint64_t index);
-  Result<View> decompress(const nlohmann::json& view, const nlohmann::json& extension, std::uint64_t index);
+  Result<View> decompress(const nlohmann::json& view, const nlohmann::json& extension,
+                          const std::string& extension_name, std::uint64_t index);
   struct Layout {
+    Form form;
     std::span<const std::uint8_t> bytes;  // empty: all zeros
-    std::uint64_t count = 0, stride = 0;
-    int component_type = 0, components = 0;
-    bool normalized = false;
+    std::uint64_t stride = 0;
   };
-  Result<Layout> layout(const nlohmann::json& accessor, const std::string& name);
-  Result<void> apply_sparse(const nlohmann::json& accessor, const Layout& layout, const std::string& name,
-                            std::vector<float>& numbers);
+  Result<Layout> layout(std::uint64_t accessor, const std::string& what);
+  // Calls put(number of the element, its bytes) for those of the buffer view, then for the sparse ones.
+  template <class Put>
+  Result<void> for_each_element(std::uint64_t accessor, const std::string& what, const Layout& layout, Put&& put);
 
   const InputFiles* files_;
   nlohmann::json json_;
   std::span<const std::uint8_t> glb_binary_;
   bool has_glb_binary_ = false;
   std::map<std::uint64_t, std::vector<std::uint8_t>> decoded_buffers_, decoded_views_;
+  std::uint64_t decoded_bytes_ = 0;  // of decoded_views_
 };
 
 // Members of a JSON object, as glTF gives them. A missing one has the default; one of the wrong type is refused.

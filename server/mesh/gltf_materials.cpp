@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <set>
 
+#include "core/utf8.h"
 #include "mesh/load_formats.h"
 #include "mesh/texture_shelf.h"
 #include "mesh/vertex_color.h"
@@ -13,6 +16,8 @@ namespace {
 
 using nlohmann::json;
 
+constexpr std::size_t kMostNotes = 100;
+
 Wrap wrap_of(std::uint64_t mode) {
   if (mode == 33071) return Wrap::clamp;
   return mode == 33648 ? Wrap::mirror : Wrap::repeat;
@@ -21,7 +26,7 @@ Wrap wrap_of(std::uint64_t mode) {
 class MaterialReader {
  public:
   MaterialReader(GltfDocument& document, const InputFiles& files, LoadedMesh& loaded)
-      : document_(document), mesh_(loaded.mesh), shelf_(files, loaded.mesh, loaded.repairs) {}
+      : document_(document), mesh_(loaded.mesh), repairs_(loaded.repairs), shelf_(files, loaded.mesh, loaded.repairs) {}
 
   Result<std::vector<GltfMaterial>> read() {
     std::vector<GltfMaterial> materials;
@@ -82,31 +87,52 @@ class MaterialReader {
       material.wrap_u = wrap_of(*s);
       material.wrap_v = wrap_of(*t);
     }
-    const auto image = image_of(**texture);
-    if (!image) return tl::unexpected(image.error());
-    if (image_textures_.contains(*image)) {
-      material.texture = image_textures_[*image];
+    const auto source = image_of(**texture);
+    if (!source) return tl::unexpected(source.error());
+    if (!*source) {
+      if (pictureless_.insert(*index).second && pictureless_.size() <= kMostNotes)
+        note(repairs_, "texture without a picture: " + title_of(**texture, *index), 1);
       return {};
     }
-    auto found = document_.image(*image);
+    const std::uint64_t image = **source;
+    if (image_textures_.contains(image)) {
+      material.texture = image_textures_[image];
+      return {};
+    }
+    auto found = document_.image(image);
     if (!found) return tl::unexpected(found.error());
-    const std::string name = found->name.empty() ? "image " + std::to_string(*image) : found->name;
+    const std::string name = found->name.empty() ? "image " + std::to_string(image) : found->name;
     if (found->missing)
       shelf_.missing(name);
     else
       material.texture = shelf_.of_bytes(name, std::move(found->bytes));
-    image_textures_[*image] = material.texture;
+    image_textures_[image] = material.texture;
     return {};
   }
 
-  // The plain picture where there is one; otherwise the one of an extension, which will be noted as not read.
-  static Result<std::uint64_t> image_of(const json& texture) {
-    if (texture.contains("source")) return whole_number(texture, "source");
+  // The plain picture where there is one; otherwise that of an extension which keeps it in another format. Nothing: glTF
+  // allows a texture without a picture, which another extension may supply.
+  static Result<std::optional<std::uint64_t>> image_of(const json& texture) {
+    if (texture.contains("source")) return optional_number(texture);
     for (const char* extension : {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"}) {
       const json& found = object_in(object_in(texture, "extensions"), extension);
-      if (found.contains("source")) return whole_number(found, "source");
+      if (found.contains("source")) return optional_number(found);
     }
-    return refuse_file("A texture of the glTF has no picture.");
+    return std::nullopt;
+  }
+  static Result<std::optional<std::uint64_t>> optional_number(const json& object) {
+    const auto number = whole_number(object, "source");
+    if (!number) return tl::unexpected(number.error());
+    return *number;
+  }
+  // With the extensions that could have a picture.
+  static std::string title_of(const json& texture, std::uint64_t index) {
+    std::string title = "texture " + std::to_string(index);
+    const json& extensions = object_in(texture, "extensions");
+    for (auto extension = extensions.begin(); extension != extensions.end(); ++extension)
+      title += (extension == extensions.begin() ? " (" : ", ") + extension.key();
+    if (!extensions.empty()) title += ')';
+    return mended_utf8(first_bytes(title, 200));
   }
 
   // Rotation turns counter-clockwise where v points down (KHR_texture_transform).
@@ -128,7 +154,9 @@ class MaterialReader {
 
   GltfDocument& document_;
   TriangleMesh& mesh_;
+  std::vector<Repair>& repairs_;
   TextureShelf shelf_;
+  std::set<std::uint64_t> pictureless_;
   std::map<std::uint64_t, int> image_textures_;
 };
 

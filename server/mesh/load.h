@@ -34,9 +34,12 @@ bool is_fault(const Repair& repair);
 // - PLY: ascii and both endians, any scalar types and order of elements; colours of vertices or faces in 8 or 16 bits or real
 //   numbers, texture coordinates of vertices or corners, `TextureFile` comments with `texnumber`, triangle strips
 // - OBJ with MTL: polygons, negative indices, continued lines, `v x y z r g b`; map_Kd with its options, UDIM tiles
-// - STL: binary, also with a header that begins with "solid", and ascii
-// - glTF 2.0 and GLB: scenes of nodes with transforms in double, triangles, strips and fans; Draco, meshopt, quantised, sparse;
-//   any TEXCOORD set with KHR_texture_transform; COLOR_0; data in the file, beside it or in data URIs
+// - STL: binary, also with a header that begins with "solid", and ascii in letters of any case, with comments
+// - glTF 2.0 and GLB: scenes of nodes with transforms in double, EXT_mesh_gpu_instancing, triangles, strips and fans; Draco,
+//   meshopt (EXT and KHR), quantised, sparse; any TEXCOORD set with KHR_texture_transform; COLOR_0; data in the file, beside it
+//   or in data URIs
+//
+// Lines of text end at LF, CRLF or CR; a byte order mark is passed over, and that of UTF-16 heeded in OBJ, MTL and STL.
 //
 // Then it is repaired, each step with a count in `repairs`: equal vertices are welded, and those within weld_distance;
 // degenerate and duplicate triangles and unused vertices are dropped; and it is made manifold (see make_manifold).

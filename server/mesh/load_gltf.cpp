@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
 
 #include "mesh/face_builder.h"
 #include "mesh/gltf_document.h"
-#include "mesh/gltf_draco.h"
+#include "mesh/gltf_instances.h"
 #include "mesh/gltf_materials.h"
+#include "mesh/gltf_primitive.h"
 #include "mesh/load_formats.h"
 #include "mesh/vertex_color.h"
 
@@ -16,20 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::uint32_t kUnused = 0xffffffffu;
-
-enum Mode : std::uint64_t { triangles = 4, triangle_strip = 5, triangle_fan = 6 };
-
-// What one primitive holds, wherever it was compressed; texture coordinates and colours may be missing.
-struct Primitive {
-  GltfDocument::Values positions, uvs, colors;
-  std::vector<std::uint32_t> indices;
-  std::uint64_t mode = Mode::triangles;
-};
-
-glm::dvec3 point_of(const GltfDocument::Values& values, std::uint64_t i) {
-  return {values.numbers[3 * i], values.numbers[3 * i + 1], values.numbers[3 * i + 2]};
-}
+constexpr std::uint64_t kTrianglesBetweenReports = 1u << 20;
 
 // Node transforms stay in double to the end: a translation may be a place on Earth.
 class GltfReader {
@@ -48,17 +35,31 @@ class GltfReader {
     if (auto walked = walk_scene(); !walked) return tl::unexpected(walked.error());
     auto& mesh = loaded_.mesh;
     if (mesh.vertex_colors.empty()) mesh.colors_tint_materials = false;
-    if (mesh.triangles.empty() && ignored_primitives_ > 0)
-      return refuse_file("The glTF holds points or lines only, and no triangles.");
+    if (mesh.triangles.empty()) return nothing_to_see();
     faces_.report(loaded_.repairs);
-    note(loaded_.repairs, "ignored points and lines", ignored_primitives_);
-    note(loaded_.repairs, "ignored skins, morph targets and instances of EXT_mesh_gpu_instancing", ignored_motion_);
+    note(loaded_.repairs, "ignored points and lines", remarks_.points_and_lines);
+    note(loaded_.repairs, "ignored parts of meshes without positions", remarks_.without_positions);
+    note(loaded_.repairs, "ignored skins and morph targets", ignored_motion_);
+    note(loaded_.repairs, "colours taken as normalised, which their accessors do not say",
+         remarks_.colors_taken_as_normalized);
     loaded_.unit = Unit::m;  // both by the specification
     loaded_.up = "y";
     return std::move(loaded_);
   }
 
  private:
+  tl::unexpected<Problem> nothing_to_see() const {
+    const auto meshes = document_.root().find("meshes");
+    if (remarks_.points_and_lines > 0) return refuse_file("The glTF holds points or lines only, and no triangles.");
+    if (remarks_.without_positions > 0)
+      return refuse_file("The meshes of the glTF have no POSITION, and so no triangles.");
+    if (meshes == document_.root().end() || meshes->empty()) return refuse_file("The glTF holds no meshes.");
+    if (!mesh_shown_)
+      return refuse_file(
+          "The glTF holds meshes, but no node of its scene shows one. Export the scene with its objects.");
+    return refuse_file("The file holds no triangle: the meshes of the glTF are empty.");
+  }
+
   struct Visit {
     std::uint64_t node;
     glm::dmat4 world_from_parent;
@@ -123,8 +124,8 @@ class GltfReader {
       if (!local) return tl::unexpected(local.error());
       const glm::dmat4 world_from_node = visit.world_from_parent * *local;
       if ((*node)->contains("mesh")) {
-        ignored_motion_ +=
-            (*node)->contains("skin") || object_in(**node, "extensions").contains("EXT_mesh_gpu_instancing");
+        mesh_shown_ = true;
+        ignored_motion_ += (*node)->contains("skin");
         if (auto added = add_mesh(**node, world_from_node); !added) return added;
       }
       auto children = children_of(**node, "children");
@@ -145,13 +146,8 @@ class GltfReader {
                s = real_numbers(node, "scale", {1, 1, 1});
     for (const auto* numbers : {&t, &r, &s})
       if (!*numbers) return tl::unexpected(numbers->error());
-    glm::dquat rotation((*r)[3], (*r)[0], (*r)[1], (*r)[2]);
-    const double length = glm::length(rotation);
-    rotation = length > 0 ? rotation / length : glm::dquat(1, 0, 0, 0);
-    glm::dmat4 matrix = glm::mat4_cast(rotation);
-    for (int k = 0; k < 3; ++k) matrix[k] *= (*s)[k];
-    matrix[3] = glm::dvec4((*t)[0], (*t)[1], (*t)[2], 1);
-    return matrix;
+    return gltf_transform({(*t)[0], (*t)[1], (*t)[2]}, {(*r)[0], (*r)[1], (*r)[2], (*r)[3]},
+                          {(*s)[0], (*s)[1], (*s)[2]});
   }
 
   Result<void> add_mesh(const json& node, const glm::dmat4& world_from_node) {
@@ -162,18 +158,20 @@ class GltfReader {
     const auto primitives = (*mesh)->find("primitives");
     if (primitives == (*mesh)->end() || !primitives->is_array())
       return refuse_file("Mesh " + std::to_string(*index) + " of the glTF has no primitives.");
+    const auto instances = GltfInstances::read(document_, node);
+    if (!instances) return tl::unexpected(instances.error());
     for (const json& primitive : *primitives) {
       if (!primitive.is_object()) return refuse_file("A primitive of the glTF is not an object.");
       progress_.report(kParsedShare * done_ / (done_ + 1), "Reading triangles");
       done_ += 0.25;
       if (progress_.cancelled()) return cancelled_problem();
       ignored_motion_ += primitive.contains("targets");
-      if (auto added = add_primitive(primitive, world_from_node); !added) return added;
+      if (auto added = add_primitive(primitive, world_from_node, *instances); !added) return added;
     }
     return {};
   }
 
-  Result<void> add_primitive(const json& source, const glm::dmat4& world_from_node) {
+  Result<void> add_primitive(const json& source, const glm::dmat4& world_from_node, const GltfInstances& instances) {
     GltfMaterial material;
     if (source.contains("material")) {
       const auto index = whole_number(source, "material");
@@ -183,135 +181,54 @@ class GltfReader {
                            std::to_string(materials_.size()) + ".");
       material = materials_[*index];
     }
-    const auto primitive = read_primitive(source, material);
+    const auto primitive = read_gltf_primitive(document_, source, material, max_triangles_, remarks_);
     if (!primitive) return tl::unexpected(primitive.error());
-    if (!*primitive) return {};
-    return append(**primitive, material, world_from_node);
-  }
-
-  // Nothing: points or lines.
-  Result<std::optional<Primitive>> read_primitive(const json& source, const GltfMaterial& material) {
-    Primitive primitive;
-    const auto mode = whole_number(source, "mode", Mode::triangles);
-    if (!mode) return tl::unexpected(mode.error());
-    primitive.mode = *mode;
-    if (*mode != Mode::triangles && *mode != Mode::triangle_strip && *mode != Mode::triangle_fan) {
-      ++ignored_primitives_;
-      return std::nullopt;
+    if (!*primitive || (*primitive)->most_triangles() == 0) return {};
+    const std::uint64_t triangles = (*primitive)->most_triangles(), count = instances.count();
+    // A few bytes can ask for any number of copies: how much they are is known before one is made. Of strips some triangles
+    // only join others.
+    const std::uint64_t room = max_triangles_ - std::min<std::uint64_t>(loaded_.mesh.triangle_count(), max_triangles_);
+    const std::uint64_t most = (*primitive)->mode == kTriangles ? room : 4 * std::uint64_t{max_triangles_};
+    const std::uint64_t vertices = (*primitive)->positions.count;
+    if (count > 1 && (triangles > most / count || vertices > 3 * std::uint64_t{max_triangles_} / count))
+      return refuse_file("The glTF repeats a mesh of " + std::to_string(triangles) + " triangles " +
+                         std::to_string(count) + " times, which makes more than " + std::to_string(max_triangles_) +
+                         " triangles. Reduce the mesh, or export the parts that you need.");
+    std::uint64_t since_report = 0;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      if ((since_report += triangles) >= kTrianglesBetweenReports) {
+        since_report = 0;
+        if (progress_.cancelled()) return cancelled_problem();
+      }
+      auto added = append(**primitive, material, world_from_node * instances.node_from_instance(i));
+      if (!added) return added;
     }
-    const auto& attributes = object_in(source, "attributes");
-    const std::string uv_name = "TEXCOORD_" + std::to_string(material.texcoord);
-    const auto& draco = object_in(object_in(source, "extensions"), "KHR_draco_mesh_compression");
-    if (!draco.empty()) {
-      if (auto done = read_draco(source, draco, uv_name, primitive); !done) return tl::unexpected(done.error());
-    } else {
-      const auto read = [&](const std::string& name, GltfDocument::Values& values) -> Result<void> {
-        if (!attributes.contains(name)) return {};
-        const auto accessor = whole_number(attributes, name.c_str());
-        if (!accessor) return tl::unexpected(accessor.error());
-        auto found = document_.values(*accessor, name);
-        if (!found) return tl::unexpected(found.error());
-        values = std::move(*found);
-        return {};
-      };
-      for (auto& [name, values] : {std::pair<std::string, GltfDocument::Values*>{"POSITION", &primitive.positions},
-                                   {uv_name, &primitive.uvs},
-                                   {"COLOR_0", &primitive.colors}})
-        if (auto done = read(name, *values); !done) return tl::unexpected(done.error());
-      if (auto done = read_indices(source, primitive); !done) return tl::unexpected(done.error());
-    }
-    const std::uint64_t count = primitive.positions.count;
-    if (primitive.positions.components != 3) return refuse_file("A primitive of the glTF has no POSITION.");
-    const auto fits = [&](const GltfDocument::Values& values, int least, int most) {
-      return values.components == 0 ||
-             (values.count == count && values.components >= least && values.components <= most);
-    };
-    if (!fits(primitive.uvs, 2, 2) || !fits(primitive.colors, 3, 4))
-      return refuse_file("A primitive of the glTF has texture coordinates or colours that do not match its positions.");
-    for (const std::uint32_t index : primitive.indices)
-      if (index >= count)
-        return refuse_file("A triangle of the glTF names vertex " + std::to_string(index) + ", but its primitive has " +
-                           std::to_string(count) + ".");
-    return primitive;
-  }
-
-  Result<void> read_indices(const json& source, Primitive& primitive) {
-    if (!source.contains("indices")) {
-      if (primitive.positions.count > 3 * std::uint64_t{max_triangles_})
-        return refuse_file("The glTF has more vertices than may be.");
-      primitive.indices.resize(primitive.positions.count);
-      for (std::uint32_t i = 0; i < primitive.indices.size(); ++i) primitive.indices[i] = i;
-      return {};
-    }
-    const auto accessor = whole_number(source, "indices");
-    if (!accessor) return tl::unexpected(accessor.error());
-    auto indices = document_.indices(*accessor);
-    if (!indices) return tl::unexpected(indices.error());
-    primitive.indices = std::move(*indices);
     return {};
   }
 
-  Result<void> read_draco(const json& source, const json& extension, const std::string& uv_name, Primitive& primitive) {
-    const auto& attributes = object_in(extension, "attributes");
-    std::map<std::string, std::uint32_t> ids;
-    for (const std::string& name : {std::string("POSITION"), uv_name, std::string("COLOR_0")}) {
-      if (!attributes.contains(name)) continue;
-      const auto id = whole_number(attributes, name.c_str());
-      if (!id) return tl::unexpected(id.error());
-      ids[name] = static_cast<std::uint32_t>(*id);
-    }
-    const auto view_index = whole_number(extension, "bufferView"), accessor = whole_number(source, "indices");
-    if (!view_index) return tl::unexpected(view_index.error());
-    if (!accessor) return tl::unexpected(accessor.error());
-    const auto announced = document_.count(*accessor);
-    if (!announced) return tl::unexpected(announced.error());
-    const auto view = document_.view(*view_index);
-    if (!view) return tl::unexpected(view.error());
-    auto decoded = decode_draco(view->bytes, ids, std::min<std::uint64_t>(*announced / 3, max_triangles_));
-    if (!decoded) return tl::unexpected(decoded.error());
-    const auto take = [&](const std::string& name, GltfDocument::Values& values) {
-      const auto found = decoded->attributes.find(name);
-      if (found != decoded->attributes.end())
-        values = {decoded->points, found->second.components, std::move(found->second.numbers)};
-    };
-    take("POSITION", primitive.positions);
-    take(uv_name, primitive.uvs);
-    take("COLOR_0", primitive.colors);
-    primitive.indices = std::move(decoded->indices);
-    primitive.mode = Mode::triangles;
-    return {};
-  }
-
-  Result<void> append(const Primitive& primitive, const GltfMaterial& material, const glm::dmat4& world_from_node) {
+  Result<void> append(const GltfPrimitive& primitive, const GltfMaterial& material, const glm::dmat4& world_from_mesh) {
     TriangleMesh& mesh = loaded_.mesh;
-    // Primitives share accessors: each takes the vertices that its triangles name.
-    std::vector<std::uint32_t> number(primitive.positions.count, kUnused), used;
-    for (const std::uint32_t index : primitive.indices) {
-      if (number[index] != kUnused) continue;
-      number[index] = static_cast<std::uint32_t>(mesh.positions.size() + used.size());
-      used.push_back(index);
-    }
-    if (mesh.positions.size() + used.size() >= kUnused)
-      return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
-    append_colors(primitive.colors, mesh.positions.size(), used);
-    for (const std::uint32_t index : used)
-      mesh.positions.emplace_back(world_from_node * glm::dvec4(point_of(primitive.positions, index), 1));
+    const std::size_t first = mesh.positions.size(), count = primitive.positions.count;
+    if (first + count >= 0xffffffffu) return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
+    append_colors(primitive.colors, first, count);
+    for (std::size_t i = 0; i < count; ++i)
+      mesh.positions.emplace_back(world_from_mesh * glm::dvec4(primitive.position(i), 1));
 
     faces_.use_material(material.material);
-    const bool has_uv = primitive.uvs.components == 2;
+    const bool has_uv = primitive.has_uvs();
     const auto corner = [&](std::uint32_t index) {
-      FaceBuilder::Corner made{number[index]};
+      FaceBuilder::Corner made{static_cast<std::uint32_t>(first) + index};
       if (has_uv)
         made.uv = material.texture_uv(
             {primitive.uvs.numbers[2 * std::size_t{index}], primitive.uvs.numbers[2 * std::size_t{index} + 1]});
       return made;
     };
-    const bool mirrored = glm::determinant(glm::dmat3(world_from_node)) < 0;
+    const bool mirrored = glm::determinant(glm::dmat3(world_from_mesh)) < 0;
     const auto& indices = primitive.indices;
-    const std::size_t step = primitive.mode == Mode::triangles ? 3 : 1;
+    const std::size_t step = primitive.mode == kTriangles ? 3 : 1;
     for (std::size_t i = 0; i + 2 < indices.size(); i += step) {
-      std::uint32_t a = indices[primitive.mode == Mode::triangle_fan ? 0 : i], b = indices[i + 1], c = indices[i + 2];
-      if (primitive.mode == Mode::triangle_strip) {
+      std::uint32_t a = indices[primitive.mode == kTriangleFan ? 0 : i], b = indices[i + 1], c = indices[i + 2];
+      if (primitive.mode == kTriangleStrip) {
         if (a == b || b == c || c == a) continue;  // they only join strips
         if (i % 2 == 1) std::swap(a, b);
       }
@@ -322,17 +239,17 @@ class GltfReader {
   }
 
   // COLOR_0 is linear; ours are as pictures have them.
-  void append_colors(const GltfDocument::Values& colors, std::size_t first, const std::vector<std::uint32_t>& used) {
+  void append_colors(const GltfDocument::Values& colors, std::size_t first, std::size_t count) {
     auto& out = loaded_.mesh.vertex_colors;
     if (colors.components == 0) {
-      if (!out.empty()) out.resize(first + used.size(), 0xffffffffu);
+      if (!out.empty()) out.resize(first + count, 0xffffffffu);
       return;
     }
     loaded_.mesh.colors_tint_materials = true;
     out.resize(first, 0xffffffffu);
     const std::size_t n = static_cast<std::size_t>(colors.components);
-    for (const std::uint32_t index : used) {
-      const float* c = &colors.numbers[index * n];
+    for (std::size_t i = 0; i < count; ++i) {
+      const float* c = &colors.numbers[i * n];
       out.push_back(pack_color(255 * srgb_of_linear(c[0]), 255 * srgb_of_linear(c[1]), 255 * srgb_of_linear(c[2]),
                                n == 4 ? 255 * c[3] : 255));
     }
@@ -345,7 +262,9 @@ class GltfReader {
   LoadedMesh loaded_;
   FaceBuilder faces_;
   std::vector<GltfMaterial> materials_;
-  std::uint64_t ignored_primitives_ = 0, ignored_motion_ = 0;
+  GltfRemarks remarks_;
+  std::uint64_t ignored_motion_ = 0;
+  bool mesh_shown_ = false;
   double done_ = 0;
 };
 

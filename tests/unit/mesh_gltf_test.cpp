@@ -8,6 +8,7 @@
 
 #include "core/picture.h"
 #include "mesh/gltf_uri.h"
+#include "mesh/load_formats.h"
 #include "support/glb.h"
 #include "support/mesh_files.h"
 
@@ -219,6 +220,117 @@ TEST(MeshGltf, meshopt_views_are_decoded_and_need_no_fallback) {
   EXPECT_THAT(lies.error().detail, HasSubstr("EXT_meshopt_compression"));
 }
 
+TEST(MeshGltf, a_texture_without_a_picture_costs_the_look_and_nothing_else) {
+  auto builder = square();
+  auto& primitive = builder.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["TEXCOORD_0"] = builder.add(std::vector<float>{0, 0, 1, 0, 1, 1, 0, 1}, kFloat, "VEC2");
+  primitive["material"] = 0;
+  builder.json["textures"] = {{{"extensions", {{"ACME_texture", {{"source", 0}}}}}}, {{"sampler", 0}}};
+  builder.json["samplers"] = nlohmann::json::array({nlohmann::json::object()});
+  for (const int texture : {0, 1})
+    builder.json["materials"].push_back(
+        {{"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 1}}, {"baseColorTexture", {{"index", texture}}}}}});
+  const auto loaded = load_text(builder.glb(), "a.glb");
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  EXPECT_EQ(loaded->mesh.triangle_count(), 2u);
+  EXPECT_EQ(loaded->mesh.corner_uvs.size(), 6u);
+  EXPECT_EQ(loaded->mesh.materials[0].texture, -1);
+  EXPECT_EQ(loaded->mesh.materials[0].color.r, 1) << "its colour stays";
+  EXPECT_EQ(count_of(loaded->repairs, "texture without a picture: texture 0 (ACME_texture)"), 1u);
+  EXPECT_EQ(count_of(loaded->repairs, "texture without a picture: texture 1"), 1u);
+}
+
+TEST(MeshGltf, parts_without_positions_are_passed_over_and_said) {
+  auto builder = square();
+  builder.json["meshes"][0]["primitives"].push_back({{"attributes", {{"TEXCOORD_0", 0}}}});
+  const auto loaded = load_text(builder.glb(), "a.glb");
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  EXPECT_EQ(loaded->mesh.triangle_count(), 2u);
+  EXPECT_EQ(count_of(loaded->repairs, "ignored parts of meshes without positions"), 1u);
+}
+
+// EXT_mesh_gpu_instancing of the square's node.
+nlohmann::json& instanced(test::GltfBuilder& builder, const nlohmann::json& attributes) {
+  builder.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
+  builder.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  return builder.json["nodes"][0];
+}
+
+TEST(MeshGltf, instances_stand_where_their_translation_rotation_and_scale_say) {
+  auto builder = square();
+  const int translations = builder.add(std::vector<float>{10, 0, 0, 0, 20, 0, 0, 0, 30}, kFloat, "VEC3");
+  // None, a quarter about z, none; as normalised shorts, as the extension allows.
+  const auto half = static_cast<std::int16_t>(std::lround(32767 * std::sqrt(0.5)));
+  const int rotations =
+      builder.add(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, half, half, 0, 0, 0, 32767}, 5122, "VEC4", true);
+  const int scales = builder.add(std::vector<float>{1, 1, 1, 2, 1, 1, -1, 1, 1}, kFloat, "VEC3");
+  auto& node = instanced(builder, {{"TRANSLATION", translations}, {"ROTATION", rotations}, {"SCALE", scales}});
+  node["translation"] = {433210.123456, 0, 0};
+  const auto loaded = load_text(builder.glb(), "a.glb");
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  ASSERT_EQ(loaded->mesh.triangle_count(), 6u);
+  const auto corner = [&](std::size_t i) { return loaded->mesh.positions[loaded->mesh.triangles[i]]; };
+  const auto expect_near = [](const glm::dvec3& found, const glm::dvec3& wanted) {
+    EXPECT_LT(glm::length(found - wanted - glm::dvec3(433210.123456, 0, 0)), 1e-4) << found.x << ' ' << found.y;
+  };
+  expect_near(corner(1), {11, 0, 0});
+  expect_near(corner(7), {0, 22, 0});  // (1, 0, 0), doubled along x, turned to y
+  expect_near(corner(12), {0, 0, 30});
+  // The mirrored one turns its triangles.
+  EXPECT_GT(glm::cross(corner(13) - corner(12), corner(14) - corner(12)).z, 0);
+  EXPECT_NEAR(mesh::surface_area(loaded->mesh), 4, 1e-4);
+  EXPECT_TRUE(loaded->repairs.empty());
+}
+
+TEST(MeshGltf, an_instancing_without_places_is_one_mesh) {
+  auto builder = square();
+  instanced(builder, {{"_FEATURE_ID_0", 1}});
+  const auto loaded = load_text(builder.glb(), "a.glb");
+  ASSERT_TRUE(loaded) << loaded.error().detail;
+  EXPECT_EQ(loaded->mesh.triangle_count(), 2u);
+}
+
+TEST(MeshGltf, instances_that_contradict_themselves_or_are_too_many_are_refused) {
+  const auto refusal = [](const std::function<void(test::GltfBuilder&)>& harm) {
+    auto builder = square();
+    instanced(builder, {{"TRANSLATION", builder.add(std::vector<float>(6, 1), kFloat, "VEC3")}});
+    harm(builder);
+    const auto loaded = load_text(builder.glb(), "a.glb");
+    return loaded ? std::string("read") : loaded.error().detail;
+  };
+  const auto attributes = [](test::GltfBuilder& b) -> nlohmann::json& {
+    return b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+  };
+  EXPECT_THAT(refusal([&](auto& b) { attributes(b)["SCALE"] = b.add(std::vector<float>(9, 1), kFloat, "VEC3"); }),
+              HasSubstr("SCALE of EXT_mesh_gpu_instancing in the glTF has 3 values, but another attribute has 2"));
+  EXPECT_THAT(refusal([&](auto& b) { attributes(b)["ROTATION"] = b.add(std::vector<float>(6, 1), kFloat, "VEC3"); }),
+              HasSubstr("ROTATION of EXT_mesh_gpu_instancing in the glTF does not hold 4 numbers"));
+  EXPECT_THAT(refusal([&](auto& b) {
+                attributes(b)["ROTATION"] = b.add(std::vector<std::uint8_t>(8, 1), kByte, "VEC4", true);
+              }),
+              HasSubstr("does not hold 4 numbers of FLOAT, or of BYTE or SHORT"));
+  EXPECT_THAT(refusal([&](auto& b) { attributes(b)["TRANSLATION"] = 99; }),
+              HasSubstr("number 99 of its \"accessors\""));
+  EXPECT_THAT(refusal([&](auto& b) { attributes(b)["TRANSLATION"] = "here"; }), HasSubstr("\"TRANSLATION\""));
+  EXPECT_THAT(refusal([](auto& b) {
+                b.json["accessors"].back()["count"] = 1'000'001;
+                b.json["accessors"].back().erase("bufferView");
+              }),
+              HasSubstr("repeats a mesh 1000001 times"));
+}
+
+TEST(MeshGltf, more_triangles_than_are_taken_are_refused_before_they_are_made) {
+  auto builder = square();
+  instanced(builder, {{"TRANSLATION", builder.add(std::vector<float>{0, 0, 0, 5, 0, 0, 9, 0, 0}, kFloat, "VEC3")}});
+  const std::vector<std::pair<std::string, std::string>> texts{{"a.glb", builder.glb()}};
+  const auto files = test::files_of(texts);
+  Progress progress;
+  EXPECT_TRUE(mesh::parse_gltf(*files, progress, 6));
+  const auto more = mesh::parse_gltf(*files, progress, 5);
+  ASSERT_FALSE(more);
+  EXPECT_THAT(more.error().detail, HasSubstr("repeats a mesh of 2 triangles 3 times, which makes more than 5"));
+}
+
 struct BadGltf {
   std::string name;
   std::function<void(nlohmann::json&)> harm;
@@ -256,6 +368,24 @@ INSTANTIATE_TEST_SUITE_P(
         BadGltf{"not_indices", [](auto& j) { j["meshes"][0]["primitives"][0]["indices"] = 0; }, "unsigned whole"},
         BadGltf{"index_out_of_range", [](auto& j) { j["accessors"][0]["count"] = 3; }, "names vertex 3"},
         BadGltf{"points", [](auto& j) { j["meshes"][0]["primitives"][0]["mode"] = 0; }, "points or lines"},
+        BadGltf{"no_such_mode", [](auto& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; }, "mode 7"},
+        BadGltf{"no_meshes",
+                [](auto& j) {
+                  j.erase("meshes");
+                  j["nodes"][0].erase("mesh");
+                },
+                "holds no meshes"},
+        BadGltf{"not_shown", [](auto& j) { j["nodes"][0].erase("mesh"); }, "no node of its scene shows one"},
+        BadGltf{"other_numbers", [](auto& j) { j["accessors"][0]["componentType"] = 5130; },
+                "numbers of type 5130, which glTF does not have"},
+        BadGltf{"matrices", [](auto& j) { j["accessors"][0]["type"] = "MAT3"; }, "type \"MAT3\""},
+        BadGltf{"counts_differ",
+                [](auto& j) {
+                  j["accessors"].push_back(j["accessors"][0]);
+                  j["accessors"][2]["count"] = 3;
+                  j["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 2;
+                },
+                "4 positions, but 3 values of COLOR_0"},
         BadGltf{"text_for_a_matrix", [](auto& j) { j["nodes"][0]["matrix"] = "unit"; }, "\"matrix\""},
         BadGltf{"zeros", [](auto& j) { j["accessors"][0].erase("bufferView"); }, "area"}),
     [](const auto& bad) { return bad.param.name; });

@@ -72,6 +72,10 @@ for tag, order in (("ascii", ""), ("little", "<"), ("big", ">")):
          "property uchar green", "property uchar blue"],
         [("3f", p) for p in SQUARE] + [("B3i3B", (3, 0, 1, 2, 9, 8, 7)), ("B3i3B", (3, 0, 2, 3, 255, 0, 1))])
 
+ply("ascii_surplus.ply", "",
+    ["element vertex 4", *XYZ, "element face 1", "property list uchar int vertex_indices"],
+    [("", (*p, 255)) for p in SQUARE] + [("", (4, 0, 1, 2, 3, 9, 1))])
+
 OBJ = {
     "plain.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
     "uv.obj": "mtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nusemtl m\nf 1/1/1 2/2/1 3/3/1\nf 1//1 3//1 2//1\n",
@@ -79,8 +83,11 @@ OBJ = {
     "concave.obj": "v 0 0 5\nv 3 0 5\nv 3 1 5\nv 1 1 5\nv 1 3 5\nv 0 3 5\nf 6 5 4 3 2 1\n",
     "colour.obj": "g a\nv 0 0 0 16 19 15\nv 1e-3 +1.5 .25 1 .5 0\nv 0 1 -0 0 0 0 1\nv nan 0 inf\nf 1 2 3 # c\n",
 }
+OBJ["absent.obj"] = "v 0 0 0\rv 1 0 0\rv 0 1 0\rvn 0 0 1\rf 1/1/1 2/2/2 3/3/-2\r"
 for name, text in OBJ.items():
     (HERE / "obj" / name).write_bytes(text.encode())
+for name, encoding in (("little_utf16.obj", "utf-16-le"), ("big_utf16.obj", "utf-16-be")):
+    (HERE / "obj" / name).write_bytes(("\ufeff# \U0001f3fa\n" + OBJ["plain.obj"]).encode(encoding))
 
 
 def planes(values, size):
@@ -111,6 +118,7 @@ facet = struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
 STL = {
     "binary.stl": b"solid binary".ljust(80) + struct.pack("<I", 2) + 2 * facet,
     "text.stl": b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1e0 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n",
+    "capitals.stl": b"\xef\xbb\xbf# made\rSOLID A\rFACET NORMAL 0 0 1\rOUTER LOOP\rVERTEX 0 0 0 // v\rVERTEX 1 0 0\rVERTEX 0 1 0\rENDLOOP\rENDFACET\rENDSOLID\r",
 }
 
 
@@ -171,9 +179,35 @@ gltf("rich.glb", rich, square + uvs)
 gltf("meshopt.glb", compressed, square + b"\xe1\xf0\x10\xfe\x10" + bytes(16) + b"\x00\x76\x87")
 gltf("draco.glb", draco, b"DRACO\x02\x02\x01\x01\x00\x00" + square[11:])
 gltf("beside.gltf", beside, square, glb=False)
+
+
+def instanced(d):
+    d["bufferViews"] += [{"buffer": 0, "byteOffset": 60, "byteLength": 24}, {"buffer": 0, "byteOffset": 84, "byteLength": 16}]
+    d["accessors"] += [{"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"},
+                       {"bufferView": 3, "componentType": 5122, "normalized": True, "count": 2, "type": "VEC4"}]
+    d["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 2, "ROTATION": 3, "SCALE": 2}}}
+    d["extensionsRequired"] = ["EXT_mesh_gpu_instancing"]
+
+
+def second_version(d):
+    """Eight vertices of 12 bytes, all zero but for a step: control modes 0 and 2, channels of bytes, shorts and words."""
+    d["accessors"][0]["count"] = 8
+    d["bufferViews"][0] |= {"byteLength": 96, "byteStride": 12, "buffer": 1, "extensions": {"KHR_meshopt_compression": {
+        "buffer": 0, "byteOffset": 60, "byteLength": len(SECOND), "byteStride": 12, "count": 8, "mode": "ATTRIBUTES", "filter": "EXPONENTIAL"}}}
+    d["extensionsRequired"] = ["KHR_meshopt_compression"]
+    d["textures"] = [{}]
+    d["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]
+    d["meshes"][0]["primitives"][0]["material"] = 0
+
+
+SECOND = (b"\xa1" + bytes((0b10101001, 0b10101000, 0b10101011)) + bytes((1, 0x55, 0xAA)) + bytes((1, 0xF0, 0x0F, 9, 9, 9, 9, 9, 9, 9, 9))
+          + bytes(range(8)) + bytes(9) + bytes(12) + bytes((0, 1, 0x42)))
+gltf("instanced.glb", instanced, square + struct.pack("<6f", 1, 2, 3, 4, 5, 6) + struct.pack("<8h", 0, 0, 0, 32767, 0, 0, 23170, 23170))
+gltf("meshopt_second.glb", second_version, square + SECOND)
 MTL = {
     "options.mtl": b"newmtl m\r\nKd .5 .25 0\nmap_Kd -s 2 2 1 -o .5 -clamp on a.png\nnewmtl n o\nd .5\nmap_Kd -mm 0 1 \\\n skin.<UDIM>.jpg\n",
     "plain.mtl": b"newmtl m\nKd 1 0 0\nTr 0.5\nmap_Kd a.png\n",
+    "carriage.mtl": "\ufeffnewmtl m\rKd 1 0 0\rmap_Kd a.png\r".encode("utf-16-le"),
     "picture.jpg": b"\xff\xd8\xff\xe0\x00\x10JFIF\x00\x01",
 }
 ZIP = {}

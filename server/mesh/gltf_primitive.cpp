@@ -1,0 +1,220 @@
+#include "mesh/gltf_primitive.h"
+
+#include <algorithm>
+#include <array>
+
+#include "mesh/gltf_draco.h"
+#include "mesh/gltf_numbers.h"
+#include "mesh/load_formats.h"
+
+namespace strata::mesh {
+namespace {
+
+using nlohmann::json;
+using Values = GltfDocument::Values;
+
+constexpr std::uint32_t kUnused = 0xffffffffu;
+
+// An attribute as Strata needs it. KHR_mesh_quantization adds whole numbers for positions and texture coordinates; they are
+// read whether the file names it or not.
+struct Attribute {
+  std::string name;
+  Values* values;
+  int least_components, most_components;
+  bool is_color;
+};
+
+class PrimitiveReader {
+ public:
+  PrimitiveReader(GltfDocument& document, const json& source, const GltfMaterial& material, std::size_t max_triangles,
+                  GltfRemarks& remarks)
+      : document_(document),
+        source_(source),
+        accessors_(object_in(source, "attributes")),
+        max_triangles_(max_triangles),
+        remarks_(remarks),
+        attributes_{{{"POSITION", &primitive_.positions, 3, 3, false},
+                     {"TEXCOORD_" + std::to_string(material.texcoord), &primitive_.uvs, 2, 2, false},
+                     {"COLOR_0", &primitive_.colors, 3, 4, true}}} {}
+
+  Result<std::optional<GltfPrimitive>> read() {
+    const auto mode = whole_number(source_, "mode", kTriangles);
+    if (!mode) return tl::unexpected(mode.error());
+    primitive_.mode = *mode;
+    if (*mode > kTriangleFan)
+      return refuse_file("A primitive of the glTF has mode " + std::to_string(*mode) + ", which glTF does not have.");
+    if (*mode < kTriangles) {
+      ++remarks_.points_and_lines;
+      return std::nullopt;
+    }
+    const auto& draco = object_in(object_in(source_, "extensions"), "KHR_draco_mesh_compression");
+    if (!accessors_.contains("POSITION") && !object_in(draco, "attributes").contains("POSITION")) {
+      ++remarks_.without_positions;  // glTF has it so: an extension that is not read here may give them
+      return std::nullopt;
+    }
+    const Result<void> done = draco.empty() ? Result<void>() : read_draco(draco);
+    if (!done) return tl::unexpected(done.error());
+    for (const Attribute& attribute : attributes_)
+      if (auto read = read_plain(attribute); !read) return tl::unexpected(read.error());
+    if (draco.empty())
+      if (auto read = read_indices(); !read) return tl::unexpected(read.error());
+    if (auto checked = check(); !checked) return tl::unexpected(checked.error());
+    keep_used_vertices();
+    return std::move(primitive_);
+  }
+
+ private:
+  // Whether numbers of this accessor mean what they must; whole ones that should be normalised and do not say so are.
+  Result<bool> must_normalize(const Attribute& attribute, std::uint64_t accessor, const GltfDocument::Form& form) {
+    const std::string name = "Accessor " + std::to_string(accessor) + " of the glTF (" + attribute.name + ")";
+    const int type = form.component_type;
+    if (form.components < attribute.least_components || form.components > attribute.most_components)
+      return refuse_file(name + " has " + std::to_string(form.components) + " numbers a vertex; " +
+                         std::to_string(attribute.least_components) +
+                         (attribute.is_color ? " or " + std::to_string(attribute.most_components) : "") +
+                         " belong there.");
+    const bool is_signed = type == kByte || type == kShort;
+    if (type == kUnsignedInt || (attribute.is_color && is_signed))
+      return refuse_file(name + " holds " + name_of_component(type) +
+                         ", which glTF does not allow there. Export it with " +
+                         (attribute.is_color ? "UNSIGNED_BYTE, UNSIGNED_SHORT or FLOAT."
+                                             : "FLOAT, or with numbers of KHR_mesh_quantization."));
+    // A colour of whole numbers up to 255 or 65535 has no other meaning.
+    const bool taken = attribute.is_color && type != kFloat && !form.normalized;
+    remarks_.colors_taken_as_normalized += taken;
+    return taken;
+  }
+
+  // What a primitive of Draco keeps beside its stream is read like any other.
+  Result<void> read_plain(const Attribute& attribute) {
+    if (attribute.values->components != 0 || !accessors_.contains(attribute.name)) return {};
+    const auto accessor = whole_number(accessors_, attribute.name.c_str());
+    if (!accessor) return tl::unexpected(accessor.error());
+    const auto form = document_.form(*accessor, attribute.name);
+    if (!form) return tl::unexpected(form.error());
+    const auto normalize = must_normalize(attribute, *accessor, *form);
+    if (!normalize) return tl::unexpected(normalize.error());
+    auto found = document_.values(*accessor, attribute.name, *normalize);
+    if (!found) return tl::unexpected(found.error());
+    *attribute.values = std::move(*found);
+    return {};
+  }
+
+  Result<void> read_draco(const json& extension) {
+    const auto& ids = object_in(extension, "attributes");
+    std::map<std::string, DracoRequest> requests;
+    for (const Attribute& attribute : attributes_) {
+      if (!ids.contains(attribute.name)) continue;
+      const auto id = whole_number(ids, attribute.name.c_str());
+      if (!id) return tl::unexpected(id.error());
+      DracoRequest& request = requests[attribute.name];
+      request.id = static_cast<std::uint32_t>(*id);
+      if (!accessors_.contains(attribute.name)) continue;
+      const auto accessor = whole_number(accessors_, attribute.name.c_str());
+      if (!accessor) return tl::unexpected(accessor.error());
+      const auto form = document_.form(*accessor, attribute.name);
+      if (!form) return tl::unexpected(form.error());
+      const auto normalize = must_normalize(attribute, *accessor, *form);
+      if (!normalize) return tl::unexpected(normalize.error());
+      request.form = *form;
+      request.normalize = *normalize;
+    }
+    std::uint64_t most = max_triangles_;
+    if (source_.contains("indices")) {
+      const auto accessor = whole_number(source_, "indices");
+      if (!accessor) return tl::unexpected(accessor.error());
+      const auto form = document_.form(*accessor, "indices");
+      if (!form) return tl::unexpected(form.error());
+      // A strip is stored as the triangles that it makes.
+      const std::uint64_t announced = primitive_.mode == kTriangles ? form->count / 3 : form->count;
+      most = std::min(most, announced);
+    }
+    const auto view_index = whole_number(extension, "bufferView");
+    if (!view_index) return tl::unexpected(view_index.error());
+    const auto view = document_.view(*view_index);
+    if (!view) return tl::unexpected(view.error());
+    auto decoded = decode_draco(view->bytes, requests, most);
+    if (!decoded) return tl::unexpected(decoded.error());
+    for (const Attribute& attribute : attributes_)
+      if (const auto found = decoded->attributes.find(attribute.name); found != decoded->attributes.end())
+        *attribute.values = std::move(found->second);
+    primitive_.indices = std::move(decoded->indices);
+    primitive_.mode = kTriangles;
+    return {};
+  }
+
+  Result<void> read_indices() {
+    if (!source_.contains("indices")) {
+      if (primitive_.positions.count > 3 * std::uint64_t{max_triangles_})
+        return refuse_file("The glTF has more vertices than may be.");
+      primitive_.indices.resize(primitive_.positions.count);
+      for (std::uint32_t i = 0; i < primitive_.indices.size(); ++i) primitive_.indices[i] = i;
+      return {};
+    }
+    const auto accessor = whole_number(source_, "indices");
+    if (!accessor) return tl::unexpected(accessor.error());
+    auto indices = document_.indices(*accessor);
+    if (!indices) return tl::unexpected(indices.error());
+    primitive_.indices = std::move(*indices);
+    return {};
+  }
+
+  Result<void> check() const {
+    const std::uint64_t count = primitive_.positions.count;
+    for (const Attribute& attribute : attributes_) {
+      const Values& values = *attribute.values;
+      if (values.components == 0) continue;
+      if (values.components < attribute.least_components || values.components > attribute.most_components)
+        return refuse_file("A primitive of the glTF has " + std::to_string(values.components) +
+                           " numbers a vertex for " + attribute.name + ".");
+      if (values.count == count) continue;
+      return refuse_file("A primitive of the glTF has " + std::to_string(count) + " positions, but " +
+                         std::to_string(values.count) + " values of " + attribute.name + ".");
+    }
+    for (const std::uint32_t index : primitive_.indices)
+      if (index >= count)
+        return refuse_file("A triangle of the glTF names vertex " + std::to_string(index) + ", but its primitive has " +
+                           std::to_string(count) + ".");
+    return {};
+  }
+
+  // Primitives share accessors: each takes the vertices that its triangles name.
+  void keep_used_vertices() {
+    std::vector<std::uint32_t> number(primitive_.positions.count, kUnused), used;
+    for (std::uint32_t& index : primitive_.indices) {
+      if (number[index] == kUnused) {
+        number[index] = static_cast<std::uint32_t>(used.size());
+        used.push_back(index);
+      }
+      index = number[index];
+    }
+    for (const Attribute& attribute : attributes_) {
+      Values& values = *attribute.values;
+      if (values.components == 0) continue;
+      const auto n = static_cast<std::size_t>(values.components);
+      std::vector<float> kept(used.size() * n);
+      for (std::size_t i = 0; i < used.size(); ++i)
+        std::copy_n(values.numbers.begin() + static_cast<std::ptrdiff_t>(used[i] * n), n,
+                    kept.begin() + static_cast<std::ptrdiff_t>(i * n));
+      values.numbers = std::move(kept);
+      values.count = used.size();
+    }
+  }
+
+  GltfDocument& document_;
+  const json &source_, &accessors_;
+  const std::size_t max_triangles_;
+  GltfRemarks& remarks_;
+  GltfPrimitive primitive_;
+  std::array<Attribute, 3> attributes_;
+};
+
+}  // namespace
+
+Result<std::optional<GltfPrimitive>> read_gltf_primitive(GltfDocument& document, const json& source,
+                                                         const GltfMaterial& material, std::size_t max_triangles,
+                                                         GltfRemarks& remarks) {
+  return PrimitiveReader(document, source, material, max_triangles, remarks).read();
+}
+
+}  // namespace strata::mesh
