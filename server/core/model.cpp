@@ -82,6 +82,8 @@ nlohmann::json to_json(const AtlasReport& atlas, double metres_per_unit) {
     sizes.push_back({{"resolution", size.resolution},
                      {"area_mean_m2", size.area_mean * square_metres},
                      {"area_max_m2", size.area_max * square_metres}});
+  nlohmann::json limits = nlohmann::json::array();
+  for (const auto& limit : atlas.limits) limits.push_back({{"code", limit.code}, {"text", limit.text}});
   return {{"source", atlas.source},
           {"lowest_resolution", atlas.lowest_resolution},
           {"charts", atlas.charts},
@@ -90,7 +92,8 @@ nlohmann::json to_json(const AtlasReport& atlas, double metres_per_unit) {
           {"stretch_mean", atlas.stretch_mean},
           {"stretch_p99", atlas.stretch_p99},
           {"texel_area_max_m2", atlas.texel_area_max * square_metres},
-          {"texel_sizes", sizes}};
+          {"texel_sizes", sizes},
+          {"limits", limits}};
 }
 
 AtlasReport atlas_from_json(const nlohmann::json& json) {
@@ -106,6 +109,8 @@ AtlasReport atlas_from_json(const nlohmann::json& json) {
   for (const auto& size : json.value("texel_sizes", nlohmann::json::array()))
     atlas.texel_sizes.push_back(
         {size.value("resolution", 0), size.value("area_mean_m2", 0.0), size.value("area_max_m2", 0.0)});
+  for (const auto& limit : json.value("limits", nlohmann::json::array()))
+    atlas.limits.push_back({limit.value("code", std::string()), limit.value("text", std::string())});
   return atlas;
 }
 

@@ -32,6 +32,11 @@ struct AtlasReport {
     int resolution = 0;
     double area_mean = 0, area_max = 0;  // unit²
   };
+  // Why less than 60 % of the texels are used; `code` is stable, `text` says it in words.
+  struct Limit {
+    std::string code;  // "long_triangles", "many_charts", "hollow_charts", "file_coordinates"
+    std::string text;
+  };
   std::string source;  // "file": UVs of the scan were kept; "made": unwrapped here
   int lowest_resolution = 2048;
   int charts = 0;
@@ -41,6 +46,7 @@ struct AtlasReport {
   double stretch_p99 = 0;
   double texel_area_max = 0;           // unit², largest surface area of one texel at lowest_resolution
   std::vector<TexelSize> texel_sizes;  // from lowest_resolution up; empty in models of before it was measured
+  std::vector<Limit> limits;           // empty where 60 % and more are used, and in models of before it was said
 };
 
 // Why a unit or an up direction is proposed.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "mesh/atlas_limits.h"
 #include "mesh/atlas_report.h"
 #include "mesh/chart_conflicts.h"
 #include "mesh/chart_cuts.h"
@@ -315,6 +316,8 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
   atlas.report = make_report(mesh, atlas.corner_uvs, lowest_resolution, owners, measure);
   atlas.report.source = "made";
   atlas.report.charts = static_cast<int>(best->charts.size());
+  atlas.report.limits =
+      limits_of_packing(best->outlines, best->packing, lowest_resolution, best->gap, atlas.report.coverage);
   progress.report(1, "Surface unfolded");
   return atlas;
 }

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "mesh/atlas.h"
+#include "mesh/atlas_limits.h"
 #include "mesh/atlas_report.h"
 #include "mesh/load_formats.h"
 #include "mesh/uv_faults.h"
@@ -137,6 +138,7 @@ Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress
   const auto vertices = weld_corners(mesh.triangles, atlas.corner_uvs, mesh.positions.size(), indices);
   atlas.report = make_report(mesh, atlas.corner_uvs, lowest_resolution, owners, measure);
   atlas.report.source = "file";
+  atlas.report.limits = limits_of_file(atlas.report.coverage);
   atlas.report.charts = static_cast<int>(find_islands(indices, vertices).count);
   progress.report(1, "Texture coordinates kept");
   return atlas;

@@ -1,5 +1,6 @@
 #include "support/meshes.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -149,6 +150,71 @@ TriangleMesh transformed(TriangleMesh mesh, double scale, const glm::dvec3& offs
   return mesh;
 }
 
+TriangleMesh cubes(int count) {
+  constexpr std::array<std::array<std::uint32_t, 4>, 6> kSides{
+      {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+  TriangleMesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const glm::dvec3 corner(2.5 * (i % 10), 2.5 * (i / 10), 0);
+    for (int k = 0; k < 8; ++k) mesh.positions.push_back(corner + glm::dvec3(k & 1, k >> 1 & 1, k >> 2 & 1));
+    for (const auto& side : kSides) {
+      add_triangle(mesh, first + side[0], first + side[1], first + side[2]);
+      add_triangle(mesh, first + side[0], first + side[2], first + side[3]);
+    }
+  }
+  return mesh;
+}
+
+TriangleMesh gear(int teeth) {
+  TriangleMesh mesh;
+  const auto columns = static_cast<std::uint32_t>(4 * teeth);
+  // Four rings: outer and inner rim below, then above. Caps lie between outer and inner, walls between below and above.
+  for (int ring = 0; ring < 4; ++ring)
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const double angle = 2 * std::numbers::pi * i / columns;
+      const double radius = ring % 2 == 1 ? 0.4 : i % 4 < 2 ? 1 : 0.8;
+      mesh.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), ring < 2 ? 0 : 0.3});
+    }
+  const auto quads = [&](std::uint32_t from, std::uint32_t to) {
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      const std::uint32_t next = (i + 1) % columns;
+      add_triangle(mesh, from * columns + i, from * columns + next, to * columns + next);
+      add_triangle(mesh, from * columns + i, to * columns + next, to * columns + i);
+    }
+  };
+  quads(0, 2), quads(2, 3), quads(3, 1), quads(1, 0);
+  return mesh;
+}
+
+TriangleMesh flat_ring(int sides) {
+  TriangleMesh mesh;
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    for (const double radius : {1.0, 0.92})
+      mesh.positions.push_back({radius * std::cos(angle), 0.5, radius * std::sin(angle)});
+  }
+  const auto count = static_cast<std::uint32_t>(2 * sides);
+  for (std::uint32_t i = 0; i < count; i += 2) {
+    add_triangle(mesh, i, i + 1, (i + 2) % count);
+    add_triangle(mesh, i + 1, (i + 3) % count, (i + 2) % count);
+  }
+  return mesh;
+}
+
+TriangleMesh strips(int count, double length) {
+  TriangleMesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const double angle = 0.1 * i;
+    const glm::dvec3 origin(3.0 * i, 0, 0), across(std::cos(angle), std::sin(angle), 0), along(0, 0, length);
+    mesh.positions.insert(mesh.positions.end(), {origin, origin + across, origin + across + along, origin + along});
+    add_triangle(mesh, first, first + 1, first + 2);
+    add_triangle(mesh, first, first + 2, first + 3);
+  }
+  return mesh;
+}
+
 std::vector<NamedMesh> mesh_classes() {
   return {{"sphere", sphere(40)},
           {"noisy_sphere", sphere(60, 0.08)},
@@ -158,7 +224,11 @@ std::vector<NamedMesh> mesh_classes() {
           {"slivers", slivers(300)},
           {"cube", cube_with_face_charts()},
           {"flipped_and_duplicate", flipped_and_duplicate(10)},
-          {"separate_triangles", separate_triangles(40)}};
+          {"separate_triangles", separate_triangles(40)},
+          {"cubes", cubes(12)},
+          {"gear", gear(12)},
+          {"flat_ring", flat_ring(66)},
+          {"strips", strips(12, 40)}};
 }
 
 }  // namespace strata::test

@@ -17,6 +17,10 @@ mesh::TriangleMesh slivers(int count);                         // a fan of trian
 mesh::TriangleMesh cube_with_face_charts();                    // 12 triangles; corner_uvs in 6 separate squares
 mesh::TriangleMesh flipped_and_duplicate(int cells);           // every 7th triangle turned round, some twice
 mesh::TriangleMesh separate_triangles(int count);              // no two connected
+mesh::TriangleMesh cubes(int count);                           // apart, of 12 triangles and 8 vertices each
+mesh::TriangleMesh gear(int teeth);                            // two flat caps with a hole, straight and slanted flanks
+mesh::TriangleMesh flat_ring(int sides);                       // one plane, thin and hollow
+mesh::TriangleMesh strips(int count, double length);           // apart, two triangles each, 1 wide
 
 mesh::TriangleMesh transformed(mesh::TriangleMesh mesh, double scale, const glm::dvec3& offset);
 

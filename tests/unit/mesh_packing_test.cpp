@@ -147,6 +147,37 @@ TEST(mesh_packing, does_not_depend_on_the_number_of_threads) {
   }
 }
 
+// Triangles of many sizes, none of them like another.
+std::vector<Outline> many_triangles(int count) {
+  std::vector<Outline> outlines;
+  for (int i = 0; i < count; ++i) {
+    const float width = 1 + 0.61803f * float(i % 89) / 40, height = 0.5f + 0.41421f * float(i % 71) / 40;
+    outlines.push_back(polygon({{0, 0}, {width, 0}, {0.73205f * width * float(i % 13) / 13, height}}));
+  }
+  return outlines;
+}
+
+TEST(mesh_packing, works_little_more_for_each_of_many_charts_than_for_each_of_few) {
+  const auto work_of_each = [](int count) {
+    const auto packing = pack_densely(many_triangles(count), 1024, 2, Progress{});
+    EXPECT_TRUE(packing) << count;
+    return packing ? double(packing->work) / count : 0;
+  };
+  const double of_few = work_of_each(1000), of_many = work_of_each(16'000);
+  EXPECT_GT(of_few, 0);
+  EXPECT_LT(of_many, 2 * of_few) << "16 times the charts took more than 32 times the work";
+}
+
+TEST(mesh_packing, the_first_step_foretells_the_density_of_the_second) {
+  const auto outlines = many_triangles(150);
+  auto start = begin_packing(outlines, 512, 2, Progress{});
+  ASSERT_TRUE(start);
+  const double expected = start->expected_density;
+  const auto packing = finish_packing(outlines, 512, 2, std::move(*start), Progress{});
+  ASSERT_TRUE(packing);
+  EXPECT_NEAR(packing->texels_per_unit / expected, 1, 0.08);
+}
+
 TEST(mesh_packing, charts_of_a_single_texel_each_are_packed_or_refused_but_not_shrunk_for_ever) {
   // 600 would fit by their area with the gaps, but no more than 24 fit beside each other between the rims.
   std::vector<Outline> outlines(600);

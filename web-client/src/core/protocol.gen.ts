@@ -531,6 +531,13 @@ export interface Bounds {
   max: Point3;
 }
 
+/** Why part of the texture stays unused. */
+export interface AtlasLimit {
+  /** long_triangles: the longest triangle sets the scale of all; many_charts: the margins around charts take the room; hollow_charts: charts leave their own boxes empty; file_coordinates: the scan's own coordinates were kept. */
+  code: "long_triangles" | "many_charts" | "hollow_charts" | "file_coordinates";
+  text: string;
+}
+
 /** How much surface a texel holds. */
 export interface TexelSize {
   resolution: number;
@@ -552,6 +559,8 @@ export interface Atlas {
   texel_area_max_m2: number;
   /** Precision of layers by their resolution, the lowest first; not known of models imported before it was measured. */
   texel_sizes?: TexelSize[];
+  /** Why less than 60 % of the texels are used; empty where more are. */
+  limits?: AtlasLimit[];
 }
 
 /** What was mended at import. */

@@ -199,6 +199,26 @@ void read(const nlohmann::json& json, Axis& value) {
 
 nlohmann::json to_json(const Axis& value) { return name(value); }
 
+std::string_view name(AtlasLimitCode value) {
+  switch (value) {
+    case AtlasLimitCode::long_triangles: return "long_triangles";
+    case AtlasLimitCode::many_charts: return "many_charts";
+    case AtlasLimitCode::hollow_charts: return "hollow_charts";
+    case AtlasLimitCode::file_coordinates: return "file_coordinates";
+  }
+  return {};
+}
+
+void read(const nlohmann::json& json, AtlasLimitCode& value) {
+  const auto& text = json.get_ref<const std::string&>();
+  if (text == "long_triangles") value = AtlasLimitCode::long_triangles;
+  if (text == "many_charts") value = AtlasLimitCode::many_charts;
+  if (text == "hollow_charts") value = AtlasLimitCode::hollow_charts;
+  if (text == "file_coordinates") value = AtlasLimitCode::file_coordinates;
+}
+
+nlohmann::json to_json(const AtlasLimitCode& value) { return name(value); }
+
 std::string_view name(AtlasSource value) {
   switch (value) {
     case AtlasSource::file: return "file";
@@ -1054,6 +1074,18 @@ nlohmann::json to_json(const Bounds& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, AtlasLimit& value) {
+  read_member(json, "code", value.code);
+  read_member(json, "text", value.text);
+}
+
+nlohmann::json to_json(const AtlasLimit& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "code", value.code);
+  write_member(json, "text", value.text);
+  return json;
+}
+
 void read(const nlohmann::json& json, TexelSize& value) {
   read_member(json, "resolution", value.resolution);
   read_member(json, "area_mean_m2", value.area_mean_m2);
@@ -1078,6 +1110,7 @@ void read(const nlohmann::json& json, Atlas& value) {
   read_member(json, "stretch_p99", value.stretch_p99);
   read_member(json, "texel_area_max_m2", value.texel_area_max_m2);
   read_optional_member(json, "texel_sizes", value.texel_sizes);
+  read_optional_member(json, "limits", value.limits);
 }
 
 nlohmann::json to_json(const Atlas& value) {
@@ -1091,6 +1124,7 @@ nlohmann::json to_json(const Atlas& value) {
   write_member(json, "stretch_p99", value.stretch_p99);
   write_member(json, "texel_area_max_m2", value.texel_area_max_m2);
   write_optional_member(json, "texel_sizes", value.texel_sizes);
+  write_optional_member(json, "limits", value.limits);
   return json;
 }
 

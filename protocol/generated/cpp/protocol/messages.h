@@ -94,6 +94,7 @@ enum class Schema {
   Axis,
   Bounds,
   Atlas,
+  AtlasLimit,
   TexelSize,
   Repair,
   SourceFile,
@@ -312,7 +313,7 @@ enum class Schema {
   Statistics,
   Readiness,
 };
-constexpr int kSchemaCount = 286;
+constexpr int kSchemaCount = 287;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -621,6 +622,22 @@ nlohmann::json to_json(const Bounds& value);
 template <>
 inline constexpr Schema kSchemaOf<Bounds> = Schema::Bounds;
 
+enum class AtlasLimitCode { long_triangles, many_charts, hollow_charts, file_coordinates };
+std::string_view name(AtlasLimitCode value);
+void read(const nlohmann::json& json, AtlasLimitCode& value);
+nlohmann::json to_json(const AtlasLimitCode& value);
+
+// Why part of the texture stays unused.
+struct AtlasLimit {
+  AtlasLimitCode code{};  // long_triangles: the longest triangle sets the scale of all; many_charts: the margins around charts take the room; hollow_charts: charts leave their own boxes empty; file_coordinates: the scan's own coordinates were kept.
+  std::string text;
+  bool operator==(const AtlasLimit&) const = default;
+};
+void read(const nlohmann::json& json, AtlasLimit& value);
+nlohmann::json to_json(const AtlasLimit& value);
+template <>
+inline constexpr Schema kSchemaOf<AtlasLimit> = Schema::AtlasLimit;
+
 // How much surface a texel holds.
 struct TexelSize {
   int resolution = 0;
@@ -649,6 +666,7 @@ struct Atlas {
   double stretch_p99 = 0;
   double texel_area_max_m2 = 0;  // Surface in the texel that holds most, at lowest_resolution.
   std::optional<std::vector<TexelSize>> texel_sizes;  // Precision of layers by their resolution, the lowest first; not known of models imported before it was measured.
+  std::optional<std::vector<AtlasLimit>> limits;  // Why less than 60 % of the texels are used; empty where more are.
   bool operator==(const Atlas&) const = default;
 };
 void read(const nlohmann::json& json, Atlas& value);
