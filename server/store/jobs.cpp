@@ -8,8 +8,8 @@ Result<std::vector<StoredJob>> Jobs::take_over(int most) {
   return pool_.write([&](PgConnection& connection) -> Result<std::vector<StoredJob>> {
     auto lost = connection.query("UPDATE jobs SET state = 'lost', ended = now() WHERE state = 'begun'", Params());
     if (!lost) return tl::unexpected(lost.error());
-    auto old = connection.query("DELETE FROM jobs WHERE ended < now() - make_interval(days => $1)",
-                                Params().integer(kDaysKept));
+    auto old =
+        connection.query("DELETE FROM jobs WHERE ended < now() - $1 * interval '1 day'", Params().integer(kDaysKept));
     if (!old) return tl::unexpected(old.error());
     auto rows = connection.query(
         "SELECT id, project_id, user_name, kind, state, coalesce(problem, 'null'), coalesce(result, 'null') FROM jobs "

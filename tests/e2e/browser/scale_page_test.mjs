@@ -42,10 +42,11 @@ const shot = async ({ page }, name) => {
 };
 
 const card = ({ page }) => page.locator("strata-scale-dialog dialog[open]");
-const title = async (who) => (await card(who).getByRole("heading").innerText()).replace(/\s+/g, " ");
+const asks = ({ page }) => page.locator("strata-scale-dialog");
+const title = async (who) => (await asks(who).getByRole("heading").innerText()).replace(/\s+/g, " ");
 const reason = (who, of) => who.page.locator(`strata-scale-dialog [data-reason=${of}]`).innerText();
 const chosen = (who) => who.page.locator("strata-scale-dialog [role=radio][aria-checked=true]").allInnerTexts();
-const choose = (who, name) => card(who).getByRole("radio", { name, exact: true }).click();
+const choose = (who, name) => asks(who).getByRole("radio", { name, exact: true }).click();
 const bar = (who) => who.page.locator("strata-stage .scale").innerText();
 const model_of = async (name) => (await server.json("GET", "/models?limit=100")).models.find((each) => each.name === name);
 const file_of = (name, text) => ({ name, mimeType: "application/octet-stream", buffer: Buffer.from(text) });
@@ -82,8 +83,8 @@ try {
   assert.deepEqual([model.unit, model.unit_assumed, model.up, model.proposal.unit_reason, model.proposal.up_reason], ["mm", false, "y", "comment", "shape"]);
 
   say("six small pictures, each another one");
-  assert.deepEqual(await card(desk).locator("[role=radiogroup]").last().getByRole("radio").allInnerTexts(), kUps);
-  const pictures = card(desk).locator("strata-thumbnail canvas.drawn");
+  assert.deepEqual(await asks(desk).locator("[role=radiogroup]").last().getByRole("radio").allInnerTexts(), kUps);
+  const pictures = asks(desk).locator("strata-thumbnail canvas.drawn");
   await wait_for(async () => (await pictures.count()) === 6, "six pictures");
   assert.equal(new Set(await pictures.evaluateAll((all) => all.map((canvas) => canvas.toDataURL()))).size, 6);
   await shot(desk, "desk");
@@ -107,8 +108,8 @@ try {
   assert.deepEqual([(await model_of("bowl with unit")).unit, (await model_of("bowl with unit")).up], ["mm", "y"]);
 
   say("decide later: what the card named is kept, marked, and asked again");
-  assert.match(await card(desk).innerText(), /“Decide later” keeps millimetres and \+Y up/);
-  await card(desk).getByRole("button", { name: "Decide later" }).click();
+  await asks(desk).getByText(/“Decide later” keeps millimetres and \+Y up/).waitFor();
+  await asks(desk).getByRole("button", { name: "Decide later" }).click();
   await card(desk).waitFor({ state: "detached" });
   await bar_says(desk, "(mm|cm)");
   assert.match(await bar(desk), /Size not confirmed/);
@@ -118,7 +119,7 @@ try {
 
   say("yes: it is confirmed, upside down as chosen");
   await choose(desk, "−Y");
-  await card(desk).getByRole("button", { name: "Yes, that is right" }).click();
+  await asks(desk).getByRole("button", { name: "Yes, that is right" }).click();
   await wait_for(async () => (await model_of("bowl with unit")).scale_verified, "the size to be confirmed");
   model = await model_of("bowl with unit");
   assert.deepEqual([model.unit, model.up], ["mm", "-y"]);
@@ -135,7 +136,7 @@ try {
   const dialog = await card(phone).boundingBox();
   assert.ok(dialog.y > 0.33 * kPhone.viewport.height, `the card begins at ${dialog.y}`);
   assert.equal(await phone.page.evaluate(() => document.documentElement.scrollWidth), kPhone.viewport.width);
-  await wait_for(async () => (await card(phone).locator("strata-thumbnail canvas.drawn").count()) === 6, "six pictures");
+  await wait_for(async () => (await asks(phone).locator("strata-thumbnail canvas.drawn").count()) === 6, "six pictures");
   await shot(phone, "phone");
   await phone.page.keyboard.press("Escape");
   await card(phone).waitFor({ state: "detached" });
@@ -148,7 +149,7 @@ try {
     assert.match(await title(desk), /49.6 × 80.3 × 49.8 mm/);
     await bar_says(desk, "(mm|cm)");
     assert.deepEqual(await chosen(desk), ["millimetres", "+Y"]);
-    await wait_for(async () => (await card(desk).locator("strata-thumbnail canvas.drawn").count()) === 6, "six pictures");
+    await wait_for(async () => (await asks(desk).locator("strata-thumbnail canvas.drawn").count()) === 6, "six pictures");
     await shot(desk, "lekythos");
   } else {
     console.log(`NOT CHECKED: there is no ${kScan}`);
