@@ -45,7 +45,8 @@ const card = ({ page }) => page.locator("strata-scale-dialog dialog[open]");
 const asks = ({ page }) => page.locator("strata-scale-dialog");
 const title = async (who) => (await asks(who).getByRole("heading").innerText()).replace(/\s+/g, " ");
 const reason = (who, of) => who.page.locator(`strata-scale-dialog [data-reason=${of}]`).innerText();
-const chosen = (who) => who.page.locator("strata-scale-dialog [role=radio][aria-checked=true]").allInnerTexts();
+const texts_of = async (locator) => (await locator.allInnerTexts()).map((text) => text.trim());
+const chosen = (who) => texts_of(who.page.locator("strata-scale-dialog [role=radio][aria-checked=true]"));
 const choose = (who, name) => asks(who).getByRole("radio", { name, exact: true }).click();
 const bar = (who) => who.page.locator("strata-stage .scale").innerText();
 const model_of = async (name) => (await server.json("GET", "/models?limit=100")).models.find((each) => each.name === name);
@@ -59,7 +60,7 @@ async function asked(who) {
   await card(who).waitFor();
   await who.drawn();
 }
-/** The largest part of a colour anywhere in the stage's empty corner: a veil makes it darker. */
+/** How bright the stage is where it shows no model: a veil makes it darker. */
 async function ground(who) {
   const box = await who.stage_box();
   const { data } = await who.picture({ x: box.x + box.width * 0.3, y: box.y + 60, width: 4, height: 4 });
@@ -83,7 +84,7 @@ try {
   assert.deepEqual([model.unit, model.unit_assumed, model.up, model.proposal.unit_reason, model.proposal.up_reason], ["mm", false, "y", "comment", "shape"]);
 
   say("six small pictures, each another one");
-  assert.deepEqual(await asks(desk).locator("[role=radiogroup]").last().getByRole("radio").allInnerTexts(), kUps);
+  assert.deepEqual(await texts_of(asks(desk).locator("[role=radiogroup]").last().getByRole("radio")), kUps);
   const pictures = asks(desk).locator("strata-thumbnail canvas.drawn");
   await wait_for(async () => (await pictures.count()) === 6, "six pictures");
   assert.equal(new Set(await pictures.evaluateAll((all) => all.map((canvas) => canvas.toDataURL()))).size, 6);
@@ -113,7 +114,8 @@ try {
   await card(desk).waitFor({ state: "detached" });
   await bar_says(desk, "(mm|cm)");
   assert.match(await bar(desk), /Size not confirmed/);
-  assert.equal(await ground(desk), with_card, "the picture was dimmed while the card was open");
+  const without_card = await ground(desk);
+  assert.ok(Math.abs(without_card - with_card) < 12, `the picture was dimmed while the card was open: ${with_card} of ${without_card}`); // a veil takes 80; JPEG a few
   await desk.page.reload();
   await asked(desk);
 
@@ -123,7 +125,7 @@ try {
   await wait_for(async () => (await model_of("bowl with unit")).scale_verified, "the size to be confirmed");
   model = await model_of("bowl with unit");
   assert.deepEqual([model.unit, model.up], ["mm", "-y"]);
-  assert.doesNotMatch(await bar(desk), /not confirmed/);
+  await wait_for(async () => !/not confirmed/.test(await bar(desk)), "the scale bar to be sure");
 
   say("without a unit in the file the size decides, and says that it is guessed; on a phone the model is seen above the card");
   await drop(phone, file_of("plain_bowl.ply", bowl("z")));
