@@ -89,7 +89,7 @@ export class ModelSession {
   private readonly connection_: Connection;
   private readonly listeners_ = new Set<() => void>();
   private etag_ = "";
-  private preview_unit_: Model["unit"] | null = null;
+  private preview_: Pick<Model, "unit" | "up"> | null = null;
   private was_open_ = false;
   private closed_ = false; // its page is gone
   private told_left_ = false;
@@ -585,14 +585,14 @@ export class ModelSession {
   /** Shows the model as if it had this unit and up direction, without keeping them; null: as it has them. */
   preview_scale(scale: Pick<Model, "unit" | "up"> | null): void {
     if (!this.model) return;
-    this.preview_unit_ = scale?.unit ?? null;
+    this.preview_ = scale;
     this.view.preview_up(this.model, scale?.up ?? this.model.up);
     this.changed();
   }
 
   /** What lengths on the screen are told in. */
   get shown_unit(): Model["unit"] {
-    return this.preview_unit_ ?? this.model?.unit ?? "m";
+    return this.preview_?.unit ?? this.model?.unit ?? "m";
   }
 
   private take_model({ value, etag }: Versioned<Model>): void {
@@ -603,7 +603,9 @@ export class ModelSession {
   private put_model(model: Model): void {
     const turned = this.model !== null && this.model.up !== model.up;
     this.model = model;
-    this.view.set_model(model, turned);
+    // What somebody else changes meanwhile does not end the preview.
+    if (this.preview_) this.view.set_model({ ...model, up: this.preview_.up }, false);
+    else this.view.set_model(model, turned);
     this.changed();
   }
 
