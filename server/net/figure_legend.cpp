@@ -54,9 +54,13 @@ Result<bool> is_seen(const FigureWish& wish, const Camera& camera, const glm::dv
 Result<std::set<double>> marked_keys(const RouteContext& context, const FigureWish& wish, const Layer& layer,
                                      const Camera& camera) {
   const Model model = wish.room->model();
-  const auto at = context.store.table_sequence_when(*layer.table, model.id, *wish.shown.at);
-  if (!at) return tl::unexpected(at.error());
-  const auto marks = context.store.marks(*layer.table, wish.role, model.id, *at);
+  std::optional<std::int64_t> at;  // of the table; none: now, as the picture has it
+  if (*wish.shown.at < wish.room->durable_sequence()) {
+    const auto then = context.store.table_sequence_when(*layer.table, model.id, *wish.shown.at);
+    if (!then) return tl::unexpected(then.error());
+    at = *then;
+  }
+  const auto marks = context.store.marks(*layer.table, wish.role, model.id, at);
   if (!marks) return tl::unexpected(marks.error());
   const double pixel = 2 / (std::abs(camera.projection[0][0]) * camera.width);
   const double reach = kPlaceReach_px * pixel + kPlaceReachOfSize * glm::distance(model.bounds_min, model.bounds_max);

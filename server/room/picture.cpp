@@ -127,8 +127,10 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
     if (mine.opacity) style.opacity = static_cast<float>(*mine.opacity);
     add_styles(style, waiting, request.layers);
     if (!item.layer.table) continue;
-    auto marks = asked.at ? record_marks_->when(*item.layer.table, sight, *asked.at)
-                          : record_marks_->newest(*item.layer.table, sight);
+    // After the newest edit comes now: records that changed since are of that state, too.
+    const bool is_past = asked.at && *asked.at < durable_;
+    auto marks = is_past ? record_marks_->when(*item.layer.table, sight, *asked.at)
+                         : record_marks_->newest(*item.layer.table, sight);
     if (!marks) return tl::unexpected(marks.error());
     if (*marks) marked.push_back({std::move(*marks), style.palette, style.opacity});
   }
