@@ -70,9 +70,10 @@ void add_swatch(std::vector<Item>& items, const Box& box, const LegendEntry& ent
   if (has_lines && !entry.bare) add_filled(items, box.corner, box.size, on_paper(ink, kGround));
   const glm::dvec2 middle = box.corner + box.size / 2.0;
   const glm::dvec2 along = direction(entry.angle), across(-along.y, along.x);
+  const Box within{box.corner + kHatchStroke / 2, box.size - kHatchStroke};  // so that their corners are in the box
   if (entry.pattern == Pattern::hatch)
     for (int i = -8; i <= 8; ++i)
-      if (const auto line = clipped(middle + (i * kSpacing) * across, along, box)) {
+      if (const auto line = clipped(middle + (i * kSpacing) * across, along, within)) {
         const glm::dvec2 half = across * (kHatchStroke / 2);
         items.push_back(
             Path{{line->first - half, line->second - half, line->second + half, line->first + half}, true, ink});

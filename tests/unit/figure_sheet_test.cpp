@@ -131,13 +131,16 @@ TEST(SheetLayout, ASwatchIsTintedAndHasABorderAsTheDrawing) {
           SheetLayout(paper_mm(Paper::a4, false), kCaptions, {legend}, 300).finish(20, std::nullopt, {});
       const auto group = std::ranges::find(sheet.groups, "legend", &Group::id);
       int tints = 0, inks = 0;
+      glm::dvec2 low(1e9), high(-1e9);
       for (const Item& item : group->items)
         if (const auto* path = std::get_if<Path>(&item); path && path->fill) {
+          for (const glm::dvec2& point : path->points) low = glm::min(low, point), high = glm::max(high, point);
           tints += *path->fill == Rgba{239, 179, 209, 255};  // 30 % of the colour on white
           inks += *path->fill == Rgba{200, 0, 100, 255};
         }
       EXPECT_EQ(tints, bare ? 0 : 1);
       EXPECT_GT(inks, bare ? 2 : 6);  // lines or dots, and four sides
+      EXPECT_TRUE(high.x - low.x <= 6 + 1e-9 && high.y - low.y <= 3 + 1e-9) << "nothing of it leaves the swatch";
     }
 }
 
