@@ -79,6 +79,7 @@ json import_in_child(const std::vector<mesh::InputFile>& files) {
   if (!atlas) atlas = mesh::make_atlas(loaded->mesh, kResolution, progress);
   if (!atlas) return {{"problem", atlas.error().detail}, {"status", atlas.error().status}};
   told["atlas"] = atlas->report.source;
+  loaded->repairs.insert(loaded->repairs.end(), atlas->repairs.begin(), atlas->repairs.end());
   auto color = mesh::bake_base_color(loaded->mesh, *atlas, loaded->repairs, progress);
   if (!color) return {{"problem", color.error().detail}, {"status", color.error().status}};
   if (*color)
