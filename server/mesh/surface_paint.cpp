@@ -133,8 +133,12 @@ void SurfacePaint::paint_moved(int texture, int ring, Picture& picture) const {
   const auto color_at_vertex = [&](std::uint32_t vertex) -> std::optional<glm::vec3> {
     const std::uint32_t corner = corner_of.at(vertex);
     if (corner == 0xffffffffu) return std::nullopt;
-    const Material& material = material_of(corner / 3);
-    return sampler.sample(texture_uv(corner / 3, static_cast<int>(corner % 3)), material.wrap_u, material.wrap_v);
+    const std::uint32_t t = corner / 3;
+    const Material& material = material_of(t);
+    // A little inside: beyond the rim of a chart, or of the texture, there are other colours.
+    const glm::dvec2 middle = (texture_uv(t, 0) + texture_uv(t, 1) + texture_uv(t, 2)) / 3.0;
+    const glm::dvec2 uv = glm::mix(texture_uv(t, static_cast<int>(corner % 3)), middle, 0.05);
+    return sampler.sample(uv, material.wrap_u, material.wrap_v);
   };
 
   // What is painted is written afterwards: it may lie where another one is looked up.
