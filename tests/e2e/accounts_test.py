@@ -43,6 +43,7 @@ def owner_link(server):
     server.start()
     assert server.link == server.url + "/", server.link
     assert Browser(server).sign_in("owner", PASSWORD).status == 200
+    server.sign_in_owner({"user": "owner", "password": PASSWORD})
 
 
 def invitations(server):

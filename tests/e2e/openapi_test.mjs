@@ -18,6 +18,7 @@ const kFewest = 2000;
 /** What cannot succeed here, or not surely. */
 const kExceptions = {
   live: "it becomes a WebSocket, which live_cases_test.py opens",
+  change_password: "it would end the owner's sessions and the token's rights on accounts; accounts_test.py does",
   kiosk_self: "kiosks ask it, and nobody else; kiosks_test.py does",
   cancel_job: "the job may be over before it is asked to stop",
   open_owner_link: "once the owner has chosen a password the link is worthless; the tests in browsers open it",

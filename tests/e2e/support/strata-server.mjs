@@ -77,6 +77,22 @@ export class StrataServer {
     if (bad.length > 0) throw new Error(`the log of the server is not clean:\n${bad.slice(0, 50).join("\n")}`);
   }
 
+  /** What a call of the owner's carries: the token, or for accounts a session, since tokens for scripts change none, the owner's among them once an administrator has a password. */
+  async owners_secret(path) {
+    if (!/^\/(users|groups|me\/)|^\/projects\/[^/]+\/(members|groups)(\/|$)|\/kiosks$/.test(path)) return this.token;
+    if (!this.session) await this.sign_in_owner({ token: this.token });
+    return this.session;
+  }
+  async sign_in_owner(login) {
+    const answer = await fetch(`${this.url}/api/v1/login`, {
+      method: "POST",
+      headers: { "Content-Type": "application/json", Origin: this.url },
+      body: JSON.stringify(login),
+    });
+    if (!answer.ok) throw new Error(`the owner's sign-in: ${answer.status} ${await answer.text()}`);
+    this.session = answer.headers.get("set-cookie").split(";")[0].split("=")[1];
+  }
+
   /** A person beside the owner: what they sign in with, and a token for their scripts. */
   async add_person(user, role) {
     const password = `${user} and seven blue herons`;
@@ -97,7 +113,7 @@ export class StrataServer {
   async request(method, path, body, headers = {}) {
     const answer = await fetch(`${this.url}/api/v1${path}`, {
       method,
-      headers: { Authorization: `Bearer ${this.token}`, ...(body === undefined ? {} : { "Content-Type": "application/json" }), ...headers },
+      headers: { Authorization: `Bearer ${await this.owners_secret(path)}`, ...(body === undefined ? {} : { "Content-Type": "application/json" }), ...headers },
       ...(body === undefined ? {} : { body: JSON.stringify(body) }),
     });
     if (!answer.ok) throw new Error(`${method} ${path}: ${answer.status} ${await answer.text()}`);
