@@ -55,13 +55,13 @@ def timed(server, path, body, token=None, headers=None):
 
 
 def until_idle(server):
-    """Seconds until the process used less than a tenth of a processor for half a second."""
+    """Seconds until the process used next to nothing of a processor for half a second."""
     start, last = time.monotonic(), time.monotonic()
     used = processor_seconds(server.process.pid)
     while time.monotonic() - start < 300:
         time.sleep(0.1)
         now = processor_seconds(server.process.pid)
-        if now - used > 0.03:
+        if now - used > 0.01:
             last = time.monotonic()
         used = now
         if time.monotonic() - last > 0.5:
