@@ -140,7 +140,7 @@ TEST(Parts, CoverTheDrawingOnceWithOneScale) {
 
 TEST(Parts, JoinAtEveryResolution) {
   for (const int dpi : {50, 72, 96, 97, 150, 600, 1200}) {
-    Drawing drawing = some_drawing(plane_from(Direction::front, 'z'));
+    Drawing drawing = some_drawing(plane_from(Direction::front, "z"));
     drawing.dpi = dpi;
     const glm::dvec3 place = drawing.plane.in_world({2.1, -1.4, 3});
     for (const Part& part : parts_of(drawing, 1000)) {
