@@ -168,6 +168,11 @@ class FakeRoom final : public room::Room {
                                                               At) override {
     return {};
   }
+  Result<std::vector<query::SeenLayer>> seen_layers(const std::vector<std::string>&,
+                                                    const std::vector<query::LayerCover>&, const Camera&, int, int,
+                                                    At) override {
+    return std::vector<query::SeenLayer>{};
+  }
   std::vector<Look> looks() const override { return {look_}; }
   Result<Look> look(const std::string& ref) const override {
     if (ref == "uv-light" || ref == "9") return look_;
