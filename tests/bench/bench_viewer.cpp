@@ -40,7 +40,7 @@ class OneViewer {
     model_ = must(site_.store->create_model(made, [] { return false; }));
     room_ = must(site_.rooms->open(model_.slug, Role::owner));
     for (int i = 0; i < options.layers; ++i) add_filled_layer(i);
-    member_ = room_->join({"bench", Role::owner}, "", nullptr,
+    member_ = room_->join({"bench", Role::owner}, {}, nullptr,
                           [&](const stream::FrameMessages& frame) { client_.receive(frame); });
     member_->camera(0, ++camera_number_, still_, false);
     client_.wait_for(*member_,
