@@ -30,7 +30,7 @@ import { model_styles } from "./model-styles";
 import "./measure-panel";
 import { ModelSession } from "./model-session";
 import { notices } from "./notices";
-import { load_part, load_part_later } from "./page-parts";
+import { has_part, load_part_later } from "./page-parts";
 import "./record-card";
 import "./people-menu";
 import { is_one_of_several, sees_to_kiosks } from "./project-list";
@@ -257,7 +257,7 @@ export class StrataModelPage extends LitElement {
         ${session.tables.view ? this.table(session, session.tables.view) : nothing} ${this.panel_shown_ ? this.panel(session) : nothing}
       </div>
       ${this.dialog(session)}
-      ${this.tour_editor_
+      ${this.tour_editor_ && has_part("model_dialogs", this)
         ? html`<strata-tour-dialog .session=${session} .tour=${this.tour_editor_.tour} @try=${this.make_room} @closed=${() => (this.tour_editor_ = null)}></strata-tour-dialog>`
         : nothing}`;
   }
@@ -268,10 +268,8 @@ export class StrataModelPage extends LitElement {
   }
 
   private on_view_request(request: ViewRequest | TourRequest): void {
-    if (request.dialog === "tour") {
-      load_part("model_dialogs");
-      this.tour_editor_ ??= { tour: request.tour };
-    } else this.dialog_ = request;
+    if (request.dialog === "tour") this.tour_editor_ ??= { tour: request.tour };
+    else this.dialog_ = request;
   }
 
   private header(session: ModelSession): TemplateResult {
@@ -419,7 +417,7 @@ export class StrataModelPage extends LitElement {
       this.dialog_ = null;
     };
     const dialog = this.dialog_;
-    if (dialog) load_part("model_dialogs");
+    if (dialog && !has_part("model_dialogs", this)) return html``;
     switch (dialog?.dialog) {
       case undefined:
         return html``;

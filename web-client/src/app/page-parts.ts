@@ -1,5 +1,5 @@
-// Pieces of the page that are loaded when they are first shown, or once nothing else is to be done. Their elements may be rendered
-// before: Lit takes over what was set on them.
+// Pieces of the page that are loaded when they are first shown, or once nothing else is to be done. Their elements are rendered when they are
+// here and not before: an element that is defined later is connected before it has what was set on it.
 
 import { notices } from "./notices";
 import { texts } from "./texts";
@@ -17,24 +17,40 @@ const kParts = {
 };
 export type PagePart = keyof typeof kParts;
 
-const loading = new Map<PagePart, Promise<unknown>>();
+const here = new Set<PagePart>();
+const loading = new Map<PagePart, Promise<void>>();
 
-/** Loads it, once. Files of a build go with it: a page that was opened before an update of the server may miss a piece, and is loaded anew. */
-export function load_part(part: PagePart): void {
-  if (loading.has(part)) return;
-  const loaded = kParts[part]().catch(() => {
-    loading.delete(part);
-    const link = { label: texts.connection.reload, act: () => location.reload() };
-    notices.show("problem", texts.connection.part_missing, texts.connection.part_missing_hint, link);
-  });
+function load(part: PagePart): Promise<void> {
+  const under_way = loading.get(part);
+  if (under_way) return under_way;
+  const loaded = kParts[part]()
+    .then(() => void here.add(part))
+    .finally(() => loading.delete(part));
   loading.set(part, loaded);
+  return loaded;
+}
+
+/**
+ * Whether it may be rendered. Where not, it is loaded, and `host` is rendered again when it is here. Files of a build go with it: a page that was opened
+ * before an update of the server may miss a piece, and is loaded anew by its person.
+ */
+export function has_part(part: PagePart, host: { requestUpdate(): void }): boolean {
+  if (here.has(part)) return true;
+  load(part).then(
+    () => host.requestUpdate(),
+    () => {
+      const link = { label: texts.connection.reload, act: () => location.reload() };
+      notices.show("problem", texts.connection.part_missing, texts.connection.part_missing_hint, link);
+    },
+  );
+  return false;
 }
 
 /** Loads it while the person looks at something else. Nothing is said when it fails: it is asked for again when it is needed. */
 export function load_part_later(part: PagePart): void {
-  const load = (): void => {
-    if (!loading.has(part)) void kParts[part]().catch(() => {});
+  const begin = (): void => {
+    if (!here.has(part)) load(part).catch(() => {});
   };
-  if ("requestIdleCallback" in window) requestIdleCallback(load, { timeout: 5000 });
-  else setTimeout(load, 500); // Safari
+  if ("requestIdleCallback" in window) requestIdleCallback(begin, { timeout: 5000 });
+  else setTimeout(begin, 500); // Safari
 }

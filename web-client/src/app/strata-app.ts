@@ -16,7 +16,7 @@ import { dropped_files, has_files, without_folders, type DroppedFile } from "./d
 import { choose_scans, Imports, type ImportEntry, type ImportResult, type Scan } from "./imports";
 import { notices } from "./notices";
 import "./notices-view";
-import { load_part, load_part_later } from "./page-parts";
+import { has_part, load_part_later } from "./page-parts";
 import { curates, kDefaultProject } from "./project-list";
 import { may_leave_page, navigate, on_navigate, path_now, path_of_model, replace_address, route_of, type Route } from "./routes";
 import { check_connections, discard_unsaved, keep_views, unsaved_changes } from "./sessions";
@@ -176,11 +176,11 @@ export class StrataApp extends LitElement {
     if (session === "unreachable") return html`<strata-blank heading=${texts.connection.lost} lead=${this.problem_}></strata-blank>`;
     if (this.route_.page === "join") return this.join_page(session === "signed-in" ? me : null);
     if (session === "signed-out" || !me) {
-      load_part("sign_in");
+      if (!has_part("sign_in", this)) return nothing;
       return html`<strata-sign-in .api=${this.api_} @signed-in=${() => void this.check_session()}></strata-sign-in>`;
     }
     const is_model = this.route_.page === "model";
-    load_part(is_model ? "model" : "home");
+    if (!has_part(is_model ? "model" : "home", this)) return nothing;
     if (!is_model) load_part_later("model"); // most people open one
     return this.route_.page === "model"
       ? keyed(
@@ -214,7 +214,7 @@ export class StrataApp extends LitElement {
   }
 
   private join_page(me: Me | null): unknown {
-    load_part("join");
+    if (!has_part("join", this)) return nothing;
     const invitation = invitation_of(location.hash);
     return keyed(
       invitation,
@@ -235,7 +235,7 @@ export class StrataApp extends LitElement {
     const closed = (): void => {
       this.dialog_ = null;
     };
-    if (this.dialog_) load_part(this.dialog_);
+    if (this.dialog_ && !has_part(this.dialog_, this)) return nothing;
     if (this.dialog_ === "account") {
       return html`<strata-account-dialog
         .api=${this.api_}
