@@ -21,7 +21,7 @@ def attempts(table, site):
         # From here on somebody else can let people in.
         invitation = server.ok("POST", "/users", {"user": "root", "role": "administrator"}).json()
         Browser(server).ok("POST", "/invitations/accept", {"invitation": secret_of(invitation), "password": PASSWORD})
-        section.tried("Once an administrator has a password: accounts, roles, tokens and passwords changed with it", statuses(server.request(*call) for call in RIGHTS), 403, "it is then a token for scripts, of an administrator")
+        section.tried("Once an administrator has a password: accounts, roles, tokens and passwords changed with it", statuses(server.request(*call, token=server.token) for call in RIGHTS), 403, "it is then a token for scripts, of an administrator")
         section.tried("… traded for a session in a browser", Browser(server).request("POST", "/login", {"token": server.token}).status, 403, "tokens for scripts open none")
         section.tried("… as the cookie of a session", {server.get(M, token=False, headers={"Cookie": "strata_session=" + server.token}).status, upgraded(server, token="", cookie="strata_session=" + server.token, origin=server.url)}, 401, "only the secret of a session counts as cookie")
         worked = {server.request(*call).status for call in WORK} | {upgraded(server)}
