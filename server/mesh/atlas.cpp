@@ -9,6 +9,7 @@
 #include "mesh/atlas_report.h"
 #include "mesh/chart_conflicts.h"
 #include "mesh/chart_cuts.h"
+#include "mesh/chart_mask.h"
 #include "mesh/charts.h"
 #include "mesh/flatten.h"
 #include "mesh/packing.h"
@@ -65,7 +66,7 @@ std::vector<glm::vec2> lay_out(const Unwrap& unwrap, int resolution) {
     for (const auto face : unwrap.charts[c].faces)
       for (std::size_t k = 0; k < 3; ++k) {
         const glm::vec2 local = unwrap.outlines[c].from_chart(unwrap.plane[3 * std::size_t{face} + k]);
-        glm::dvec2 texels = glm::dvec2(local) * unwrap.packing.texels_per_unit;
+        glm::dvec2 texels = glm::dvec2(local) * unwrap.packing.texels_per_unit + kNear;
         texels = glm::clamp(glm::round(texels * kUvSteps) / kUvSteps, glm::dvec2(0), glm::dvec2(placement.box));
         uvs[3 * std::size_t{face} + k] = glm::vec2(placement.to_atlas(texels) / double(resolution));
       }

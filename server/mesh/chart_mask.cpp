@@ -16,12 +16,14 @@ class Rows {
     const int direction = a.y < b.y ? 1 : -1;
     if (direction < 0) std::swap(a, b);
     const int height = static_cast<int>(rim_.size());
-    const int first = static_cast<int>(a.y), last = std::min(static_cast<int>(b.y), height - 1);
+    const int first = std::max(static_cast<int>(a.y - kNear), 0);
+    const int last = std::min(static_cast<int>(b.y + kNear), height - 1);
     const double slope = b.y > a.y ? (b.x - a.x) / (b.y - a.y) : 0;
     for (int y = first; y <= last; ++y) {
-      const double x0 = y == first ? a.x : a.x + slope * (y - a.y);
-      const double x1 = y + 1 >= b.y ? b.x : a.x + slope * (y + 1 - a.y);
-      rim_[y].push_back({column(std::min(x0, x1)), static_cast<std::int16_t>(column(std::max(x0, x1)) + 1)});
+      const double x0 = y - kNear <= a.y ? a.x : a.x + slope * (y - kNear - a.y);
+      const double x1 = y + 1 + kNear >= b.y ? b.x : a.x + slope * (y + 1 + kNear - a.y);
+      const std::int16_t begin = column(std::min(x0, x1) - kNear), end = column(std::max(x0, x1) + kNear);
+      rim_[y].push_back({begin, static_cast<std::int16_t>(end + 1)});
       if (a.y <= y + 0.5 && y + 0.5 < b.y)
         crossings_[y].push_back({column(a.x + slope * (y + 0.5 - a.y)), static_cast<std::int16_t>(direction)});
     }
@@ -97,12 +99,12 @@ ChartMask with_rows_reversed(const ChartMask& mask) {
 
 ChartShape make_shape(const Outline& outline, double density) {
   ChartShape shape;
-  shape.box = glm::ivec2(glm::floor(glm::dvec2(outline.size) * density)) + 1;
+  shape.box = glm::ivec2(glm::floor(glm::dvec2(outline.size) * density + 2 * kNear)) + 1;
   Rows rows(shape.box.x, shape.box.y), columns(shape.box.y, shape.box.x);
   const glm::dvec2 largest = glm::dvec2(shape.box) - 1e-9;
   for (std::size_t i = 0; i + 1 < outline.segments.size(); i += 2) {
-    const glm::dvec2 a = glm::clamp(glm::dvec2(outline.segments[i]) * density, glm::dvec2(0), largest);
-    const glm::dvec2 b = glm::clamp(glm::dvec2(outline.segments[i + 1]) * density, glm::dvec2(0), largest);
+    const glm::dvec2 a = glm::clamp(glm::dvec2(outline.segments[i]) * density + kNear, glm::dvec2(0), largest);
+    const glm::dvec2 b = glm::clamp(glm::dvec2(outline.segments[i + 1]) * density + kNear, glm::dvec2(0), largest);
     rows.add(a, b);
     columns.add({a.y, a.x}, {b.y, b.x});
   }

@@ -10,6 +10,10 @@
 
 namespace strata::mesh {
 
+// Texels between the rim of a chart's box and the chart: a texel counts as touched by all that comes as near. Rounding, the
+// steps of UVs and a GPU's grid move a point by less, so that what a mask does not hold stays empty in every quarter turn.
+constexpr double kNear = 1.0 / 256;
+
 // The texels that a chart touches, row by row as runs.
 struct ChartMask {
   struct Run {
@@ -31,7 +35,7 @@ struct ChartMask {
 
 // A chart at one density in its four quarter turns, counterclockwise.
 struct ChartShape {
-  glm::ivec2 box{1};  // whole texels, before the turns
+  glm::ivec2 box{1};  // whole texels, before the turns; the outline begins at kNear
   std::array<ChartMask, 4> turned;
 };
 ChartShape make_shape(const Outline& outline, double texels_per_unit);

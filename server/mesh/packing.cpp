@@ -98,6 +98,9 @@ std::uint64_t fingerprint(const ChartMask& mask) {
   return hash;
 }
 
+// Texels: a margin of one remains on either side.
+int longest_box(int side) { return std::max(1, side - 2); }
+
 // Charts at one density.
 struct Shapes {
   double texels_per_unit = 0;
@@ -112,8 +115,8 @@ std::optional<Shapes> make_shapes(std::span<const Outline> outlines, double dens
   shapes.charts.reserve(outlines.size());
   shapes.fingerprints.reserve(outlines.size());
   for (const Outline& outline : outlines) {
-    if (std::max(outline.size.x, outline.size.y) * density >= side - 2) return std::nullopt;
     const ChartShape& shape = shapes.charts.emplace_back(make_shape(outline, density));
+    if (std::max(shape.box.x, shape.box.y) > longest_box(side)) return std::nullopt;
     auto& prints = shapes.fingerprints.emplace_back();
     for (std::size_t turn = 0; turn < 4; ++turn) prints[turn] = fingerprint(shape.turned[turn]);
   }
@@ -186,11 +189,11 @@ double density_that_fills(std::span<const Outline> outlines, int side, int gap, 
   return a > 0 ? (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a) : -c / b;
 }
 
-// A density at which every chart is a single texel: there is no use in one below.
-double least_density(std::span<const Outline> outlines) {
+// A little below the density at which the box of the longest chart grows longer than `texels`.
+double density_of_longest(std::span<const Outline> outlines, int texels) {
   float largest = 0;
   for (const Outline& outline : outlines) largest = std::max({largest, outline.size.x, outline.size.y});
-  return largest > 0 ? 0.999 / double(largest) : 1;
+  return largest > 0 ? (texels - 2.1 * kNear) / double(largest) : texels;
 }
 
 std::optional<Packing> pack_in_orders(std::span<const Outline> outlines, double density, int side, int gap,
@@ -205,9 +208,6 @@ std::optional<Packing> pack_in_orders(std::span<const Outline> outlines, double 
   return std::nullopt;
 }
 
-// From here on the longest chart is longer than the atlas.
-double limit_of(const PackingStart& start, int side) { return std::max(1, side - 3) * start.least_density; }
-
 }  // namespace
 
 std::optional<Packing> pack_at(std::span<const Outline> outlines, double texels_per_unit, int side, int gap,
@@ -221,9 +221,10 @@ std::optional<PackingStart> begin_packing(std::span<const Outline> outlines, int
   if (outlines.size() * texels_each > std::size_t(side + gap) * std::size_t(side + gap)) return std::nullopt;
   const auto orders = orders_for(outlines.size());
   PackingStart start;
-  start.least_density = least_density(outlines);
-  start.density = std::clamp(density_that_fills(outlines, side, gap, kLikelyFill), start.least_density,
-                             std::max(1, side - 3) * start.least_density);
+  start.least_density = density_of_longest(outlines, 1);
+  start.most_density = density_of_longest(outlines, longest_box(side));
+  start.density =
+      std::clamp(density_that_fills(outlines, side, gap, kLikelyFill), start.least_density, start.most_density);
   for (;; start.density = std::max(start.density * kLessDense, start.least_density)) {
     std::vector<std::optional<Trial>> trials(orders.size());
     if (const auto shapes = make_shapes(outlines, start.density, side))
@@ -243,7 +244,7 @@ std::optional<PackingStart> begin_packing(std::span<const Outline> outlines, int
       if (start.orders.size() < (outlines.size() >= kSomeCharts ? 2 : 5)) start.orders.push_back(orders[i]);
     // The height that charts reach grows about as their area does.
     start.expected_density =
-        std::clamp(start.density * std::sqrt(double(side) / lowest.height), start.least_density, limit_of(start, side));
+        std::clamp(start.density * std::sqrt(double(side) / lowest.height), start.least_density, start.most_density);
     if (lowest.height <= side) start.packing = std::move(lowest.packing);
     return start;
   }
@@ -253,7 +254,7 @@ std::optional<Packing> finish_packing(std::span<const Outline> outlines, int sid
                                       const Progress& progress, int threads) {
   std::optional<Packing> best = std::move(start.packing);
   double low = best ? start.density : std::max(start.least_density, 0.97 * start.expected_density);
-  double high = best ? std::min(kMoreDense * start.expected_density, limit_of(start, side))
+  double high = best ? std::min(kMoreDense * start.expected_density, start.most_density)
                      : std::min(start.density, kMoreDense * start.expected_density);
   while (!best) {
     best = pack_in_orders(outlines, low, side, gap, start.orders, progress);

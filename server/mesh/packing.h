@@ -17,7 +17,7 @@ struct Placement {
   glm::ivec2 corner{0};   // lower left texel of its box
   glm::ivec2 box{1};      // its box before the quarter turns, whole texels
 
-  // `p`: texels from the outline's corner. Whole texels map to whole texels.
+  // `p`: texels from the corner of the box; the outline begins at kNear (chart_mask.h). Whole texels map to whole texels.
   glm::dvec2 to_atlas(glm::dvec2 p) const {
     const glm::dvec2 size(box);
     switch (quarter_turns) {
@@ -38,7 +38,8 @@ struct Packing {
 
 // What packing found at the first density that it tried.
 struct PackingStart {
-  double density = 0, least_density = 0;
+  double density = 0;
+  double least_density = 0, most_density = 0;  // every chart is a single texel; the longest is as long as the atlas
   double expected_density = 0;          // that the charts will fit at, within a few hundredths
   std::vector<std::uint8_t> orders;     // of charts, those that pack best
   std::optional<Packing> packing = {};  // where they fit at the first density

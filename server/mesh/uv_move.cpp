@@ -184,7 +184,7 @@ std::optional<MovedUvs> move_triangles(const TriangleMesh& mesh, std::span<const
       for (const auto face : unfolded.charts[c].faces)
         for (std::size_t k = 0; k < 3; ++k) {
           const glm::vec2 local = unfolded.outlines[c].from_chart(unfolded.plane[3 * std::size_t{face} + k]);
-          glm::dvec2 texels = glm::round(glm::dvec2(local) * density * kUvSteps) / kUvSteps;
+          glm::dvec2 texels = glm::round((glm::dvec2(local) * density + kNear) * kUvSteps) / kUvSteps;
           texels = glm::clamp(texels, glm::dvec2(0), glm::dvec2((*placements)[c].box));
           result.corner_uvs[3 * std::size_t{moved[face]} + k] = glm::vec2((*placements)[c].to_atlas(texels) / side);
         }

@@ -50,7 +50,7 @@ std::vector<std::vector<bool>> texels_of(const ChartMask& mask) {
 }
 
 TEST(mesh_packing, a_mask_holds_the_texels_that_the_shape_touches_and_no_hole) {
-  const auto shape = make_shape(ring(1, 0.5f), 40.0 - 1e-3);
+  const auto shape = make_shape(ring(1, 0.5f), 40.0 - 10 * kNear);
   ASSERT_EQ(shape.box, glm::ivec2(40));
   const auto texels = texels_of(shape.turned[0]);
   for (int y = 0; y < 40; ++y)
@@ -58,6 +58,23 @@ TEST(mesh_packing, a_mask_holds_the_texels_that_the_shape_touches_and_no_hole) {
       const bool in_hole = x >= 10 && x < 29 && y >= 10 && y < 29;
       EXPECT_EQ(texels[y][x], !in_hole) << x << " " << y;
     }
+}
+
+// Points on the lines between texels are what quarter turns send to the other side of a line.
+TEST(mesh_packing, a_mask_holds_the_texels_of_the_laid_out_shape_in_every_turn) {
+  const double density = 16;
+  const Outline steps = polygon({{0, 0}, {1, 0}, {1, 0.25f}, {0.5f, 0.25f}, {0.5f, 0.75f}, {0, 0.75f}});
+  const auto shape = make_shape(steps, density);
+  for (int turn = 0; turn < 4; ++turn) {
+    const Placement placement{turn, {0, 0}, shape.box};
+    const auto texels = texels_of(shape.turned[turn]);
+    for (std::size_t i = 0; i < steps.segments.size(); i += 2)
+      for (int k = 0; k <= 64; ++k) {
+        const auto p = glm::mix(glm::dvec2(steps.segments[i]), glm::dvec2(steps.segments[i + 1]), k / 64.0);
+        const auto at = placement.to_atlas(p * density + kNear);
+        EXPECT_TRUE(texels.at(std::size_t(at.y)).at(std::size_t(at.x))) << turn << ": " << at.x << " " << at.y;
+      }
+  }
 }
 
 TEST(mesh_packing, a_turned_mask_holds_where_the_turn_sends_each_texel) {
