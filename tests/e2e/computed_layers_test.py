@@ -121,7 +121,7 @@ def check_automatic(server):
     for name in ("risk", "mask"):
         assert server.ok("PATCH", f"{M}/layers/{name}", {"recompute": "automatic"}).json()["recompute"] == "automatic"
     dab(server, "wet", 0.75, 30, 30, 4)
-    wait_for(lambda: value(server, "mask", 30, 30)["value"] == 1, "the layers to follow")
+    wait_for(lambda: value(server, "mask", 30, 30).get("value") == 1, "the layers to follow")
     wait_for(lambda: not server.get(M + "/layers/mask").json()["stale"], "the layer to be up to date")
     server.ok("PATCH", "/tables/pieces/records/1", {"values": {"state": "loose"}})
     wait_for(lambda: value(server, "risk", 30, 30)["value"] == 7.5, "a record to reach the surface")
