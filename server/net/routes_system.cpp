@@ -1,3 +1,6 @@
+#include <fstream>
+#include <sstream>
+
 #include "net/docs_page.h"
 #include "net/routes.h"
 
@@ -13,13 +16,11 @@ Response readiness(const RouteContext& context) {
 }
 
 Result<Response> contract(const RouteContext& context) {
-  Response response;
-  response.with("Content-Type", "application/json").with("Cache-Control", "no-cache");
-  response.file = context.options.protocol_dir / "openapi.json";
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(response.file, error))
-    return fail(503, "Contract missing", "openapi.json is not part of this installation.");
-  return response;
+  std::ifstream file(context.options.protocol_dir / "openapi.json", std::ios::binary);
+  if (!file) return fail(503, "Contract missing", "openapi.json is not part of this installation.");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text_response(std::move(text).str(), "application/json").with("Cache-Control", "no-cache");
 }
 
 }  // namespace
