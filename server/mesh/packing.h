@@ -40,9 +40,9 @@ struct Packing {
 struct PackingStart {
   double density = 0;
   double least_density = 0, most_density = 0;  // every chart is a single texel; the longest is as long as the atlas
-  double expected_density = 0;          // that the charts will fit at, within a few hundredths
-  std::vector<std::uint8_t> orders;     // of charts, those that pack best
-  std::optional<Packing> packing = {};  // where they fit at the first density
+  double expected_density = 0;                 // that the charts will fit at, within a few hundredths
+  std::vector<std::uint8_t> orders;            // of charts, those that pack best
+  std::optional<Packing> packing = {};         // where they fit at the first density
 };
 
 // Lays all charts into a square of `side` texels at the densest scale found, so that `gap` whole texels stay between any
