@@ -69,10 +69,28 @@ TEST(mesh_atlas_flat, a_plane_larger_than_the_window_in_which_charts_grow_is_one
   EXPECT_NEAR(atlas.report.stretch_p99, 1, 0.01);
 }
 
-TEST(mesh_atlas_flat, a_curved_surface_has_no_flat_piece) {
-  const TriangleMesh mesh = test::sphere(60, 0.08);
+FlatPieces flat_pieces_of(const TriangleMesh& mesh) {
   const UnitMesh unit = to_unit_mesh(mesh);
-  EXPECT_EQ(make_chart_surface(unit, 2).flat.count(), 0u);
+  return make_chart_surface(unit, 2).flat;
+}
+
+TEST(mesh_atlas_flat, a_curved_surface_has_no_flat_piece) {
+  // Each cell is a plane, at less than a degree to the next.
+  EXPECT_EQ(flat_pieces_of(test::sphere(400)).count(), 0u);
+}
+
+TEST(mesh_atlas_flat, faces_of_a_coarse_or_noisy_surface_are_flat_pieces_only_where_they_lie_in_one_plane) {
+  // The cells of a coarse sphere are planes between creases: all but the triangles at the poles are in pieces of two.
+  const FlatPieces coarse = flat_pieces_of(test::sphere(40));
+  EXPECT_EQ(coarse.count(), 40u * 18);
+  EXPECT_EQ(coarse.faces.size(), 2u * 40 * 18);
+  // With noise two faces lie in one plane by chance only.
+  const TriangleMesh noisy = test::sphere(60, 0.08);
+  const FlatPieces few = flat_pieces_of(noisy);
+  EXPECT_LT(few.faces.size(), noisy.triangle_count() / 100);
+  for (std::uint32_t piece = 0; piece < few.count(); ++piece)
+    for (const auto face : few.faces_of(piece))
+      EXPECT_GT(glm::dot(normal_of(noisy, face), glm::dvec3(few.normals[piece])), 0.99999);
 }
 
 TEST(mesh_atlas_flat, long_strips_do_not_keep_all_else_small) {
