@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "mesh/adjacency.h"
 #include "mesh/gutter_ring.h"
@@ -59,26 +60,45 @@ class Builder {
     }
   }
 
+  // A texel of a thin triangle, and how far along the triangle it lies.
+  struct Along {
+    double at;
+    std::uint32_t texel;
+    bool operator<(const Along& other) const { return at != other.at ? at < other.at : texel < other.texel; }
+  };
+
+  // `scratch`: memory, for speed.
   void link_triangle(std::uint32_t triangle, std::vector<TexelGraph::Link>& links,
-                     std::vector<std::uint32_t>& at_open_edge) const {
+                     std::vector<std::uint32_t>& at_open_edge, std::vector<Along>& scratch) const {
     for (int k = 0; k < 3; ++k) link_edge(triangle, k, links, at_open_edge);
-    // Of a triangle thinner than two texels, a texel may touch no other and none of the edges' samples: also the one of the
-    // centroid, which is all that a triangle between the centres has.
+    // Of a triangle thinner than two texels, a texel may touch no other and none of the edges' samples: also those on the way
+    // to the centroid, which are all that a triangle between the centres has.
     const glm::dvec2 a = uv(triangle, 0), b = uv(triangle, 1), c = uv(triangle, 2);
     const double twice_area = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-    const double longest = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
-    if (twice_area > 2 * longest) return;
+    glm::dvec2 side = b - a;
+    for (const glm::dvec2 other : {c - b, a - c})
+      if (glm::length(other) > glm::length(side)) side = other;
+    if (twice_area > 2 * glm::length(side)) return;
     const auto island = islands_.of_triangle[triangle];
-    std::uint32_t last = resolve(a, island);
-    extend(last, resolve((a + b + c) / 3.0, island), links);
+    scratch.clear();
+    const auto add = [&](const glm::dvec2& point, std::uint32_t texel) {
+      if (texel != kNoTexel) scratch.push_back({glm::dot(point, side), texel});
+    };
+    const glm::dvec2 centroid = (a + b + c) / 3.0;
+    const int steps = std::max(1, static_cast<int>(std::ceil(glm::length(centroid - a) * kSamplesPerTexel)));
+    for (int i = 0; i <= steps; ++i) {
+      const glm::dvec2 point = glm::mix(a, centroid, static_cast<double>(i) / steps);
+      add(point, resolve(point, island));
+    }
     const auto snapped = [&](const glm::dvec2& p) { return snap_to_subtexels(p.x, p.y); };
     const CoverageRaster raster(snapped(a), snapped(b), snapped(c));
     raster.for_each_span(0, map_.resolution, 0, map_.resolution, [&](int y, int x_begin, int x_end) {
       for (int x = x_begin; x < x_end; ++x)
         if (const auto texel = texel_number(map_, x, y); texel != kNoTexel && island_of_texel_[texel] == island)
-          extend(last, texel, links);
+          add({x + 0.5, y + 0.5}, texel);
       return true;
     });
+    link_along(scratch, links);
   }
 
  private:
@@ -126,6 +146,7 @@ class Builder {
     const int steps = std::max(1, static_cast<int>(std::ceil(length * kSamplesPerTexel)));
     // The texels of a sliver may lie far apart: a gap does not end the chain.
     std::uint32_t last_a = kNoTexel, last_b = kNoTexel;
+    bool sides_joined = false;
     for (int i = 0; i <= steps; ++i) {
       const double t = static_cast<double>(i) / steps;
       const auto a = resolve(glm::mix(a0, a1, t), islands_.of_triangle[triangle]);
@@ -134,7 +155,28 @@ class Builder {
       if (!seam) continue;
       const auto b = resolve(glm::mix(b0, b1, t), islands_.of_triangle[other]);
       extend(last_b, b, links);
-      join(last_a, last_b, links);
+      if (a == kNoTexel || b == kNoTexel) continue;
+      join(a, b, links);
+      sides_joined = true;
+    }
+    // Where the texels of one side lie beside the gaps of the other.
+    if (seam && !sides_joined) join(last_a, last_b, links);
+  }
+
+  // Each to the nearest of those a little before it: nothing is joined across a texel of the triangle that lies between.
+  void link_along(std::vector<Along>& texels, std::vector<TexelGraph::Link>& links) const {
+    constexpr std::size_t kBefore = 8;  // more than a triangle of this width has within two texels of its length
+    std::sort(texels.begin(), texels.end());
+    for (std::size_t i = 1; i < texels.size(); ++i) {
+      const glm::ivec2 place = texel_place(map_, texels[i].texel);
+      std::uint32_t nearest = kNoTexel;
+      int least = std::numeric_limits<int>::max();
+      for (std::size_t k = i; k-- > i - std::min(i, kBefore);) {
+        const glm::ivec2 apart = texel_place(map_, texels[k].texel) - place;
+        const int squared = apart.x * apart.x + apart.y * apart.y;
+        if (squared < least) least = squared, nearest = texels[k].texel;
+      }
+      join(nearest, texels[i].texel, links);
     }
   }
 
@@ -207,8 +249,9 @@ Result<TexelGraph> build_texel_graph(const Geometry& geometry, const SurfaceMap&
   std::vector<std::vector<std::uint32_t>> at_open_edge(links.size());
   parallel_for(threads, static_cast<int>(links.size()), [&](int part) {
     if (progress.cancelled()) return;
+    std::vector<Builder::Along> scratch;
     for (std::size_t t = part * kAtOnce; t < std::min(triangles, (part + 1) * kAtOnce); ++t)
-      builder.link_triangle(static_cast<std::uint32_t>(t), links[part], at_open_edge[part]);
+      builder.link_triangle(static_cast<std::uint32_t>(t), links[part], at_open_edge[part], scratch);
     std::sort(links[part].begin(), links[part].end());
     links[part].erase(std::unique(links[part].begin(), links[part].end()), links[part].end());
   });

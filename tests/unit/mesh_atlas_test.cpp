@@ -129,8 +129,7 @@ TEST_P(EveryMeshClass, keeps_two_empty_texels_between_charts) {
   const Atlas& atlas = unwrapped();
   const auto islands = islands_of(mesh(), atlas);
   EXPECT_EQ(atlas.report.charts, 1 + int(*std::max_element(islands.begin(), islands.end())));
-  // The box of a triangle reaches at most a texel farther than it, which a made atlas' gap of 4 leaves room for: exact
-  // on its corners, which are what can come nearest to another chart's.
+  // What the edges touch, which are what can come nearest to another chart.
   constexpr std::uint32_t kFree = 0xffffffffu;
   std::vector<std::uint32_t> touched(kLowest * kLowest, kFree);
   const auto touch = [&](glm::dvec2 p, std::uint32_t island) {
