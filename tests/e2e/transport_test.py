@@ -42,7 +42,7 @@ def check_api(server):
     for path in ("/openapi.json", T + "/records", T + "/records?f=csv", "//docs"):
         plain = server.get(path, headers={"Accept-Encoding": "identity"})
         zipped = server.get(path, headers={"Accept-Encoding": "gzip"})
-        assert zipped.headers["Content-Encoding"] == "gzip" and zipped.headers["Vary"] == "Accept-Encoding", (path, zipped.headers)
+        assert zipped.headers["Content-Encoding"] == "gzip" and "Accept-Encoding" in zipped.headers.get_all("Vary"), (path, zipped.headers)
         assert gzip.decompress(zipped.body) == plain.body and len(zipped.body) < len(plain.body) / 2, path
         brotli = server.get(path, headers={"Accept-Encoding": "br"})
         assert brotli.headers["Content-Encoding"] == "br" and len(brotli.body) < len(plain.body) / 2, path
