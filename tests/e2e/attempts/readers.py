@@ -146,6 +146,6 @@ def attempts(table):
             server.ok("POST", M + "/layers", layer)
         server.ok("POST", M + "/layers/k/edits", {"op": "fill", "mode": "where", "where": "true", "value": 7})
         viewer = server.add_person("eve", "viewer")
-        for attempt in (lists, leaving, beside, budgets, empty_layer, points, pictures, stop):
+        for attempt in (points, empty_layer, lists, leaving, beside, budgets, pictures, stop):  # memory first: surfaces are baked for the others
             attempt(server, section, viewer)
         server.assert_clean_log()
