@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from support.browsers import PASSWORD, Browser, join, secret_of
+from support.browsers import PASSWORD, Browser, join, secret_of, uncoloured
 from support.live_client import LiveClient, Refused
 from support.meshes import folded_grid
 from support.strata_server import LONG_S, StrataServer, wait_for
@@ -15,12 +15,6 @@ from support.strata_server import LONG_S, StrataServer, wait_for
 M, L = "/models/sheet", "/models/sheet/layers/marks"
 OTHER = "no herons any more, a pity"
 FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
-
-
-def uncoloured(person):
-    """Without the colour that everybody sees them by, which depends on their number."""
-    assert re.fullmatch("#[0-9a-f]{6}", person["color"]), person
-    return {name: value for name, value in person.items() if name != "color"}
 
 
 def owner_link(server):

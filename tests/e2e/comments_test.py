@@ -6,6 +6,7 @@ import sys
 import urllib.parse
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.browsers import uncoloured
 from support.live_client import LiveClient
 from support.meshes import folded_grid
 from support.strata_server import StrataServer
@@ -239,7 +240,8 @@ def names(site):
     site.server.ok("PUT", "/projects/default/members/gus", {"role": "viewer"})
     assert listed() == ["Ada.L", "bob", "carl", "gus", "owner", "vera"]
     page = site.ok("bob", "GET", people + "?limit=2&offset=3")
-    assert page.json() == {"people": [{"user": "gus", "full_name": "Gustav G."}, {"user": "owner", "full_name": ""}], "total": 6}, page
+    assert [uncoloured(person) for person in page.json()["people"]] == [{"user": "gus", "full_name": "Gustav G."}, {"user": "owner", "full_name": ""}], page
+    assert page.json()["total"] == 6, page
     assert 'rel="next"' in page.headers["Link"]
     for user in ("gus", "dora"):
         site.server.ok("DELETE", f"/users/{user}")

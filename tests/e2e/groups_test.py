@@ -4,7 +4,7 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from support.browsers import Browser, join
+from support.browsers import Browser, join, uncoloured
 from support.event_reader import EventReader
 from support.live_client import LiveClient, Refused
 from support.project_sites import Someone, make_sites, nothing_is_seen
@@ -118,6 +118,7 @@ def highest(server, gus, group):
     gus.now("villa", "curator")
     assert projects_of(gus)["villa"] == ("curator", None), "their own"
     listed = server.ok("GET", "/projects/villa/members").json()
+    listed["members"] = [uncoloured(person) for person in listed["members"]]
     assert listed == {"members": [{"user": "Gus", "full_name": "", "role": "curator"}],
                       "groups": [{"id": diggers, "name": "Diggers", "people": 1, "role": "annotator"}, {"id": group, "name": "Students", "people": 1, "role": "annotator"}], "total": 1}, listed
     give(server, "villa", diggers, "curator")

@@ -6,6 +6,7 @@ import sys
 import uuid
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.browsers import uncoloured
 from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.meshes import folded_grid
@@ -64,7 +65,7 @@ def check_life(site, camera):
     assert "provisional" not in site.dab(camera, 380, site.cleo)
     queue = waiting(server, site.anna)
     assert [each["sequence"] for each in queue["strokes"]] == [first["sequence"], second["sequence"]] and queue["total"] == 2, queue
-    assert queue["people"] == [{"user": "anna", "strokes": 1}, {"user": "ben", "strokes": 1}], queue
+    assert [uncoloured(person) for person in queue["people"]] == [{"user": "anna", "strokes": 1}, {"user": "ben", "strokes": 1}], queue
     assert queue["strokes"][0]["op"] == "stroke" and queue["strokes"][0]["camera"]["width"] == camera["width"], queue
     assert waiting(server, site.vera, user="ben")["total"] == 1
     assert [each["sequence"] for each in waiting(server, limit=1, offset=1)["strokes"]] == [second["sequence"]]

@@ -1,4 +1,5 @@
 """Browsers of people who sign in over HTTP: by cookie, and with the origin of the page."""
+import re
 
 PASSWORD = "seven blue herons at noon"
 
@@ -25,6 +26,12 @@ class Browser:
 
     def sign_in(self, user, password):
         return self.request("POST", "/login", {"user": user, "password": password})
+
+
+def uncoloured(person):
+    """Without the colour that everybody sees them by, which depends on their number."""
+    assert re.fullmatch("#[0-9a-f]{6}", person["color"]), person
+    return {name: value for name, value in person.items() if name != "color"}
 
 
 def secret_of(invitation):
