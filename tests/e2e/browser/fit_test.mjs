@@ -104,6 +104,8 @@ try {
       await page.setViewportSize(size);
       await wait_for(async () => (await boxes(page.locator("strata-table-panel")))[0].width <= size.width, "the window's width");
       const parts = await boxes(page.locator("strata-table-panel .bar > *:not(.grow)"));
+      const [table] = await boxes(page.locator("strata-table-panel"));
+      for (const part of parts) assert.ok(part.right <= table.right, `in the ${window}: ${JSON.stringify(part)} leaves the table`);
       for (const [index, part] of parts.entries()) for (const other of parts.slice(index + 1)) assert.ok(part.width === 0 || other.width === 0 || apart(part, other), `in the ${window}: ${JSON.stringify([part, other])}`);
       assert.ok((await boxes(page.locator("strata-table-panel .filter input")))[0].width >= 190, `the filter in the ${window}`);
       await shoot(desk, `${language}_filter_${window}`);

@@ -226,7 +226,7 @@ try {
   assert.match(copied, /^Class\tArea\tShare of the surface\n.*\t.*cm²\t.* %/);
   assert.match(copied, /\nAll\t[^\t]+\t[\d.]+ %$/);
   const of_areas = await saved(() => areas.getByRole("button", { name: "XLSX: Areas of “pieces”" }).click());
-  assert.equal(of_areas.name, "pieces.xlsx");
+  assert.equal(of_areas.name, "pieces-quantities.xlsx");
   assert.match((await saved(() => areas.getByRole("button", { name: "CSV: Areas of “pieces”" }).click())).bytes.toString(), /percent_of_surface/);
 
   say("two layers are set against each other, with names and sums");

@@ -221,7 +221,7 @@ export class StrataStatisticsDialog extends LitElement {
   }
 
   private save(f: SheetQuery["f"]): void {
-    save_from(this.session.api.quantities_url(this.session.model_id, this.layer.id, sheet_query(f)), `${this.layer.slug}.${f}`);
+    save_from(this.session.api.quantities_url(this.session.model_id, this.layer.id, sheet_query(f)), `${this.layer.slug}-quantities.${f}`);
   }
 
   private measures(statistics: Statistics): [string, number][] {

@@ -21,7 +21,8 @@ export const table_styles = css`
   }
   .bar h2 {
     font-size: 1.02rem;
-    flex: none;
+    flex: 0 1 auto; /* rather than push the last buttons out of the panel */
+    min-width: 4rem;
     max-width: 30%;
   }
   .bar .count {
@@ -84,7 +85,7 @@ export const table_styles = css`
     padding: 0 0.5rem;
     font-size: 0.82rem;
   }
-  @container (max-width: 1000px) {
+  @container (max-width: 1100px) {
     .bar .words {
       display: none;
     }
