@@ -11,7 +11,7 @@ const kScan = join(kRoot, "..", "shared", "data", "vessel_lekythos_gigamesh_15k.
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const kUps = ["+X", "+Y", "+Z", "−X", "−Y", "−Z"];
 
-/** A bowl with a foot, that stands along `axis`, 80 units wide. */
+/** A bowl with a foot, that stands along `axis`, 80 units wide. Its wall is dented at one side: a round one looks the same with +X and −X up. */
 function bowl(axis, comment = "") {
   const rings = [[20, 0], [35, 20], [40, 40], [37, 40], [32, 22], [17, 4], [0.1, 4]];
   const kAround = 40;
@@ -19,7 +19,8 @@ function bowl(axis, comment = "") {
   for (const [radius, height] of rings) {
     for (let i = 0; i < kAround; ++i) {
       const angle = (2 * Math.PI * i) / kAround;
-      const [a, b] = [radius * Math.cos(angle), radius * Math.sin(angle)];
+      const dented = height > 4 && i > 30 && i < 40 ? 0.75 * radius : radius;
+      const [a, b] = [dented * Math.cos(angle), dented * Math.sin(angle)];
       vertices.push(axis === "y" ? [a, height, -b] : [a, b, height]);
     }
   }
