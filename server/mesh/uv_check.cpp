@@ -64,7 +64,7 @@ void note_moved(const UvFaults& faults, float scale, std::vector<Repair>& repair
          "moved to free places of the texture, as their texture coordinates " +
              std::string(words_of(static_cast<UvFault>(fault))) + ": triangles",
          faults.count[fault]);
-  if (scale < 1) note(repairs, "texture made smaller to make room for them: by " + percent(1 - scale), 1);
+  if (scale < 1) note(repairs, "texture coordinates made smaller to make room for them: by " + percent(1 - scale), 1);
 }
 
 // Moves what cannot stay.
