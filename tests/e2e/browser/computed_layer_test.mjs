@@ -37,6 +37,7 @@ try {
   await page.getByLabel("Name", { exact: true }).fill("Risk");
   await shot("dialog");
   await button("Compute layer").click();
+  await page.locator("strata-layer-dialog").waitFor({ state: "detached" }); // it is computed first and gets its colours then
   await wait_for(async () => (await risk())?.stale === false, "the layer");
   const made = await risk();
   assert.deepEqual([made.expression, made.inputs, made.recompute], ["if(valid(cracks), 2, 1)", ["cracks"], "manual"]);

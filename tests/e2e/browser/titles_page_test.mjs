@@ -46,7 +46,7 @@ try {
   await page.getByRole("menuitemcheckbox", { name: "Use as the title" }).click();
   await wait_for(async () => (await server.json("GET", `/tables/${table}`)).title_column !== undefined, "the title");
   const legend = page.locator("strata-layer-panel li.layer.selected");
-  await grid.getByText("Zinc").first().click();
+  await grid.getByRole("rowheader", { name: "1", exact: true }).click();
   await grid.locator(".chosen").getByText(/^Salts ·/).waitFor();
   await shot("chosen");
 
