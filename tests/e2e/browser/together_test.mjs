@@ -94,7 +94,7 @@ try {
   }
   await anna.page.getByLabel("2 people are here: owner (you), Bea Ost").waitFor();
   await bea.page.getByLabel("2 people are here: Bea Ost (you), owner").waitFor();
-  const faces = await people(anna).locator(".faces .wide .face").evaluateAll((all) => all.map(({ textContent, title }) => [textContent.trim(), title]));
+  const faces = await people(anna).locator(".faces .face").evaluateAll((all) => all.map(({ textContent, title }) => [textContent.trim(), title]));
   assert.deepEqual(faces, [["O", "owner (you)"], ["BO", "Bea Ost"]]);
 
   say("a person with two windows is one");
@@ -122,7 +122,7 @@ try {
   });
   await crowd.goto(`${server.url}/models/demo-pot`);
   await crowd.getByLabel(/^8 people are here: owner \(you\), /).waitFor();
-  const folded = crowd.locator("strata-people-menu .faces .wide .face");
+  const folded = crowd.locator("strata-people-menu .faces .face");
   assert.deepEqual([await folded.count(), (await folded.last().textContent()).trim()], [6, "+3"]);
   await crowd.locator("strata-people-menu .faces").click();
   assert.equal(await crowd.locator("strata-people-menu").getByRole("menuitem", { name: /^(..\s*)?Follow / }).count(), 8); // and one's own other window

@@ -817,7 +817,7 @@ export const texts = {
     formula_lead: "Berechnet aus anderen Ebenen, deren Datensätzen und der Oberfläche: Risiko = Feuchte × Salz.",
     formula_hint: "Risiko",
     formula_example: "if(valid(Risse), 2, 1) * Feuchte",
-    expression: "Ausdruck: eine Zahl oder eine Bedingung (1, wo sie gilt, sonst 0)",
+    expression: "Ausdruck: eine Zahl oder eine Bedingung (gemalt, wo sie gilt)",
     expression_missing: "Bitte den Ausdruck schreiben, nach dem die Ebene berechnet wird.",
     follows: "Von selbst neu berechnen, wenn sich etwas ändert, das sie liest",
     shape: "Aus der Geometrie",

@@ -803,7 +803,7 @@ export const texts = {
     formula_lead: "Computed from other layers, their records and the surface: risk = damp × salt.",
     formula_hint: "Risk",
     formula_example: "if(valid(cracks), 2, 1) * moisture",
-    expression: "Expression: a number, or a condition (1 where it holds, 0 where not)",
+    expression: "Expression: a number, or a condition (painted where it holds)",
     expression_missing: "Write the expression that the layer is computed by.",
     follows: "Compute it again by itself when something that it reads changes",
     shape: "From the shape",

@@ -823,7 +823,7 @@ export const texts = {
     formula_lead: "Calculada de otras capas, sus registros y la superficie: riesgo = humedad × sal.",
     formula_hint: "Riesgo",
     formula_example: "if(valid(grietas), 2, 1) * humedad",
-    expression: "Expresión: un número o una condición (1 donde se cumple, 0 donde no)",
+    expression: "Expresión: un número o una condición (pintada donde se cumple)",
     expression_missing: "Escriba la expresión con la que se calcula la capa.",
     follows: "Calcularla de nuevo cuando cambie algo de lo que lee",
     shape: "De la geometría",
