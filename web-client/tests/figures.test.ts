@@ -157,7 +157,8 @@ describe("a figure", () => {
     state = job("running");
     answers.set(kFigures, () => json(job("queued"), 202));
     answers.set("GET /api/v1/jobs/5", () => json(state));
-    answers.set("GET /api/v1/jobs/5/file", () => new Response("%PDF-1.7"));
+    // As the server does: who takes JSON alone gets no drawing.
+    answers.set("GET /api/v1/jobs/5/file", () => (calls.at(-1)!.headers["Accept"] === "*/*" ? new Response("%PDF-1.7") : json({ title: "Not acceptable" }, 406)));
     answers.set("DELETE /api/v1/jobs/5", () => new Response(null, { status: 204 }));
   });
   const make = (): Promise<number> => figures.make("Figure: Pot", { direction: "front", scale: 5 });

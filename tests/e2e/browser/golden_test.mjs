@@ -117,7 +117,7 @@ async function compare_page(server) {
     const elements = {
       title: page.locator("strata-model-page h1"),
       saving: page.locator("strata-model-page .saving"),
-      people: page.locator("strata-people-menu .wide .face"),
+      people: page.locator("strata-people-menu .faces .face"),
       legend: page.locator("strata-layer-panel .legend-classes"),
       "the scale bar": page.locator("strata-stage .scale"),
       "the value under the pointer": page.locator("strata-value-readout .card"),

@@ -630,7 +630,7 @@ export class Api {
   }
   async cross_table_sheet(model: Id, rows: Id, columns: Id, query: SheetQuery): Promise<Blob> {
     const path = `/models/${encodeURIComponent(model)}/cross-table?${new URLSearchParams({ ...query })}`;
-    return (await this.request("POST", path, { rows, columns })).blob();
+    return (await this.request("POST", path, { rows, columns }, kAnyFile)).blob();
   }
 
   /** Answered once it is durable. */
@@ -691,7 +691,7 @@ export class Api {
   }
   /** What a job of this person made. */
   async job_file(id: Id): Promise<Blob> {
-    return (await this.request("GET", `/jobs/${encodeURIComponent(id)}/file`)).blob();
+    return (await this.request("GET", `/jobs/${encodeURIComponent(id)}/file`, undefined, kAnyFile)).blob();
   }
 
   /** As a form, or the only file as the body; `fetch` does not tell how much is sent. */
@@ -743,7 +743,7 @@ export class Api {
 
   /** A file whose request may be given up, also while it comes. */
   private async blob(method: string, path: string, body: unknown, signal: AbortSignal): Promise<Blob> {
-    const response = await this.request(method, path, body, {}, signal);
+    const response = await this.request(method, path, body, kAnyFile, signal);
     try {
       return await response.blob();
     } catch {
@@ -796,6 +796,8 @@ const kMostKeptAlive = 60_000; // characters of a body that browsers send after 
 const kWithSecrets = /^\/(login|auth\/.+|invitations\/.+|me\/.+|users|users\/.+|models\/[^/]+\/tours\/[^/]+\/kiosks)$/;
 
 const kFile = { "Content-Type": "application/octet-stream" };
+/** A read that takes JSON alone is refused where a file of another kind would answer it. */
+const kAnyFile = { Accept: "*/*" };
 
 const layer_path = (model: Id, layer: Id): string =>
   `/models/${encodeURIComponent(model)}/layers/${encodeURIComponent(layer)}`;
