@@ -39,7 +39,7 @@ double largest(int type) {
     case kUnsignedByte: return 255;
     case kShort: return 32767;
     case kUnsignedShort: return 65535;
-    case kUnsignedInt: return 1 << 30;  // the encoder of Draco takes no more
+    case kUnsignedInt: return 1 << 16;  // the encoder of Draco has a table as long as the largest value
     default: return 1;
   }
 }
