@@ -12,6 +12,7 @@ namespace {
 constexpr double kMostCells = 250'000;   // of the grid in which the drawing is looked at: some tenths of a second
 constexpr std::size_t kMostPlaces = 32;  // of a line that are looked at
 constexpr double kOpaque = 0.99;
+constexpr double kLeastCosine = 1.0 / 12;  // surfaces that are steeper to the eye hide what is behind them, too
 constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;  // as far below the surface as marks are drawn
 
 // How each layer is drawn, as the picture has it.
@@ -40,14 +41,20 @@ query::LayerCover cover_of(const FigureWish& wish, const Layer& layer) {
   return cover;
 }
 
-// Whether a place of the surface is in the drawing, and nothing lies before it.
+// Whether a mark's place is in the drawing, and no surface lies before it: as the picture decides it (mark_sight_pass.comp), a
+// place may lie anywhere before the surface, and behind it as far as it reaches, measured square to the surface.
 Result<bool> is_seen(const FigureWish& wish, const Camera& camera, const glm::dvec3& place, double reach) {
+  const auto is_cut_off = [&](const glm::dvec4& plane) { return glm::dot(plane, glm::dvec4(place, 1)) < 0; };
+  if (std::ranges::any_of(camera.section, is_cut_off)) return false;
   const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(place, 1);
   const glm::dvec2 pixel((clip.x + 1) / 2 * camera.width, (1 - clip.y) / 2 * camera.height);
   if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x <= camera.width && pixel.y <= camera.height)) return false;
   const auto hit = wish.room->pick(camera, pixel.x, pixel.y, {}, {});
   if (!hit) return tl::unexpected(hit.error());
-  return hit->hit && glm::distance(hit->position, place) <= reach;
+  if (!hit->hit) return true;
+  const glm::dvec3 apart = place - glm::dvec3(hit->position);
+  if ((camera.view * glm::dvec4(apart, 0)).z >= 0) return true;  // nearer than the surface
+  return std::max(std::abs(glm::dot(apart, glm::dvec3(hit->normal))), kLeastCosine * glm::length(apart)) <= reach;
 }
 
 // Keys of records whose lines or points the drawing shows. They lie over all layers.

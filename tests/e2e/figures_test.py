@@ -257,13 +257,15 @@ def legends(server):
     assert told(scale=0.1, paper="a5", center=[90, 50, 0]) == ["Low", "Low 2"], "on 15 mm around its right side"
     # Records that have lines alone are classes of the drawing, too.
     table = server.ok("POST", "/projects/default/tables", {"name": "Cracks", "columns": [{"name": "Way", "kind": "line"}]}).json()
-    points = [{"at": at, "color": "#ff8000", "label": label} for at, label in ((1, "Crack"), (2, "Elsewhere"))]
+    points = [{"at": at, "color": "#ff8000", "label": label} for at, label in ((1, "Crack"), (2, "Elsewhere"), (3, "Above"))]
     server.ok("POST", M + "/layers", {"name": "Cracks", "kind": "database", "type": "u16", "table": table["slug"], "resolution": 2048, "palette": {"mode": "categorical", "points": points}})
     model = server.get(M).json()["id"]
     way = [{"model": model, "coordinates": [[80, 20, 0], [80, 80, 0]]}]
-    for key, values in ((1, {"way": way}), (2, {})):
+    above = [{"model": model, "coordinates": [[20, 20, 40], [20, 80, 40]]}]
+    for key, values in ((1, {"way": way}), (2, {}), (3, {"way": above})):
         server.ok("POST", "/tables/cracks/records", {"key": key, "values": values})
-    assert told() == ["Cracks", "Crack", "High", "High 1", "Low", "Low 2"], told()
+    assert told() == ["Cracks", "Crack", "Above", "High", "High 1", "Low", "Low 2"], "what hangs before the surface is drawn"
+    assert "Above" not in told(direction="bottom"), "what lies behind it is not"
     # A long list goes on below its title.
     points = [{"at": at, "color": "#2040ff", "label": f"Class {at}"} for at in range(1, 61)]
     server.ok("POST", M + "/layers", {"name": "Many", "type": "u8", "resolution": 2048, "palette": {"mode": "categorical", "points": points}})
