@@ -271,7 +271,7 @@ def legends(server):
     server.ok("POST", M + "/layers", {"name": "Many", "type": "u8", "resolution": 2048, "palette": {"mode": "categorical", "points": points}})
     for at in range(1, 61):
         fill(server, f"x > {at * 1.5} and y > 3", at, "many")
-    words = told(continued="(weiter)")
+    words = told(continued="(weiter)", paper="a3", orientation="portrait")
     assert words.count("Many (weiter)") >= 1 and all(f"Class {at}" in words for at in range(1, 61)), words
     for name in ("low", "high", "cracks", "many"):
         server.ok("DELETE", f"{M}/layers/{name}")
