@@ -145,6 +145,7 @@ try {
   await page.reload();
   await desk.drawn();
   assert.deepEqual(await violations(page, kHeadRules), []);
+  await button(texts_of("en").layers.select("Stone observations")).click(); // the chosen layer after a reload has no table
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("t");
   await page.getByRole("grid").waitFor();

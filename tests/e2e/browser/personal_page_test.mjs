@@ -58,7 +58,7 @@ try {
   say("a curator computes a condition: painted where it holds, hidden for others, locked for everybody");
   await cleo.page.getByRole("button", { name: "New layer" }).click();
   await cleo.page.getByRole("radio", { name: /From an expression/ }).click();
-  await cleo.page.getByLabel("Expression: a number").fill("moisture > 30 and not valid(cracks)");
+  await cleo.page.getByLabel("Expression: a number").fill("z > 0 and not valid(cracks)");
   await cleo.page.getByLabel("Name", { exact: true }).fill("Risk");
   await cleo.page.getByRole("button", { name: "Compute layer" }).click();
   await button(cleo, "Hide Risk").waitFor();
