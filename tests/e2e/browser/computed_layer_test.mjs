@@ -55,7 +55,7 @@ try {
   await page.getByRole("menuitem", { name: /^Edit…?$/ }).click();
   await page.getByLabel("Expression: a number").fill("if(valid(cracks), 7, 5)");
   await page.getByLabel(/by itself/).check();
-  await button("Save").click();
+  await page.getByRole("button", { name: "Save", exact: true }).click();
   await wait_for(async () => (await risk()).expression === "if(valid(cracks), 7, 5)" && !(await risk()).stale, "the new expression");
   assert.equal((await risk()).recompute, "automatic");
   await server.json("POST", `${base}/layers/cracks/edits`, { op: "fill", mode: "where", where: "true", value: 1 });

@@ -275,7 +275,7 @@ try {
   say("of a kept view, by its menu: what it shows, not what is seen");
   const list = ada.page.locator("strata-view-list");
   const as_ada = { Authorization: `Bearer ${ada_person.token}`, "Content-Type": "application/json", "Idempotency-Key": "west" };
-  const { scale: _s, dpi: _d, format: _f, paper: _p, legend: _l, provisional: _v, direction: _r, ...kept } = preview;
+  const { scale: _s, dpi: _d, format: _f, paper: _p, legend: _l, provisional: _v, continued: _c, direction: _r, ...kept } = preview;
   const made = await fetch(`${server.url}/api/v1${kBase}/views`, { method: "POST", headers: as_ada, body: JSON.stringify({ name: "West wall", text: "", ...kept }) });
   assert.equal(made.status, 201, await made.clone().text());
   await list.getByRole("button", { name: "Options for West wall" }).click();
