@@ -110,12 +110,18 @@ export class StrataServer {
     return { user, password, token: (await made.json()).secret };
   }
 
-  async request(method, path, body, headers = {}) {
+  /** A session of the owner's that a call under test has ended meanwhile is replaced. */
+  async request(method, path, body, headers = {}, tries = 5) {
+    const secret = await this.owners_secret(path);
     const answer = await fetch(`${this.url}/api/v1${path}`, {
       method,
-      headers: { Authorization: `Bearer ${await this.owners_secret(path)}`, ...(body === undefined ? {} : { "Content-Type": "application/json" }), ...headers },
+      headers: { Authorization: `Bearer ${secret}`, ...(body === undefined ? {} : { "Content-Type": "application/json" }), ...headers },
       ...(body === undefined ? {} : { body: JSON.stringify(body) }),
     });
+    if (answer.status === 401 && secret !== this.token && tries > 1) {
+      if (this.session === secret) this.session = undefined;
+      return this.request(method, path, body, headers, tries - 1);
+    }
     if (!answer.ok) throw new Error(`${method} ${path}: ${answer.status} ${await answer.text()}`);
     return answer;
   }
