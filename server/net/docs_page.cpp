@@ -137,7 +137,7 @@ std::string docs_html(const json& contract) {
   const json info = contract.value("info", json::object());
   std::string page =
       "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">"
-      "<title>" +
+      "<link rel=\"icon\" href=\"/favicon.svg\" type=\"image/svg+xml\"><title>" +
       html_escape(info.value("title", "API")) +
       "</title><link rel=\"stylesheet\" href=\"/api/v1/docs.css\"></head><body><main><h1>" +
       html_escape(info.value("title", "API")) + " <small>" + html_escape(info.value("version", "")) + "</small></h1>";

@@ -109,6 +109,8 @@ export class StrataPeopleMenu extends LitElement {
     if (people.length === 0) return html``;
     const words = texts.together;
     const others = people.filter(({ viewer }) => viewer !== null);
+    // On a phone, who is alone has their face at the menu of the account already, and the title needs the room.
+    if (this.narrow_.matches && people.length === 1 && others.length === 0 && !together.leading) return html``;
     const most = this.narrow_.matches ? kMostFacesOnPhone : kMostFaces;
     const seen = [...people.slice(0, most).map(initials), ...(people.length > most ? [`+${people.length - most}`] : [])].join(" ");
     const label = `${texts.people.here(people.length)}: ${format_list(people.map((person) => this.name(person)))}`;
