@@ -93,7 +93,7 @@ try {
   await shoot(cleo, "by_hand");
   await panel(cleo).getByRole("button", { name: "Compute again" }).click();
   await cleo.page.getByText("This overwrites what was edited by hand.").waitFor();
-  await cleo.page.getByRole("dialog").getByRole("button", { name: "Compute again" }).click();
+  await cleo.page.locator("strata-question").getByRole("button", { name: "Compute again" }).click();
   await wait_for(async () => (await layer("risk")).edited_by_hand === false, "the layer to be as it was computed");
   await panel(cleo).getByText("Locked: its values were computed.").waitFor();
 
