@@ -220,9 +220,14 @@ try {
   const way_m = way.slice(1).reduce((sum, at, index) => sum + distance(at, way[index]), 0) * (await metres_per_pixel());
   const along_m = length_of(along[0]) * metres_per;
   assert.ok(along_m > 0.5 * way_m && along_m < 2.5 * way_m, `${along_m} m where ${way_m} m were drawn`);
-  // From place to place it goes along the surface: no leap of centimetres to what lies behind.
-  const longest = Math.max(...along[0].coordinates.slice(1).map((place, at) => distance(place, along[0].coordinates[at]))) * metres_per;
-  assert.ok(longest < 0.012, `a step of ${longest} m`);
+  // From place to place it goes along the surface, which is seen at a slant: a step may be long, but leads neither through the pot nor to what lies behind.
+  const places = along[0].coordinates;
+  const radius = ([x, y]) => Math.hypot(x, y) * metres_per; // the pot stands on the axis of z
+  const steps = places.slice(1).map((place, at) => [places[at], place]);
+  const longest = Math.max(...steps.map(([from, to]) => distance(from, to))) * metres_per;
+  assert.ok(longest < 80 * (await metres_per_pixel()), `a step of ${longest} m`);
+  const deepest = Math.max(...steps.map(([from, to]) => (radius(from) + radius(to)) / 2 - radius([(from[0] + to[0]) / 2, (from[1] + to[1]) / 2])));
+  assert.ok(deepest < 0.0015, `a step that leads ${deepest} m below the surface`);
   await page.locator("strata-notices").getByRole("button", { name: "Undo" }).last().click();
   await wait_for(async () => (await marks(1, "cracks")).length === kept, "the line to be gone");
 
