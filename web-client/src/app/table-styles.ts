@@ -26,6 +26,10 @@ export const table_styles = css`
     max-width: 30%;
   }
   .bar .count {
+    flex: 0 1 auto;
+    min-width: 0;
+    overflow: hidden;
+    text-overflow: ellipsis;
     white-space: nowrap;
   }
   .bar button,
