@@ -277,7 +277,7 @@ protocol::SurfacePoint to_protocol(const query::SurfacePoint& point) {
   out.position = point.position;
   out.normal = glm::dvec3(point.normal);
   out.uv = glm::dvec2(point.uv);
-  out.distance = std::max(0.0, point.distance);
+  out.distance = std::clamp(point.distance, 0.0, 1e15);  // as far as the contract goes: a camera may be farther away
   out.values.emplace();
   for (const auto& value : point.values) {
     protocol::SurfaceValue& entry = (*out.values)[value.layer];
