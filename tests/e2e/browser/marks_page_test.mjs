@@ -234,7 +234,7 @@ try {
   say("a line that crosses an edge for good is cut, says so, and is taken back as a whole");
   const middle = 0.5 * frame.width;
   await draw([[middle, 0.6 * frame.height], [middle, 0.45 * frame.height], [middle, 0.3 * frame.height], [middle, 0.24 * frame.height]]);
-  const cut = page.locator("strata-notices .notice", { hasText: /^The line crossed an edge and was cut into \d pieces\./ });
+  const cut = page.locator("strata-notices .notice", { hasText: /The line crossed an edge and was cut into \d pieces\./ });
   await cut.waitFor();
   const pieces = (await marks(1, "cracks")).length - kept;
   assert.match(await cut.innerText(), new RegExp(`cut into ${pieces} pieces[^]*drawn for “North crack”`));
