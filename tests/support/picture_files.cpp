@@ -15,7 +15,7 @@ namespace strata::test {
 namespace {
 
 void put(Bytes& out, std::uint64_t value, int size) {
-  for (int i = 0; i < size; ++i) out.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+  for (int i = 0; i < size; ++i, value >>= 8) out.push_back(static_cast<std::uint8_t>(value));
 }
 
 void write_samples(TIFF* tiff, int width, int height, const TiffSettings& s,
