@@ -447,10 +447,10 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
       await bea.page.keyboard.press("t");
       await bea.page.getByRole("grid").getByRole("rowheader", exact("2")).click();
       await bea.page.getByRole("button", exact("Edit the record")).click();
-      await row(2).getByRole("img", exact(w.tables.edited_by("bea"))).waitFor();
+      await row(2).getByRole("img", exact(w.tables.edited_by("Bea Ost"))).waitFor();
       await row(2).click();
       await open(page.locator("strata-table-panel").getByRole("button", exact(w.tables.edit)));
-      await page.locator("strata-record-dialog").getByText(w.tables.edited_by("bea")).waitFor();
+      await page.locator("strata-record-dialog").getByText(w.tables.edited_by("Bea Ost")).waitFor();
     }, end: async () => {
       await close_dialog();
       await bea.page.keyboard.press("Escape");
