@@ -83,7 +83,9 @@ try {
   await browser.settled();
   await keep_picture("curvature");
 
-  say("it can be taken back like a stroke");
+  say("it is locked; unlocked, it can be taken back like a stroke");
+  await button("Unlock to edit by hand").first().click();
+  await wait_for(async () => (await button("Unlock to edit by hand").count()) === 0, "the layer to be unlocked");
   await page.keyboard.press("b");
   await page.keyboard.press("Control+z");
   await wait_for(async () => (await server.json("GET", `${base}/layers/curvature/statistics`)).texels === 0, "the layer to be empty");
