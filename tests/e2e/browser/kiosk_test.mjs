@@ -231,8 +231,10 @@ try {
 
   say("a tap on a class says which it is, beside the place, until the object moves");
   await fits("second stop");
-  await button("pieces").tap();
-  await is_shown("pieces");
+  await wait_for(async () => {
+    await button("pieces").tap(); // where the row of buttons still slides, a tap may go beside
+    return (await button("pieces").getAttribute("aria-pressed")) === "true";
+  }, "the layer pieces");
   await live();
   await page.touchscreen.tap(x, y);
   const place = page.locator(".place-of-tap");

@@ -146,6 +146,8 @@ try {
   say("a table of numbers for the vertices of the scan is painted");
   const numbers = hill(57).split("end_header\n")[1].split("\n").slice(0, 58 * 58).map((line) => Number(line.split(" ")[3]) * 10);
   await button("Options for quality").click();
+  await page.getByRole("menuitem", { name: "Unlock to edit by hand" }).click();
+  await button("Options for quality").click();
   await page.getByRole("menuitem", { name: "Paint from a file…" }).click();
   await page.locator("strata-map-dialog input[type=file]").setInputFiles({ name: "tenfold.csv", mimeType: "text/csv", buffer: Buffer.from(numbers.join("\n")) });
   await page.getByText("One number a line").waitFor();
