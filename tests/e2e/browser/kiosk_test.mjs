@@ -231,10 +231,12 @@ try {
 
   say("a tap on a class says which it is, beside the place, until the object moves");
   await fits("second stop");
-  await wait_for(async () => {
-    await button("pieces").tap(); // where the row of buttons still slides, a tap may go beside
-    return (await button("pieces").getAttribute("aria-pressed")) === "true";
-  }, "the layer pieces");
+  const choose = (name) =>
+    wait_for(async () => {
+      await button(name).tap(); // while the row of buttons slides, a tap may go beside
+      return (await button(name).getAttribute("aria-pressed")) === "true";
+    }, `the layer ${name}`);
+  await choose("pieces");
   await live();
   await page.touchscreen.tap(x, y);
   const place = page.locator(".place-of-tap");
@@ -246,8 +248,7 @@ try {
   await shot("class");
   await touch(line([x, y], [x + 120, y + 20]));
   await place.waitFor({ state: "detached" });
-  await button("Sherds").tap();
-  await is_shown("Sherds");
+  await choose("Sherds");
 
   say("a tap tells of what is there, with its picture");
   await live();
