@@ -196,9 +196,9 @@ try {
   await funnel.focus();
   await page.keyboard.press("Enter");
   await sheet.getByRole("dialog").waitFor();
-  const first = sheet.getByRole("checkbox", { name: /^SU 1/ });
-  await first.waitFor(); // its values are counted first
-  await first.focus();
+  const value = sheet.getByRole("checkbox", { name: /^SU 1/ });
+  await value.waitFor(); // the values are counted first
+  await value.focus();
   await page.keyboard.press("Space");
   await page.keyboard.press("Enter");
   await shown([1]);
