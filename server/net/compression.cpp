@@ -15,8 +15,8 @@ namespace strata::net {
 namespace {
 
 constexpr std::size_t kMinBytes = 1024;  // below, a packet is a packet
-constexpr int kGzipLevel = 5;            // 60 MB/s of JSON on a slow core, a tenth of its size
-constexpr int kBrotliQuality = 4;        // as quick, a tenth smaller
+constexpr int kGzipLevel = 5;            // texts are coded while their client waits: the middle, not the smallest
+constexpr int kBrotliQuality = 4;        // likewise; above it the encoder takes many times as long
 
 bool is_text(std::string_view content_type) {
   const std::string type = to_lower(trim_blanks(content_type.substr(0, content_type.find(';'))));
