@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMinBytes = 1024;  // below, a packet is a packet
 constexpr int kGzipLevel = 5;            // texts are coded while their client waits: the middle, not the smallest
-constexpr int kBrotliQuality = 4;        // likewise; above it the encoder takes many times as long
+constexpr int kBrotliQuality = 4;        // likewise
 
 bool is_text(std::string_view content_type) {
   const std::string type = to_lower(trim_blanks(content_type.substr(0, content_type.find(';'))));
