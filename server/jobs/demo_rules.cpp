@@ -76,11 +76,13 @@ DemoRules::DemoRules(std::span<const glm::vec3> surface) {
   center_ = (low + high) / 2.0;
   const glm::dvec3 extent = high - low;
   radius_ = std::max({extent.x, extent.y, extent.z}) / 2;
-  // By height, so that the demo is the same whatever order the mesh keeps its points in.
+  // By height and each once, so that the demo is the same whatever order the mesh keeps its points in and however often:
+  // an atlas cuts it elsewhere.
   std::vector<glm::vec3> sorted(surface.begin(), surface.end());
   std::ranges::sort(sorted, [](const glm::vec3& a, const glm::vec3& b) {
     return std::tuple(a.z, a.y, a.x) < std::tuple(b.z, b.y, b.x);
   });
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
   std::vector<glm::dvec3> candidates;
   const std::size_t step = std::max<std::size_t>(1, sorted.size() / kCandidates);
   for (std::size_t i = 0; i < sorted.size(); i += step) candidates.push_back(towards(sorted[i]));

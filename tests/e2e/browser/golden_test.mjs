@@ -156,7 +156,7 @@ const frame = async (server, request) => Buffer.from(await (await server.request
 async function point_at_open_crack(browser) {
   const card = browser.page.locator("strata-value-readout .card");
   let before = "";
-  for (let x = 0.4; x < 0.7; x += 0.004) {
+  for (let x = 0.25; x < 0.75; x += 0.004) {
     await browser.point(x, 0.6);
     await card.getByText(/Position/).waitFor();
     for (let text = before; text === before; ) text = await card.innerText();

@@ -107,6 +107,7 @@ try {
   say("one colour and one name");
   const { color } = await server.json("GET", "/users").then(({ users }) => users.find(({ user }) => user === "cleo"));
   const wished = `rgb(${rgb(color).join(", ")})`;
+  await cleo.close_notices();
   await cleo.page.keyboard.press("c");
   await cleo.page.mouse.click(...(await cleo.stage_box().then((box) => [box.x + box.width / 2, box.y + box.height * 0.6])));
   await cleo.page.locator("strata-comment-card textarea").fill("Is this a fresh break?");

@@ -107,11 +107,7 @@ try {
   await server.json("POST", `${finds}/review`, { decision: "reopen", edits: [rejected] });
   await wait_for(async () => (await listed(cleo).count()) === 1, "it waits again");
   await notice(ada, "waits for review again").waitFor();
-  const close = cleo.page.locator("strata-notices").getByRole("button", { name: "Close" });
-  await wait_for(async () => { // they also go by themselves
-    await close.first().click({ timeout: 1000 }).catch(() => {});
-    return (await close.count()) === 0;
-  }, "earlier notices to be gone");
+  await cleo.close_notices();
   await panel(cleo).getByRole("button", { name: "Reject: stroke, ada" }).click();
   await panel(cleo).getByRole("button", { name: "Reject", exact: true }).click();
   await cleo.page.locator("strata-notices").getByRole("button", { name: "Take back" }).click();

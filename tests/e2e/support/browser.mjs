@@ -111,6 +111,15 @@ export class Browser {
     await this.page.mouse.up();
   }
 
+  /** They lie over the stage, and some go without help. */
+  async close_notices() {
+    const close = this.page.locator("strata-notices").getByRole("button", { name: "Close" });
+    await wait_for(async () => {
+      await close.first().click({ timeout: 1000 }).catch(() => {});
+      return (await close.count()) === 0;
+    }, "notices to be gone");
+  }
+
   async point(x, y) {
     const box = await this.stage_box();
     await this.page.mouse.move(box.x + x * box.width, box.y + y * box.height);
