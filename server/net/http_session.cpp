@@ -38,6 +38,7 @@ constexpr seconds kEventPause{1}, kEventPing{15};
 constexpr int kMostEventStreams = 256;
 constexpr seconds kStall{60};  // a body that does not move
 constexpr std::uint32_t kMaxHead = 8192;
+constexpr std::size_t kReadAtOnce = 64 * 1024;  // of a larger body; by itself it is read in the kilobytes of its head
 constexpr std::uint64_t kMaxIgnoredBody = 64 * 1024;  // of a refused request: read to keep the connection
 constexpr std::string_view kSubprotocol = "strata.v1";
 
@@ -237,12 +238,14 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         const bool told = co_await send_continue();
         if (!told) co_return false;
       }
+      if (!length || *length > kReadAtOnce) buffer_.reserve(kReadAtOnce);
       Problem problem;
       bool is_read = false;
       if (route->body == BodyKind::file)
         is_read = co_await read_to_file(head, *request, max_body, problem);
       else
         is_read = co_await read_to_memory(head, *request, max_body, problem);
+      buffer_.shrink_to_fit();  // a connection that waits needs little memory
       if (!is_read) {
         remove_body_file(*request);
         if (problem.title.empty()) co_return false;  // the connection broke
