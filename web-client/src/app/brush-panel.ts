@@ -11,8 +11,9 @@ import { describe_value, kWidths, type WidthUnit } from "./brush-settings";
 import { ask } from "./dialog";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
-import { why_locked } from "./layer-lock";
+import { unlock_label, why_locked } from "./layer-lock";
 import type { ModelSession } from "./model-session";
+import { notices } from "./notices";
 import { number_input } from "./number-input";
 import { radio_group } from "./radio-group";
 import { number_field_styles, shared_styles } from "./styles";
@@ -97,8 +98,11 @@ export class StrataBrushPanel extends LitElement {
   }
 
   private locked(layer: Layer): TemplateResult {
+    const { layers, can_curate } = this.session;
+    const unlock = (): void => void layers.change(layer, { locked: false }).catch((error: unknown) => notices.error(error));
     return html`<h2>${texts.tools[this.session.tools.active]}</h2>
-      <p class="locked" role="status">${icon("lock")}<span>${why_locked(layer)}</span></p>`;
+      <p class="locked" role="status">${icon("lock")}<span>${why_locked(layer)}</span></p>
+      ${can_curate ? html`<button @click=${unlock}>${icon("unlock")}${unlock_label(layer)}</button>` : nothing}`;
   }
 
   private strokes(layer: Layer, erases: boolean): TemplateResult {

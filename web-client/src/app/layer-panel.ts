@@ -11,6 +11,7 @@ import { ask } from "./dialog";
 import { DragOrder } from "./drag-order";
 import { follow_session } from "./follow-session";
 import { icon } from "./icons";
+import { unlock_label } from "./layer-lock";
 import { layer_job_row, layer_job_styles } from "./layer-job-row";
 import { can_be_colored } from "./color-dialog";
 import { layer_chip, legend, legend_styles } from "./legend";
@@ -116,17 +117,16 @@ export class StrataLayerPanel extends LitElement {
         color: var(--ink-soft);
       }
       .locked {
-        display: flex;
+        display: grid;
+        grid-template-columns: auto minmax(0, 1fr);
         align-items: start;
-        gap: 0.5rem;
+        gap: 0.25rem 0.5rem;
         color: var(--ink-soft);
         font-size: 0.88rem;
       }
-      .locked .glyph {
-        flex: none;
-      }
-      .locked span {
-        flex: 1;
+      .locked button {
+        grid-column: 2;
+        justify-self: start;
       }
       .more {
         display: grid;
@@ -296,7 +296,7 @@ export class StrataLayerPanel extends LitElement {
                   ${icon("edit")}${words.edit}
                 </button>
                 <button class="quiet" role="menuitem" @click=${() => void this.change(layer, { locked: !layer.locked })}>
-                  ${icon(layer.locked ? "unlock" : "lock")}${is_as_computed(layer) ? words.unlock_computed : layer.locked ? words.unlock : words.lock}
+                  ${icon(layer.locked ? "unlock" : "lock")}${layer.locked ? unlock_label(layer) : words.lock}
                 </button>
                 ${layer.expression === undefined
                   ? html`<button class="quiet" role="menuitem" @click=${() => void this.change(layer, { review: !layer.review })}>
@@ -386,7 +386,7 @@ export class StrataLayerPanel extends LitElement {
     const unlock = (): void => void this.change(layer, { locked: false });
     return html`<p class="locked">
       ${icon("lock")}<span>${this.who_is_locked(layer)}</span>
-      ${this.session.can_curate ? html`<button class="link" @click=${unlock}>${is_as_computed(layer) ? texts.layers.unlock_computed : texts.layers.unlock}</button>` : nothing}
+      ${this.session.can_curate ? html`<button class="link" @click=${unlock}>${unlock_label(layer)}</button>` : nothing}
     </p>`;
   }
 
