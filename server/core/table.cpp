@@ -194,6 +194,8 @@ const Column* name_column(const Table& table) {
   const auto is_text = [](const Column& column) { return column.kind == ColumnKind::text; };
   const Column* found = first([&](const Column& c) { return is_text(c) && c.required && c.unique; });
   if (!found) found = first([&](const Column& c) { return is_text(c) && (c.required || c.unique); });
+  // What an observation is of, and not who made it.
+  if (!found && !columns.empty() && columns.front().kind == ColumnKind::term) found = &columns.front();
   if (!found) found = first(is_text);
   if (!found) found = first([](const Column& c) { return c.unique && !c.target; });
   return found;

@@ -105,7 +105,8 @@ nlohmann::json to_json(const Record& record, const std::vector<Column>& columns)
 // Whether what a record has in the column can be what it is called.
 bool can_be_title(const Column& column);
 // The column that tells people which record it is: the one that they chose, where it is among `columns`; otherwise the first text that is required
-// and unique, otherwise one that is either, otherwise any text, otherwise what is unique and no relation; null: records have no names.
+// and unique, otherwise one that is either, otherwise the first column where it is a term, otherwise any text, otherwise what is unique and no
+// relation; null: records have no names.
 const Column* name_column(const Table& table);
 // What the record is called; empty where it has no name. The key of a record of another table where that is what the column has.
 std::string record_name(const Record& record, const Table& table);

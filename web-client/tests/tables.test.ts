@@ -60,6 +60,9 @@ describe("cells", () => {
     const by_term = { ...titled, title_column: 3 };
     expect(label_of_record(by_term, record(1, { code: "SU 1", damage: 4 }), ["en"], (of, key) => `${of}/${key}`)).toBe("9/4");
     expect(label_of_record(by_term, record(1, { code: "SU 1", damage: 4 }))).toBe("SU 1");
+    const observed = table(column(1, "damage", "term", { target: 9 }), column(2, "observer"));
+    expect(label_of_record(observed, record(1, { damage: 4, observer: "Ida" }), ["en"], (of, key) => `${of}/${key}`)).toBe("9/4");
+    expect(label_column(table(column(2, "observer"), column(1, "damage", "term", { target: 9 })))?.slug).toBe("observer");
     expect(label_of_record(table(), record(1))).toBe("");
   });
 });

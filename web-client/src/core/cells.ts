@@ -92,6 +92,7 @@ function best_label_column(table: Pick<Table, "columns">): Column | null {
   return (
     texts.find((column) => column.required && column.unique) ??
     texts.find((column) => column.unique || column.required) ??
+    table.columns.slice(0, 1).find(({ kind }) => kind === "term") ?? // what an observation is of, and not who made it
     texts[0] ??
     table.columns.find((column) => column.unique && !names_records(column)) ??
     null
