@@ -113,10 +113,41 @@ class Reader {
   CsvText out_;
 };
 
-// Of apostrophes followed by what begins a formula: where that is.
-bool begins_formula(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of('\''), text.size()));
-  return !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
+// A reader that takes another separator, or none of the quotes, begins a cell behind any of these.
+constexpr std::string_view kCellEnds = ",;\t\r\n";
+constexpr std::array<std::string_view, 8> kFormulaBegins = {"=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20"};
+
+// Apostrophes and quotes may stand before it: a reader takes the quotes away.
+bool begins_formula(std::string_view cell) {
+  cell.remove_prefix(std::min(cell.find_first_not_of("'\""), cell.size()));
+  return std::ranges::any_of(kFormulaBegins, [&](std::string_view begin) { return cell.starts_with(begin); });
+}
+
+// A tab or CR that leads the whole text is taken away by some readers, and what follows is run.
+bool begins_formula(std::string_view text, std::size_t at) {
+  if (begins_formula(text.substr(at))) return true;
+  const std::size_t first = at == 0 ? text.find_first_not_of("'\"") : std::string_view::npos;
+  return first != std::string_view::npos && (text[first] == '\t' || text[first] == '\r');
+}
+
+// Calls `visit` for the begin of the text and of each part that another reader may take for a cell.
+template <class Visit>
+void for_each_cell_begin(std::string_view text, Visit visit) {
+  for (std::size_t at = 0;; ++at) {
+    visit(at);
+    at = text.find_first_of(kCellEnds, at);
+    if (at == std::string_view::npos) return;
+  }
+}
+
+// Any separator counts, not the row's own one alone: some readers take several. A number with a decimal comma stays bare, as some
+// readers take what is quoted for text.
+bool needs_quotes(std::string_view cell, char separator) {
+  if (cell.find_first_of("\"\r\n") != std::string_view::npos || cell.find(separator) != std::string_view::npos)
+    return true;
+  if (cell.starts_with(' ') || cell.ends_with(' ')) return true;
+  const bool is_number = cell.find_first_not_of("0123456789,.+-eE") == std::string_view::npos;
+  return !is_number && cell.find_first_of(kCellEnds) != std::string_view::npos;
 }
 
 }  // namespace
@@ -124,9 +155,7 @@ bool begins_formula(std::string_view text) {
 Result<CsvText> parse_csv(std::string_view text, const CsvLimits& limits) { return Reader(text, limits).read(); }
 
 void append_csv_cell(std::string& line, std::string_view cell, char separator) {
-  const bool quoted = cell.find_first_of("\"\r\n") != std::string_view::npos ||
-                      cell.find(separator) != std::string_view::npos || cell.starts_with(' ') || cell.ends_with(' ');
-  if (!quoted) {
+  if (!needs_quotes(cell, separator)) {
     line += cell;
     return;
   }
@@ -156,13 +185,27 @@ std::string csv_number(double value, char separator) {
 }
 
 std::string guard_formula(std::string text) {
-  if (begins_formula(text)) text.insert(text.begin(), '\'');
-  return text;
+  std::string guarded;
+  std::size_t copied = 0;
+  for_each_cell_begin(text, [&](std::size_t at) {
+    if (!begins_formula(text, at)) return;
+    guarded.append(text, copied, at - copied) += '\'';
+    copied = at;
+  });
+  if (copied == 0 && guarded.empty()) return text;
+  return guarded.append(text, copied);
 }
 
 std::string unguard_formula(std::string text) {
-  if (text.starts_with('\'') && begins_formula(text)) text.erase(text.begin());
-  return text;
+  std::string plain;
+  std::size_t copied = 0;
+  for_each_cell_begin(text, [&](std::size_t at) {
+    if (at == text.size() || text[at] != '\'' || !begins_formula(text, at)) return;
+    plain.append(text, copied, at - copied);
+    copied = at + 1;
+  });
+  if (copied == 0) return text;
+  return plain.append(text, copied);
 }
 
 }  // namespace strata

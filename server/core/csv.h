@@ -31,7 +31,7 @@ Result<CsvText> parse_csv(std::string_view text, const CsvLimits& limits = {});
 inline constexpr std::string_view kUtf8Mark =
     "\xef\xbb\xbf";  // without it, Excel takes UTF-8 for the machine's old encoding
 
-// One row with CRLF at its end; cells are quoted where they must be.
+// One row with CRLF at its end; cells are quoted where they must be, and texts with any separator in them.
 std::string csv_line(const std::vector<std::string>& cells, char separator);
 // One cell of a row that has others, without what separates it from them.
 void append_csv_cell(std::string& line, std::string_view cell, char separator);
@@ -40,9 +40,10 @@ void append_csv_cell(std::string& line, std::string_view cell, char separator);
 // whose Excel writes semicolons.
 std::string csv_number(double value, char separator);
 
-// Spreadsheets run a text that begins with = + - @ as a formula. `guard_formula` puts an apostrophe before such a text, which they
-// show as text, and before one that has such an apostrophe already; `unguard_formula` takes it away, so that texts come back
-// as they were.
+// Spreadsheets run a text that begins with = + - @ (also full-width ones) as a formula. `guard_formula` puts an apostrophe before such
+// a text, which they show as text, and before one that has such an apostrophe already. A spreadsheet that separates cells by another
+// character than the file splits a text, so that parts behind a comma, semicolon, tab or line end are guarded in the same way.
+// `unguard_formula` takes the apostrophes away, so that texts come back as they were.
 std::string guard_formula(std::string text);
 std::string unguard_formula(std::string text);
 

@@ -3,6 +3,7 @@
 #include <xlsxwriter.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <optional>
 
@@ -24,28 +25,43 @@ std::size_t character_bytes(std::string_view text) {
   return first < 0x80 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
 }
 
-bool is_xml(std::string_view character) {
-  if (character.size() == 1) {
-    const char c = character.front();
-    return static_cast<unsigned char>(c) >= 0x20 || c == '\t' || c == '\n' || c == '\r';
-  }
-  return character != "\xef\xbf\xbe" && character != "\xef\xbf\xbf";  // U+FFFE, U+FFFF
+// Whether the first character of a text stands in the file as an escape: those that XML cannot hold, and CR.
+bool is_escaped(std::string_view text) {
+  const auto first = static_cast<unsigned char>(text.front());
+  return (first < 0x20 && first != '\t' && first != '\n') || text.starts_with("\ufffe") || text.starts_with("\uffff");
 }
 
+// Whether the text begins with what Excel takes for an escape, `_x` with four hexadecimal digits and `_`, in the file.
+bool begins_escape(std::string_view text) {
+  return text.size() >= 7 && text.starts_with("_x") && (text[6] == '_' || is_escaped(text.substr(6))) &&
+         std::ranges::all_of(text.substr(2, 4), [](unsigned char c) { return std::isxdigit(c) != 0; });
+}
+
+// The first character of a text as a cell holds it (ECMA-376 Part 1, 22.9.2.19, ST_Xstring). The library itself escapes control
+// characters.
+std::string escaped(std::string_view text, std::string_view character) {
+  if (begins_escape(text)) return "_x005F_";
+  if (character == "\ufffe") return "_xFFFE_";
+  if (character == "\uffff") return "_xFFFF_";
+  return std::string(character);
+}
+
+// The library counts escapes as what they are written with, Excel as one character: both hold.
 std::string cell_text(std::string_view text) {
   std::string out;
-  std::size_t units = 0, before_last = 0;
+  std::size_t units = 0, written = 0, before_last = 0;
   while (!text.empty()) {
     const std::string_view character = text.substr(0, character_bytes(text));
+    const std::string cell = escaped(text, character);
     text.remove_prefix(character.size());
-    const std::size_t wide = character.size() == 4 ? 2 : 1;
-    if (units + wide > kLongestCell) {
+    units += character.size() == 4 ? 2 : 1;
+    written += cell.size() > 4 ? cell.size() : 1;
+    if (std::max(units, written) > kLongestCell) {
       out.resize(before_last);
       return out + "\u2026";
     }
-    if (units + wide < kLongestCell) before_last = out.size() + character.size();
-    out += is_xml(character) ? character : std::string_view("\ufffd");
-    units += wide;
+    out += cell;
+    if (std::max(units, written) < kLongestCell) before_last = out.size();
   }
   return out;
 }

@@ -26,8 +26,8 @@ using BookCell = std::variant<std::monostate, bool, double, BookDate, std::strin
 BookCell book_cell(const Record& record, const Column& column);
 
 // A workbook (XLSX) of one sheet on its way to a file: rows are written as they come, so that it takes little memory however many there
-// are. Texts are texts, also those that look like formulas; what XML cannot hold becomes U+FFFD, and beyond the 32 767 characters of
-// Excel's cells they end in an ellipsis.
+// are. Texts are texts, also those that look like formulas or like escapes (`_x000D_`); what XML cannot hold is escaped, and beyond the
+// 32 767 characters of Excel's cells they end in an ellipsis.
 class Workbook {
  public:
   static constexpr std::size_t kMostRows = 1'048'575;  // beside the head

@@ -134,20 +134,22 @@ def check_workbooks(server, pieces):
     server.ok("POST", "/projects/default/tables", {"name": "Finds", "columns": columns})
     hostile = "=cmd|'/C calc'!A0"
     long = "\N{AMPHORA}" * 20000  # two units of UTF-16 each
+    escapes = "two\nlines\r\n \u0001 <&> \uffff 'quoted' _x0041__x005F_x0041_ _x00e_ __x000D_x000d_ _X0041_ _x000D\r _x0041\uffff _x00G0_ _x12"
     made = [{"code": "A", "depth": -1.25, "count": 2**53, "loose": True, "found": "2024-02-29", "seen": "2024-05-02T12:34:56.789+02:00", "period": "1560~", "note": hostile},
-            {"code": "+B", "loose": False, "found": "1066-10-14", "note": "two\nlines \u0001 <&> \uffff 'quoted' _x0041_"},
-            {"code": "@C", "depth": 1e-7, "note": long}]
+            {"code": "+B", "loose": False, "found": "1066-10-14", "note": escapes},
+            {"code": "@C", "depth": 1e-7, "note": long}, {"code": "_x000D_", "note": "_x000d_" * 5000}]
     server.ok("POST", "/tables/finds/records", {"records": [{"values": values} for values in made]})
     answer = server.get("/tables/finds/records?f=xlsx")
     assert answer.headers["Content-Type"] == XLSX and answer.headers["Content-Disposition"].endswith("finds.xlsx"), answer.headers
     book = Workbook(answer.body)
-    assert book.formulas == [] and book.head_is_bold_and_stays() and book.filtered == "A1:I4" and book.sheet_name == "finds", book.filtered
+    assert book.formulas == [] and book.head_is_bold_and_stays() and book.filtered == "A1:I5" and book.sheet_name == "finds", book.filtered
     assert book.rows[0] == ["key", "code", "depth", "count", "loose", "found", "seen", "period", "note"]
-    first, second, third = book.records
+    first, second, third, fourth = book.records
     assert first == {"key": 1.0, "code": "A", "depth": -1.25, "count": float(2**53), "loose": True, "found": datetime.date(2024, 2, 29),
                      "seen": datetime.datetime(2024, 5, 2, 10, 34, 56, 789000), "period": "1560~", "note": hostile}, first
     assert (second["code"], second["loose"], second["found"], second["depth"]) == ("+B", False, "1066-10-14", None), second
-    assert second["note"].replace("_x005F_x0041_", "_x0041_") == "two\nlines \ufffd <&> \ufffd 'quoted' _x0041_", second["note"]
+    assert second["note"] == escapes, second["note"]
+    assert fourth["code"] == "_x000D_" and set(fourth["note"].split("_x000d_")) == {"", "\u2026"}, fourth["note"][-50:]
     assert third["depth"] == 1e-7 and third["note"] == "\N{AMPHORA}" * 16383 + "\u2026", (third["depth"], len(third["note"]))
     some = Workbook(server.get("/tables/finds/records?filter=depth%20%3C%200&sortby=-code", headers={"Accept": XLSX}).body)
     assert [record["code"] for record in some.records] == ["A"]

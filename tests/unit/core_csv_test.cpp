@@ -97,5 +97,68 @@ TEST(Csv, a_text_that_a_spreadsheet_would_run_is_kept_as_text) {
     EXPECT_EQ(unguard_formula(guard_formula(text)), text);
 }
 
+TEST(Csv, full_width_signs_begin_a_formula_too) {
+  for (const char* sign : {"\uff1d", "\uff0b", "\uff0d", "\uff20"})
+    EXPECT_EQ(guard_formula(std::string(sign) + "1+1"), std::string("'") + sign + "1+1");
+  EXPECT_EQ(guard_formula("\uff1ea"), "\uff1ea");  // the full-width > has the same first bytes
+}
+
+TEST(Csv, a_part_that_another_separator_makes_a_cell_is_guarded) {
+  EXPECT_EQ(guard_formula("a;=1+1"), "a;'=1+1");
+  EXPECT_EQ(guard_formula("a;=1+1;b\t@x,-2"), "a;'=1+1;b\t'@x,'-2");
+  EXPECT_EQ(guard_formula("a\n=1\r\n+2"), "a\n'=1\r\n'+2");
+  EXPECT_EQ(guard_formula("a;\"=1"), "a;'\"=1");  // a reader takes the quote away
+  EXPECT_EQ(guard_formula("a;;b, -c; 'd'"), "a;;b, -c; 'd'");
+}
+
+TEST(Csv, a_text_with_any_separator_is_quoted_and_a_number_is_not) {
+  for (const char separator : {',', ';', '\t'}) {
+    EXPECT_EQ(csv_line({"a;b", "a,b", "a\tb", "x"}, separator),
+              std::string("\"a;b\"") + separator + "\"a,b\"" + separator + "\"a\tb\"" + separator + "x\r\n");
+  }
+  EXPECT_EQ(csv_line({"1,5", "-2,25e-05"}, ';'), "1,5;-2,25e-05\r\n");
+  EXPECT_EQ(csv_line({"1,5"}, ','), "\"1,5\"\r\n");
+}
+
+// Splits as a reader does that takes `separator` and knows quotes only at the beginning of a cell.
+std::vector<std::string> cells_as_seen(const std::string& text, char separator) {
+  std::vector<std::string> cells(1);
+  bool quoted = false, at_begin = true;
+  for (const char c : text) {
+    if (c == '"' && (quoted || at_begin)) {
+      quoted = !quoted;
+    } else if (!quoted && (c == separator || c == '\r' || c == '\n')) {
+      cells.emplace_back();
+      at_begin = true;
+      continue;
+    } else {
+      cells.back() += c;
+    }
+    at_begin = false;
+  }
+  return cells;
+}
+
+TEST(Csv, guarded_texts_come_back_and_run_nowhere_whatever_separates) {
+  std::mt19937 random(11);
+  const std::vector<std::string> parts = {"a", "=",  "+",  "-",  "@", "'",      "\"",    ",",
+                                          ";", "\t", "\n", "\r", " ", "\uff1d", "\uff20"};
+  for (int round = 0; round < 20000; ++round) {
+    std::string text;
+    for (unsigned n = random() % 9; n > 0; --n) text += parts[random() % parts.size()];
+    const std::string guarded = guard_formula(text);
+    ASSERT_EQ(unguard_formula(guarded), text);
+    const char separator = ",;\t"[random() % 3];
+    const std::string line = csv_line({"10", guarded, "z"}, separator);
+    const auto read = rows_of("sep=" + std::string(1, separator) + "\r\n" + line);
+    ASSERT_EQ(read.size(), 1u);
+    ASSERT_EQ(unguard_formula(read[0][1]), text);
+    for (const char other : {',', ';', '\t'})
+      for (const std::string& cell : cells_as_seen(line, other))
+        for (const char* sign : {"=", "+", "-", "@", "\uff1d", "\uff20"})
+          ASSERT_FALSE(cell.starts_with(sign)) << line << "as separated by " << other << ": " << cell;
+  }
+}
+
 }  // namespace
 }  // namespace strata

@@ -32,7 +32,8 @@ class Workbook:
     def _value(self, cell):
         kind = cell.get("t", "n")
         if kind == "inlineStr":
-            return "".join(t.text or "" for t in cell.iter(f"{_MAIN}t"))
+            written = "".join(t.text or "" for t in cell.iter(f"{_MAIN}t"))
+            return re.sub("_x([0-9A-Fa-f]{4})_", lambda escape: chr(int(escape[1], 16)), written)  # ST_Xstring
         text = cell.find(f"{_MAIN}v").text
         if kind == "b":
             return text == "1"
