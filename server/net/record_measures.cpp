@@ -11,7 +11,7 @@ Result<RecordMeasures> RecordMeasures::of_place(const RouteContext& context, con
   RecordMeasures measures;
   if (place.layer) {
     measures.has_area_ = true;
-    measures.names_.emplace_back("area_m2");
+    measures.names_.emplace_back(kAreaMeasure);
     if (place.layer->sequence > 0) {  // otherwise nothing was ever painted there
       auto room = context.rooms.open(std::to_string(place.model->id), Role::owner);
       if (!room) return tl::unexpected(room.error());

@@ -9,6 +9,8 @@
 
 namespace strata::net {
 
+inline constexpr const char* kAreaMeasure = "area_m2";
+
 // What a record has on the surface, beside what its columns hold: `area_m2` under a layer, the surface that it has there; `length_m` of
 // its lines and `point_count` of its points where the table has such columns, under a layer those on its model, otherwise on all that
 // are there.

@@ -1,5 +1,6 @@
 #include <set>
 
+#include "core/compensated_sum.h"
 #include "net/routes.h"
 #include "net/wire.h"
 #include "room/record_colors.h"
@@ -25,6 +26,7 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
   const auto marks = context.store.marks(*layer->table, request.role(), (*room)->model().id);
   if (!marks) return tl::unexpected(marks.error());
   query::KeyArea all;
+  CompensatedSum area_m2;
   bool is_somewhere = false;
   const auto add_bounds = [&](const glm::dvec3& low, const glm::dvec3& high) {
     all.bounds_min = is_somewhere ? glm::min(all.bounds_min, low) : low;
@@ -38,7 +40,7 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
     const query::KeyArea& one = area->second;
     add_bounds(one.bounds_min, one.bounds_max);
     all.texels += one.texels;
-    all.area_m2 += one.area_m2;
+    area_m2 += one.area_m2;
     ++painted;
   }
   const std::set<std::int64_t> wanted(keys->begin(), keys->end());
@@ -52,7 +54,7 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
                       {"painted", painted},
                       {"marked", marked.size()},
                       {"texels", all.texels},
-                      {"area_m2", all.area_m2}};
+                      {"area_m2", area_m2.value()}};
   if (is_somewhere) json["bounds"] = bounds_json(all.bounds_min, all.bounds_max);
   return json_response(json);
 }

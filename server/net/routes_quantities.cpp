@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/compensated_sum.h"
 #include "core/csv.h"
 #include "core/term_list.h"
 #include "net/as_of.h"
@@ -21,9 +22,11 @@ struct OfMarks {
   std::map<std::int64_t, std::vector<double>> of_key;
 
   std::vector<double> sum() const {
-    std::vector<double> all(names.size(), 0.0);
+    std::vector<CompensatedSum> sums(names.size());
     for (const auto& [key, values] : of_key)
-      for (std::size_t i = 0; i < values.size(); ++i) all[i] += values[i];
+      for (std::size_t i = 0; i < values.size(); ++i) sums[i] += values[i];
+    std::vector<double> all;
+    for (const CompensatedSum& sum : sums) all.push_back(sum.value());
     return all;
   }
   std::vector<double> of(std::int64_t key) const {
@@ -159,6 +162,11 @@ void add_classes(query::Quantities& all, const OfMarks& marks) {
   std::ranges::stable_sort(all.classes, {}, [](const query::Quantity& quantity) { return *quantity.value; });
 }
 
+Result<Response> quantity_sheet(const RouteContext& context, Sheet sheet, SheetFormat format, char separator) {
+  add_readable_areas(sheet);
+  return sheet_response(sheet, format, separator, context.options.upload_dir);
+}
+
 Result<Response> layer_quantities(const RouteContext& context, const Request& request) {
   const auto format = sheet_format(request);
   if (!format) return tl::unexpected(format.error());
@@ -198,8 +206,8 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   }
   auto response = *format == SheetFormat::json
                       ? json_response(to_json(*all, *layer, names, marks))
-                      : sheet_response(to_sheet(*all, *layer, names, marks, layer->slug + "-quantities"), *format,
-                                       *separator, context.options.upload_dir);
+                      : quantity_sheet(context, to_sheet(*all, *layer, names, marks, layer->slug + "-quantities"),
+                                       *format, *separator);
   if (!response) return response;
   add_sequences(*response, sequence, (*room)->durable_sequence());
   response->with("Vary", "Accept");
@@ -234,11 +242,20 @@ Result<std::vector<OfLayer>> of_layers(const RouteContext& context, std::int64_t
   return found;
 }
 
-void add(query::Quantity& sum, const query::Quantity& part) {
-  sum.pieces += part.pieces;
-  sum.texels += part.texels;
-  sum.area_m2 += part.area_m2;
-}
+class QuantitySum {
+ public:
+  void add(const query::Quantity& part) {
+    sum_.pieces += part.pieces;
+    sum_.texels += part.texels;
+    area_m2_ += part.area_m2;
+    sum_.area_m2 = area_m2_.value();
+  }
+  const query::Quantity& sum() const { return sum_; }
+
+ private:
+  query::Quantity sum_;
+  CompensatedSum area_m2_;
+};
 
 Result<Response> table_quantities(const RouteContext& context, const Request& request) {
   const auto format = sheet_format(request);
@@ -251,13 +268,14 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   if (!table) return tl::unexpected(table.error());
   const auto layers = of_layers(context, table->id, request.role());
   if (!layers) return tl::unexpected(layers.error());
-  std::map<std::int64_t, query::Quantity> of_key;
-  query::Quantity sum;
+  std::map<std::int64_t, QuantitySum> of_key;
+  QuantitySum of_all;
   for (const OfLayer& layer : *layers)
     for (const auto& [key, quantity] : layer.of_key) {
-      add(of_key[key], quantity);
-      add(sum, quantity);
+      of_key[key].add(quantity);
+      of_all.add(quantity);
     }
+  const query::Quantity& sum = of_all.sum();
   const auto marks = marks_of(context, *table, request.role(), {}, {});
   if (!marks) return tl::unexpected(marks.error());
   for (const auto& [key, values] : marks->of_key) of_key.try_emplace(key);
@@ -272,7 +290,7 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   if (*format == SheetFormat::json) {
     nlohmann::json list = nlohmann::json::array();
     for (const auto& [key, quantity] : of_key) {
-      nlohmann::json json = sums_json(quantity), parts = nlohmann::json::array();
+      nlohmann::json json = sums_json(quantity.sum()), parts = nlohmann::json::array();
       for (const OfLayer& layer : *layers)
         if (const auto part = layer.of_key.find(key); part != layer.of_key.end()) {
           parts.push_back(sums_json(part->second));
@@ -295,7 +313,8 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   Sheet sheet{table->slug + "-quantities", {"class", "key", "pieces", "texels", "area_m2"}, {}};
   sheet.heads.insert(sheet.heads.end(), marks->names.begin(), marks->names.end());
   for (const OfLayer& layer : *layers) sheet.heads.push_back(layer.model.slug + "/" + layer.layer.slug + " area_m2");
-  for (const auto& [key, quantity] : of_key) {
+  for (const auto& [key, of_one] : of_key) {
+    const query::Quantity& quantity = of_one.sum();
     std::vector<SheetCell> row{text_of(key), double(key), double(quantity.pieces), double(quantity.texels),
                                quantity.area_m2};
     const auto marked = marks->of(key);
@@ -310,12 +329,12 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   const auto marked = marks->sum();
   last.insert(last.end(), marked.begin(), marked.end());
   for (const OfLayer& layer : *layers) {
-    query::Quantity of_layer;
-    for (const auto& [key, quantity] : layer.of_key) add(of_layer, quantity);
-    last.push_back(of_layer.area_m2);
+    QuantitySum of_layer;
+    for (const auto& [key, quantity] : layer.of_key) of_layer.add(quantity);
+    last.emplace_back(of_layer.sum().area_m2);
   }
   sheet.rows.push_back(std::move(last));
-  auto response = sheet_response(sheet, *format, *separator, context.options.upload_dir);
+  auto response = quantity_sheet(context, std::move(sheet), *format, *separator);
   if (response) response->with("Vary", "Accept");
   return response;
 }

@@ -3,6 +3,7 @@
 
 #include "net/answer_book.h"
 #include "net/painted_keys.h"
+#include "net/readable_area.h"
 #include "net/record_csv.h"
 #include "net/record_measures.h"
 #include "net/record_place.h"
@@ -62,12 +63,20 @@ Result<store::Store::RecordPage> page_by_measure(const RouteContext& context, co
   return page;
 }
 
-// The columns of `records_csv`, with values of their own types.
+// The columns of `records_csv`, with values of their own types; under a layer the last one has areas in a unit that people read.
 Result<Response> records_book(const RouteContext& context, const store::Store::RecordPage& page,
                               const RecordMeasures& measures, const WordsOfTables& words) {
-  std::vector<std::string> heads{"key"};
-  for (const Column& column : page.table.columns) heads.push_back(column.slug);
-  heads.insert(heads.end(), measures.names().begin(), measures.names().end());
+  std::vector<BookColumn> heads{{"key", {}}};
+  for (const Column& column : page.table.columns) heads.push_back({column.slug, {}});
+  for (const std::string& name : measures.names()) heads.push_back({name, {}});
+  const bool has_area = std::ranges::count(measures.names(), kAreaMeasure) > 0;
+  double largest_m2 = 0;
+  for (const Record& record : page.records) largest_m2 = std::max(largest_m2, measures.area_m2(record.key));
+  const AreaUnit unit = readable_area(largest_m2);
+  if (has_area) {
+    std::ranges::find(heads, kAreaMeasure, &BookColumn::head)->number_format = number_format(largest_m2);
+    heads.push_back({readable_head(kAreaMeasure, unit), number_format(largest_m2 * unit.per_m2)});
+  }
   Workbook book(context.options.upload_dir, page.table.slug, heads);
   std::vector<BookCell> cells;
   for (const Record& record : page.records) {
@@ -79,6 +88,7 @@ Result<Response> records_book(const RouteContext& context, const store::Store::R
         cells.push_back(book_cell(record, column));
     }
     for (const double value : measures.of(record)) cells.emplace_back(value);
+    if (has_area) cells.emplace_back(measures.area_m2(record.key) * unit.per_m2);
     book.add_row(cells);
   }
   return book.finish(page.table.slug + ".xlsx");

@@ -1,5 +1,7 @@
+#include "core/compensated_sum.h"
 #include "net/as_of.h"
 #include "net/class_names.h"
+#include "net/readable_area.h"
 #include "net/routes.h"
 #include "net/sheet.h"
 #include "net/wire.h"
@@ -142,29 +144,34 @@ Result<std::vector<std::string>> side_names(const RouteContext& context, const r
   return names;
 }
 
-// With names and sums, as people read it.
+// With names and sums, as people read it: in the unit that suits the sum of all.
 Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Layer& columns,
                const std::vector<std::string>& row_names, const std::vector<std::string>& column_names) {
-  Sheet sheet{rows.slug + "-" + columns.slug, {rows.name + " / " + columns.name + ", m²"}, {}};
+  CompensatedSum all_m2;
+  for (const auto& row : table.area_m2)
+    for (const double area_m2 : row) all_m2 += area_m2;
+  const AreaUnit unit = readable_area(all_m2.value());
+  Sheet sheet{rows.slug + "-" + columns.slug, {rows.name + " / " + columns.name + ", " + unit.name}, {}, {}};
   sheet.heads.insert(sheet.heads.end(), column_names.begin(), column_names.end());
   sheet.heads.emplace_back("total");
-  std::vector<double> sums(column_names.size() + 1, 0.0);
+  std::vector<CompensatedSum> sums(column_names.size() + 1);
   for (std::size_t row = 0; row < row_names.size(); ++row) {
     std::vector<SheetCell> cells{row_names[row]};
-    double sum = 0;
+    CompensatedSum sum;
     for (std::size_t column = 0; column < column_names.size(); ++column) {
-      const double area = table.area_m2[row][column];
+      const double area = table.area_m2[row][column] * unit.per_m2;
       cells.emplace_back(area);
       sums[column] += area;
       sum += area;
     }
-    cells.emplace_back(sum);
+    cells.emplace_back(sum.value());
     sums.back() += sum;
     sheet.rows.push_back(std::move(cells));
   }
   std::vector<SheetCell> last{std::string("total")};
-  last.insert(last.end(), sums.begin(), sums.end());
+  for (const CompensatedSum& sum : sums) last.emplace_back(sum.value());
   sheet.rows.push_back(std::move(last));
+  sheet.number_formats.assign(sheet.heads.size(), number_format(all_m2.value() * unit.per_m2));
   return sheet;
 }
 

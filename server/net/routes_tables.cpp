@@ -2,6 +2,7 @@
 #include <map>
 
 #include "core/classification.h"
+#include "core/compensated_sum.h"
 #include "core/key_colors.h"
 #include "core/relation_cycles.h"
 #include "net/answer_book.h"
@@ -376,8 +377,8 @@ Result<Response> areas(const RouteContext& context, const Request& request) {
   auto painted = painted_layers(context, table->id, request.role());
   if (!painted) return tl::unexpected(painted.error());
   struct Sum {
-    double area_m2 = 0;
-    std::map<std::int64_t, std::pair<double, nlohmann::json>> models;
+    CompensatedSum area_m2;
+    std::map<std::int64_t, std::pair<CompensatedSum, nlohmann::json>> models;
   };
   std::map<std::int64_t, Sum> sums;
   for (const PaintedLayer& layer : *painted)
@@ -396,9 +397,9 @@ Result<Response> areas(const RouteContext& context, const Request& request) {
   for (auto& [key, sum] : sums) {
     nlohmann::json models = nlohmann::json::array();
     for (auto& [model, of_model] : sum.models)
-      models.push_back({{"model", model}, {"area_m2", of_model.first}, {"layers", std::move(of_model.second)}});
+      models.push_back({{"model", model}, {"area_m2", of_model.first.value()}, {"layers", std::move(of_model.second)}});
     list.push_back({{"key", key},
-                    {"area_m2", sum.area_m2},
+                    {"area_m2", sum.area_m2.value()},
                     {"has_record", !std::binary_search(missing->begin(), missing->end(), key)},
                     {"models", std::move(models)}});
   }

@@ -1,6 +1,9 @@
 #include "net/sheet.h"
 
+#include <algorithm>
+
 #include "core/csv.h"
+#include "net/readable_area.h"
 #include "net/workbook.h"
 
 namespace strata::net {
@@ -48,12 +51,43 @@ Response csv_response(const Sheet& sheet, char separator) {
   return response;
 }
 
+constexpr std::string_view kArea = "area_m2";
+
+double largest_of(const Sheet& sheet, std::size_t column) {
+  double largest = 0;
+  for (const auto& row : sheet.rows)
+    if (const auto* number = std::get_if<double>(&row[column])) largest = std::max(largest, *number);
+  return largest;
+}
+
+SheetCell in_unit(const SheetCell& cell, const AreaUnit& unit) {
+  const auto* area_m2 = std::get_if<double>(&cell);
+  return area_m2 ? SheetCell(*area_m2 * unit.per_m2) : cell;
+}
+
 }  // namespace
+
+void add_readable_areas(Sheet& sheet) {
+  const std::size_t count = sheet.heads.size();
+  sheet.number_formats.resize(count);
+  for (std::size_t column = 0; column < count; ++column) {
+    if (!sheet.heads[column].ends_with(kArea)) continue;
+    const double largest_m2 = largest_of(sheet, column);
+    const AreaUnit unit = readable_area(largest_m2);
+    sheet.heads.push_back(readable_head(sheet.heads[column], unit));
+    sheet.number_formats[column] = number_format(largest_m2);
+    sheet.number_formats.push_back(number_format(largest_m2 * unit.per_m2));
+    for (auto& row : sheet.rows) row.push_back(in_unit(row[column], unit));
+  }
+}
 
 Result<Response> sheet_response(const Sheet& sheet, SheetFormat format, char separator,
                                 const std::filesystem::path& folder) {
   if (format == SheetFormat::csv) return csv_response(sheet, separator);
-  Workbook book(folder, sheet.name, sheet.heads);
+  std::vector<BookColumn> columns;
+  for (const std::string& head : sheet.heads) columns.push_back({head, {}});
+  for (std::size_t i = 0; i < sheet.number_formats.size(); ++i) columns[i].number_format = sheet.number_formats[i];
+  Workbook book(folder, sheet.name, columns);
   std::vector<BookCell> cells;
   for (const auto& row : sheet.rows) {
     cells.clear();

@@ -24,8 +24,13 @@ using SheetCell = std::variant<std::monostate, double, std::string>;
 struct Sheet {
   std::string name;  // of the file, without its ending
   std::vector<std::string> heads;
-  std::vector<std::vector<SheetCell>> rows;  // of as many cells
+  std::vector<std::vector<SheetCell>> rows;   // of as many cells
+  std::vector<std::string> number_formats{};  // of XLSX, by column; may be shorter, or empty where spreadsheets choose
 };
+
+// Columns whose heads end with `area_m2` stay as scripts know them; behind all others they come again in the unit that suits the
+// largest value of each.
+void add_readable_areas(Sheet& sheet);
 
 // As CSV, with a byte order mark, as spreadsheets want it, where a text that one would run as a formula is guarded; or as XLSX by way of
 // a file in `folder`. The filters of its head leave the last row out, which is one of totals.

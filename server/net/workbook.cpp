@@ -102,7 +102,7 @@ struct Workbook::Impl {
   lxw_workbook* book = nullptr;  // ended by workbook_close alone
   lxw_worksheet* sheet = nullptr;
   lxw_format *bold = nullptr, *date = nullptr, *time = nullptr;
-  lxw_col_t columns = 0;
+  std::vector<lxw_format*> numbers;  // by column; null: as Excel shows them
   lxw_row_t rows = 1;
   bool is_filtered = false;
   lxw_error error = LXW_NO_ERROR;
@@ -116,7 +116,7 @@ struct Workbook::Impl {
   }
 };
 
-Workbook::Workbook(const fs::path& folder, const std::string& sheet_name, const std::vector<std::string>& heads)
+Workbook::Workbook(const fs::path& folder, const std::string& sheet_name, const std::vector<BookColumn>& columns)
     : impl_(std::make_unique<Impl>()) {
   Impl& book = *impl_;
   book.file = folder / (to_string(random_uuid()) + ".xlsx");
@@ -137,10 +137,13 @@ Workbook::Workbook(const fs::path& folder, const std::string& sheet_name, const 
   book.time = workbook_add_format(book.book);
   format_set_num_format(book.time, "yyyy-mm-dd hh:mm:ss");
   worksheet_freeze_panes(book.sheet, 1, 0);
-  for (const std::string& head : heads) {
+  for (const auto& [head, number_format] : columns) {
     const auto width = std::clamp(static_cast<double>(head.size()) + 4, 12.0, 40.0);
-    book.note(worksheet_set_column(book.sheet, book.columns, book.columns, width, nullptr));
-    book.note(worksheet_write_string(book.sheet, 0, book.columns++, cell_text(head).c_str(), book.bold));
+    const auto column = static_cast<lxw_col_t>(book.numbers.size());
+    book.note(worksheet_set_column(book.sheet, column, column, width, nullptr));
+    book.note(worksheet_write_string(book.sheet, 0, column, cell_text(head).c_str(), book.bold));
+    book.numbers.push_back(number_format.empty() ? nullptr : workbook_add_format(book.book));
+    if (book.numbers.back()) format_set_num_format(book.numbers.back(), number_format.c_str());
   }
 }
 
@@ -158,7 +161,7 @@ void Workbook::add_row(const std::vector<BookCell>& cells) {
     if (const auto* is_true = std::get_if<bool>(&cell)) {
       book.note(worksheet_write_boolean(book.sheet, book.rows, column, *is_true, nullptr));
     } else if (const auto* number = std::get_if<double>(&cell)) {
-      book.note(worksheet_write_number(book.sheet, book.rows, column, *number, nullptr));
+      book.note(worksheet_write_number(book.sheet, book.rows, column, *number, book.numbers.at(column)));
     } else if (const auto* date = std::get_if<BookDate>(&cell)) {
       lxw_datetime when{date->year, date->month, date->day, date->hour, date->minute, date->second};
       book.note(worksheet_write_datetime(book.sheet, book.rows, column, &when, date->has_time ? book.time : book.date));
@@ -173,9 +176,9 @@ void Workbook::add_row(const std::vector<BookCell>& cells) {
 // At once: the library takes no row before the one that is being written.
 void Workbook::end_filter() {
   Impl& book = *impl_;
-  if (book.is_filtered || !book.sheet || book.columns == 0) return;
+  if (book.is_filtered || !book.sheet || book.numbers.empty()) return;
   book.is_filtered = true;
-  book.note(worksheet_autofilter(book.sheet, 0, 0, book.rows - 1, static_cast<lxw_col_t>(book.columns - 1)));
+  book.note(worksheet_autofilter(book.sheet, 0, 0, book.rows - 1, static_cast<lxw_col_t>(book.numbers.size() - 1)));
 }
 
 Result<Response> Workbook::finish(const std::string& filename) {

@@ -25,6 +25,11 @@ using BookCell = std::variant<std::monostate, bool, double, BookDate, std::strin
 // are text.
 BookCell book_cell(const Record& record, const Column& column);
 
+struct BookColumn {
+  std::string head;
+  std::string number_format;  // as Excel writes it; empty: as Excel shows numbers
+};
+
 // A workbook (XLSX) of one sheet on its way to a file: rows are written as they come, so that it takes little memory however many there
 // are. Texts are texts, also those that look like formulas or like escapes (`_x000D_`); what XML cannot hold is escaped, and beyond the
 // 32 767 characters of Excel's cells they end in an ellipsis.
@@ -33,7 +38,7 @@ class Workbook {
   static constexpr std::size_t kMostRows = 1'048'575;  // beside the head
 
   // In a file of its own in the folder. The first row is bold and stays in sight.
-  Workbook(const std::filesystem::path& folder, const std::string& sheet_name, const std::vector<std::string>& heads);
+  Workbook(const std::filesystem::path& folder, const std::string& sheet_name, const std::vector<BookColumn>& columns);
   ~Workbook();
   Workbook(const Workbook&) = delete;
   Workbook& operator=(const Workbook&) = delete;

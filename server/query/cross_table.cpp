@@ -4,6 +4,7 @@
 #include <bit>
 #include <unordered_map>
 
+#include "core/compensated_sum.h"
 #include "core/question.h"
 #include "query/tile_table.h"
 
@@ -14,7 +15,7 @@ constexpr std::uint64_t kNone = std::uint64_t{1} << 32;  // beyond the bits of a
 
 struct Sum {
   std::uint64_t texels = 0;
-  double area = 0;
+  CompensatedSum area;
 };
 
 // One layer at the texels of a map.
@@ -122,7 +123,7 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
   table.texels.assign(row_side.size(), std::vector<std::uint64_t>(column_side.size(), 0));
   for (const auto& [pair, sum] : sums) {
     const std::size_t row = row_side.place(pair.first), column = column_side.place(pair.second);
-    table.area_m2[row][column] = sum.area * metres_per_unit * metres_per_unit;
+    table.area_m2[row][column] = sum.area.value() * metres_per_unit * metres_per_unit;
     table.texels[row][column] = sum.texels;
   }
   return table;

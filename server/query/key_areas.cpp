@@ -39,7 +39,8 @@ std::map<std::int64_t, KeyArea> key_areas(const LayerView& view, const mesh::Sur
   }
   std::map<std::int64_t, KeyArea> areas;
   for (const auto& [bits, sum] : sums)
-    areas[bits] = {sum.texels, sum.area * metres_per_unit * metres_per_unit, sum.lowest + origin, sum.highest + origin};
+    areas[bits] = {sum.texels, sum.area.value() * metres_per_unit * metres_per_unit, sum.lowest + origin,
+                   sum.highest + origin};
   return areas;
 }
 

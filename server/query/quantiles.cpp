@@ -27,7 +27,7 @@ class Reached {
   explicit Reached(double area) : area_(area) {}
   void add(double value, double area) {
     sum_ += area;
-    while (found_ < kQuantiles.size() && sum_ >= kQuantiles[found_] * area_) values_[found_++] = value;
+    while (found_ < kQuantiles.size() && sum_.value() >= kQuantiles[found_] * area_) values_[found_++] = value;
     last_ = value;
   }
   Quantiles finish() {
@@ -37,7 +37,8 @@ class Reached {
 
  private:
   const double area_;
-  double sum_ = 0, last_ = 0;
+  CompensatedSum sum_;
+  double last_ = 0;
   std::size_t found_ = 0;
   Quantiles values_{};
 };
@@ -46,12 +47,13 @@ class Reached {
 
 std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap& map, const TexelSelection* within,
                                    const TileSums& sums) {
-  if (!(sums.area > 0)) return std::nullopt;
+  const double whole = sums.area.value();
+  if (!(whole > 0)) return std::nullopt;
   const ValueType type = view.layer.type;
-  Reached reached(sums.area);
+  Reached reached(whole);
   if (!sums.keys.empty()) {
     std::map<double, double> area_of;
-    for (const auto& key : sums.keys) area_of[decode_value(type, key.bits)] += key.area;
+    for (const auto& key : sums.keys) area_of[decode_value(type, key.bits)] += key.area.value();
     for (const auto& [value, area] : area_of) reached.add(value, area);
     return reached.finish();
   }
@@ -75,7 +77,7 @@ std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap
   for (std::size_t digit = 0; digit < kDigits; ++digit) {
     const double until = below + upper[digit];
     for (const double share : kQuantiles)
-      if (upper[digit] > 0 && until >= share * sums.area * (1 - 1e-9) && below <= share * sums.area * (1 + 1e-9))
+      if (upper[digit] > 0 && until >= share * whole * (1 - 1e-9) && below <= share * whole * (1 + 1e-9))
         lower[digit].resize(kDigits, 0.0);
     below = until;
   }

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "core/compensated_sum.h"
 #include "core/question.h"
 #include "query/pieces.h"
 #include "query/texel_values.h"
@@ -27,7 +28,7 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
   struct Sum {
     double value = 0;
     std::uint64_t texels = 0;
-    double area = 0;
+    CompensatedSum area;
   };
   std::unordered_map<std::uint32_t, Sum> sums;
   std::uint32_t last_class = 0;
@@ -52,6 +53,7 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
   }
   const PieceCounts pieces = count_pieces(view, map, graph, nullptr, classes);
   Quantities out;
+  CompensatedSum area;
   out.surface_m2 = map.area_total * m2_per_unit2;
   std::vector<std::pair<double, std::uint32_t>> order;  // ranges ascend with their number, values with themselves
   for (const auto& [number, sum] : sums) order.emplace_back(classes.each ? sum.value : double(number), number);
@@ -67,12 +69,13 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
     }
     quantity.pieces = pieces.of_class.at(number);
     quantity.texels = sum.texels;
-    quantity.area_m2 = sum.area * m2_per_unit2;
+    quantity.area_m2 = sum.area.value() * m2_per_unit2;
     out.sum.pieces += quantity.pieces;
     out.sum.texels += quantity.texels;
-    out.sum.area_m2 += quantity.area_m2;
+    area += sum.area;
     out.classes.push_back(quantity);
   }
+  out.sum.area_m2 = area.value() * m2_per_unit2;
   return out;
 }
 

@@ -68,23 +68,15 @@ TileSums join(const std::vector<std::shared_ptr<const TileSums>>& parts) {
   std::unordered_map<std::uint32_t, std::uint32_t> index;
   for (const auto& part : parts) {
     if (part->texels == 0) continue;
-    if (all.texels == 0) {
-      all.min = part->min;
-      all.max = part->max;
-    }
-    all.min = std::min(all.min, part->min);
-    all.max = std::max(all.max, part->max);
+    const double before = all.area.value(), more = part->area.value();
+    const double apart = before > 0 && more > 0 ? part->mean() - all.mean() : 0;
+    all.area += part->area;
+    all.weighted += part->weighted;
+    all.squares += part->squares;
+    if (apart != 0) all.squares += apart * apart * before * more / all.area.value();
+    all.min = all.texels == 0 ? part->min : std::min(all.min, part->min);
+    all.max = all.texels == 0 ? part->max : std::max(all.max, part->max);
     all.texels += part->texels;
-    if (all.area == 0) {
-      all.mean = part->mean;
-      all.squares = part->squares;
-      all.area = part->area;
-    } else if (part->area > 0) {
-      const double area = all.area + part->area, apart = part->mean - all.mean;
-      all.squares += part->squares + apart * apart * all.area * part->area / area;
-      all.mean += apart * part->area / area;
-      all.area = area;
-    }
     all.too_many_keys |= part->too_many_keys;
     if (all.too_many_keys) continue;
     for (const auto& key : part->keys) {
@@ -115,16 +107,17 @@ Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const 
   if (request.perimeter) out.perimeter_m = 0;
   if (sums.texels == 0) return out;
   out.texels = sums.texels;
-  out.area_m2 = sums.area * m2_per_unit2;
+  const double area = sums.area.value();
+  out.area_m2 = area * m2_per_unit2;
   out.min = sums.min;
   out.max = sums.max;
-  // Rounding must not push the mean of a constant layer beyond its value.
-  out.mean = sums.area > 0 ? std::clamp(sums.mean, out.min, out.max) : (out.min + out.max) / 2;
-  out.std = sums.area > 0 ? std::sqrt(sums.squares / sums.area) : 0;
+  out.mean = sums.mean();
+  out.std = area > 0 ? std::sqrt(sums.squares / area) : 0;
   for (const auto& key : sums.keys) {
-    const glm::dvec3 centroid = key.area > 0 ? key.weighted_position / key.area : (key.lowest + key.highest) / 2.0;
-    out.keys[decode_value(type, key.bits)] = {key.texels, key.area * m2_per_unit2, centroid + origin,
-                                              key.lowest + origin, key.highest + origin};
+    const double of_key = key.area.value();
+    const glm::dvec3 centroid = of_key > 0 ? key.weighted_position / of_key : (key.lowest + key.highest) / 2.0;
+    out.keys[decode_value(type, key.bits)] = {key.texels, of_key * m2_per_unit2, centroid + origin, key.lowest + origin,
+                                              key.highest + origin};
   }
 
   TileHistogram histogram;
@@ -134,7 +127,7 @@ Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const 
     for (const auto& key : sums.keys) {
       const auto bin = static_cast<std::size_t>(bin_of(decode_value(type, key.bits), out.min, out.max));
       histogram.texels[bin] += key.texels;
-      histogram.area[bin] += key.area;
+      histogram.area[bin] += key.area.value();
     }
   }
   const double range = out.max - out.min;

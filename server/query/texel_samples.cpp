@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
+#include "core/compensated_sum.h"
 #include "query/value_classes.h"
 
 namespace strata::query {
@@ -24,7 +26,8 @@ struct CellHash {
 };
 
 struct CellSum {
-  double area_m2 = 0, weight = 0, weighted_value = 0;
+  CompensatedSum area_m2, weight, weighted_value;
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;  // value
   glm::dvec3 weighted_position{0};
   std::vector<std::pair<std::uint32_t, double>> keys;  // few in one cell
 };
@@ -65,6 +68,8 @@ Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, do
     sum.area_m2 += sample.area_m2;
     sum.weight += weight;
     sum.weighted_value += weight * sample.value;
+    sum.lowest = std::min(sum.lowest, sample.value);
+    sum.highest = std::max(sum.highest, sample.value);
     sum.weighted_position += weight * (sample.position - texels.origin);
     if (has_keys) add_key(sum, sample.bits, weight);
     return cells.size() <= kMostCells;
@@ -81,8 +86,9 @@ Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, do
   samples.reserve(order.size());
   for (const Cell& cell : order) {
     const CellSum& sum = cells.at(cell);
-    TexelSample sample{texels.origin + sum.weighted_position / sum.weight, sum.area_m2, 0,
-                       sum.weighted_value / sum.weight};
+    const double weight = sum.weight.value();
+    TexelSample sample{texels.origin + sum.weighted_position / weight, sum.area_m2.value(), 0,
+                       std::clamp(sum.weighted_value.value() / weight, sum.lowest, sum.highest)};
     if (has_keys) {
       sample.bits = largest_key(sum);
       sample.value = decode_value(texels.view.layer.type, sample.bits);

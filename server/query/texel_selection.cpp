@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/compensated_sum.h"
 #include "mesh/parallel.h"
 
 namespace strata::query {
@@ -13,6 +14,7 @@ constexpr std::size_t kSlotsAtOnce = 4096;
 SelectionExtent measure_slots(const mesh::SurfaceMap& map, const TexelSelection* selection, std::size_t first,
                               std::size_t last) {
   SelectionExtent extent;
+  CompensatedSum area;
   for (std::size_t slot = first; slot < last; ++slot) {
     std::uint64_t rest = map.surface_mask[slot];
     if (selection) rest &= (*selection)[slot];
@@ -22,9 +24,10 @@ SelectionExtent measure_slots(const mesh::SurfaceMap& map, const TexelSelection*
       extent.low = extent.texels == 0 ? position : glm::min(extent.low, position);
       extent.high = extent.texels == 0 ? position : glm::max(extent.high, position);
       ++extent.texels;
-      extent.area += map.area[slot * 64 + static_cast<std::size_t>(texel)];
+      area += map.area[slot * 64 + static_cast<std::size_t>(texel)];
     }
   }
+  extent.area = area.value();
   return extent;
 }
 
@@ -39,13 +42,15 @@ SelectionExtent measure_selection(const mesh::SurfaceMap& map, const TexelSelect
         measure_slots(map, selection, first, std::min(slots, first + kSlotsAtOnce));
   });
   SelectionExtent all;
+  CompensatedSum area;
   for (const SelectionExtent& part : parts) {
     if (part.texels == 0) continue;
     all.low = all.texels == 0 ? part.low : glm::min(all.low, part.low);
     all.high = all.texels == 0 ? part.high : glm::max(all.high, part.high);
     all.texels += part.texels;
-    all.area += part.area;
+    area += part.area;
   }
+  all.area = area.value();
   return all;
 }
 

@@ -67,6 +67,11 @@ void TileSums::Key::add(const Key& other) {
   highest = glm::max(highest, other.highest);
 }
 
+double TileSums::mean() const {
+  if (!(area.value() > 0)) return (min + max) / 2;
+  return std::clamp(weighted.value() / area.value(), min, max);  // of a constant its value, whatever is rounded
+}
+
 TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type, const mesh::SurfaceMap& map,
                   const TexelSelection* within) {
   TileSums sums;
@@ -82,6 +87,7 @@ TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type, con
                    if (sums.texels++ == 0) near = value;
                    const double difference = value - near;
                    sums.area += area;
+                   sums.weighted += area * value;
                    differences += area * difference;
                    squares += area * difference * difference;
                    sums.min = std::min(sums.min, value);
@@ -89,10 +95,8 @@ TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type, con
                    if (has_keys) keys.add(slot, texel, bits, area);
                  });
   if (sums.texels == 0) return {};
-  if (sums.area > 0) {
-    sums.mean = near + differences / sums.area;
-    sums.squares = std::max(0.0, squares - differences * differences / sums.area);
-  }
+  if (const double area = sums.area.value(); area > 0)
+    sums.squares = std::max(0.0, squares - differences * differences / area);
   if (has_keys) keys.finish(sums);
   return sums;
 }

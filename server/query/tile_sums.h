@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/compensated_sum.h"
 #include "query/texel_selection.h"
 #include "query/values.h"
 
@@ -20,19 +21,23 @@ constexpr int kHistogramBins = 64;
 // without loss (Chan, Golub, LeVeque 1983), so that after a stroke only its tiles are counted again.
 struct TileSums {
   std::uint64_t texels = 0;
-  double area = 0;
+  CompensatedSum area;
   double min = 0, max = 0;
-  double mean = 0, squares = 0;  // weighted by area: the mean, and the sum of area × (value − mean)²
+  CompensatedSum weighted;  // sum of area × value
+  double squares = 0;       // sum of area × (value − mean)²
   struct Key {
     std::uint32_t bits = 0;
     std::uint64_t texels = 0;
-    double area = 0;
+    CompensatedSum area;
     glm::dvec3 weighted_position{0};  // sum of area × position
     glm::dvec3 lowest{0}, highest{0};
     void add(const Key& other);
   };
   std::vector<Key> keys;  // of integer types, ascending bits; none where there are more than kMaxStatisticsKeys
   bool too_many_keys = false;
+
+  // Weighted by area; without any, the middle.
+  double mean() const;
 };
 TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type, const mesh::SurfaceMap& map,
                   const TexelSelection* within);

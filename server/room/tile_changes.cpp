@@ -146,8 +146,8 @@ std::vector<store::TileKeys> sum_tiles(
     store::TileKeys& of_tile = out.emplace_back(store::TileKeys{address, {}});
     for (const auto& key : query::surface_keys(*tile, address, layer, map)) {
       const auto value = static_cast<std::int64_t>(decode_value(layer.type, key.bits));
-      of_tile.keys.push_back({apart ? std::optional(value) : std::nullopt, key.texels, key.area, key.weighted_position,
-                              key.lowest, key.highest});
+      of_tile.keys.push_back({apart ? std::optional(value) : std::nullopt, key.texels, key.area.value(),
+                              key.weighted_position, key.lowest, key.highest});
     }
   }
   return out;

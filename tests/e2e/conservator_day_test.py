@@ -179,7 +179,7 @@ def report(server, keys):
     assert lines[-1]["class"] == "total" and abs(float(lines[-1]["area_m2"]) - answer["sum"]["area_m2"]) < 1e-12, lines
     book = Workbook(server.ok("GET", NORTH + "/layers/damage/quantities?f=xlsx").body)
     assert [each["class"] for each in book.records] == ["Flaking", "Salts", "total"] and book.records[0]["pieces"] == 1, book.records
-    near(book.records[2]["area_m2"], answer["sum"]["area_m2"], 1e-12)
+    near(book.records[2]["area (cm²)"], 1e4 * answer["sum"]["area_m2"], 1e-12)
     [crack] = [each for each in server.ok("GET", SOUTH + "/layers/damage/quantities").json()["quantities"] if each["key"] == keys["loss"]]
     near(crack["area_m2"], swept(2, 60))
     places = rows_of(server.ok("GET", "/tables/places/records?f=csv").body)

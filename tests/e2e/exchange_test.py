@@ -156,17 +156,26 @@ def check_workbooks(server, pieces):
 
     on_layer = Workbook(server.get(pieces + "/records?f=xlsx&sortby=-area_m2").body).records
     areas = {q["key"]: q["area_m2"] for q in server.get(pieces + "/quantities").json()["quantities"]}
-    assert [r["key"] for r in on_layer] == [1, 2, 3] and on_layer[2]["area_m2"] == 0, on_layer
+    assert [r["key"] for r in on_layer] == [1, 2, 3] and on_layer[2]["area_m2"] == on_layer[2]["area (cm²)"] == 0, on_layer
     near(on_layer[0]["area_m2"], areas[1], 1e-12)
+    near(on_layer[0]["area (cm²)"], 1e4 * areas[1], 1e-12)
 
     book = Workbook(server.get(pieces + "/quantities?f=xlsx").body)
     expected = rows_of(server.get(pieces + "/quantities?f=csv"))
-    assert book.formulas == [] and book.filtered == "A1:F3" and len(book.records) == 3, book.filtered
+    assert book.formulas == [] and book.filtered == "A1:G3" and "#,##0.000" in book.codes.values() and len(book.records) == 3, book.filtered
     for row, written in zip(book.records, expected):
-        for head in ("pieces", "texels", "area_m2", "percent_of_surface"):
+        for head in ("pieces", "texels", "area_m2", "percent_of_surface", "area (cm²)"):
             near(row[head], float(written[head]), 1e-15)  # a workbook has 16 digits
+        near(row["area (cm²)"], 1e4 * float(written["area_m2"]), 1e-15)
     assert [row["class"] for row in book.records] == ["Skull", hostile, "total"]
     assert [row["class"] for row in Workbook(server.get("/tables/pieces/quantities", headers={"Accept": XLSX}).body).records] == ["Skull", hostile, "total"]
+    of_table = Workbook(server.get("/tables/pieces/quantities?f=xlsx").body)
+    assert of_table.rows[0][4:] == ["area_m2", "sheet/pieces area_m2", "area (cm²)", "sheet/pieces area (cm²)"], of_table.rows[0]
+    cross = {"rows": "pieces", "columns": "pieces"}
+    text = server.ok("POST", M + "/cross-table?f=csv", cross).body.decode("utf-8-sig")
+    book = Workbook(server.ok("POST", M + "/cross-table?f=xlsx", cross).body)
+    assert text.startswith('"Pieces / Pieces, cm²",') and book.rows[0][0] == "Pieces / Pieces, cm²", (text, book.rows)
+    near(book.rows[-1][-1], 1e4 * (areas[1] + areas[2]), 1e-12)
     wait_for(lambda: os.listdir(os.path.join(server.data, "uploads")) == [], "that nothing stays")  # they go after the answer
 
 

@@ -12,6 +12,7 @@
 #include "mesh/packed_position.h"
 #include "query/cross_table.h"
 #include "query/key_areas.h"
+#include "query/texel_samples.h"
 
 namespace strata::query {
 namespace {
@@ -167,6 +168,43 @@ Quantiles quantiles_of(std::vector<Sample> all) {
     while (next < found.size() && sum >= kQuantiles[next] * area) found[next++] = s.value;
   }
   return found;
+}
+
+TEST(QueryStatistics, the_mean_of_values_of_mixed_size_is_right_to_the_last_digit) {
+  const mesh::SurfaceMap map = make_map(1024, 1.0, 3);
+  std::mt19937 random(5);
+  LayerView view = make_layer(ValueType::f32, map, 2, 1, true);
+  for (auto& [address, tile] : view.snapshot.tiles) {
+    auto mixed = std::make_shared<TileData>(ValueType::f32);
+    for (int i = 0; i < kTexelsPerTile; ++i) {
+      const float size = std::pow(10.0f, static_cast<float>(random() % 17) - 8);
+      mixed->write(i, std::bit_cast<std::uint32_t>(random() % 2 ? size : -size));
+    }
+    tile = mixed;
+  }
+  __extension__ using Wide = __int128;  // products of these values and areas are whole numbers of 2^-76
+  Wide weighted = 0;
+  double area = 0;
+  for (const auto& sample : samples(view, map)) {
+    weighted += static_cast<Wide>(std::ldexp(sample.value * sample.area, 76));
+    area += sample.area;
+  }
+  const double mean = std::ldexp(static_cast<double>(weighted), -76) / area;
+  EXPECT_DOUBLE_EQ(statistics(view, map, kOrigin, 1).mean, mean);
+}
+
+TEST(QueryStatistics, cells_of_a_layer_with_one_value_have_that_value_as_their_mean) {
+  const auto map = std::make_shared<const mesh::SurfaceMap>(make_map(256, 1.0, 3));
+  for (const double value : {66.0, 0.1, -1e-30, 3e38}) {
+    LayerView view = make_layer(ValueType::f32, *map, 2, 1, true);
+    auto tile = std::make_shared<TileData>(ValueType::f32);
+    for (int i = 0; i < kTexelsPerTile; ++i) tile->write(i, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+    for (auto& [address, each] : view.snapshot.tiles) each = tile;
+    const auto cells = samples_by_cell({view, map, {}, kOrigin, 0.001}, 0.25);
+    ASSERT_TRUE(cells.has_value());
+    ASSERT_GT(cells->size(), 100u);
+    for (const TexelSample& cell : *cells) ASSERT_EQ(cell.value, double{static_cast<float>(value)});
+  }
 }
 
 TEST(QueryStatistics, quantiles_are_those_of_all_texels_in_order) {

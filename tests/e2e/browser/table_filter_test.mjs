@@ -243,7 +243,7 @@ try {
   const crossed = await saved(() => areas.getByRole("button", { name: /^CSV: .*together/ }).click());
   assert.equal(crossed.name, "pieces-units.csv");
   const [head, first] = crossed.bytes.toString().replace("\ufeff", "").split("\r\n");
-  assert.equal(head, "\"pieces / Units, m²\",SU 2,–,total");
+  assert.equal(head, "\"pieces / Units, cm²\",SU 2,–,total");
   assert.match(first, /^Sherd 1,/);
   assert.equal((await saved(() => areas.getByRole("button", { name: /^XLSX: .*together/ }).click())).bytes.subarray(0, 2).toString(), "PK");
 

@@ -1,0 +1,28 @@
+#pragma once
+
+namespace strata {
+
+// A sum of doubles that keeps what rounding takes from it (Neumaier 1974, with the branch-free step of Knuth, TAOCP 2, 4.2.2): as good
+// as one in twice the digits, whatever the sizes and the order of what is added. Only of finite numbers.
+class CompensatedSum {
+ public:
+  CompensatedSum(double value = 0) : sum_(value) {}
+
+  CompensatedSum& operator+=(double value) {
+    const double sum = sum_ + value, added = sum - sum_;
+    lost_ += (sum_ - (sum - added)) + (value - added);
+    sum_ = sum;
+    return *this;
+  }
+  CompensatedSum& operator+=(const CompensatedSum& other) {
+    *this += other.sum_;
+    lost_ += other.lost_;
+    return *this;
+  }
+  double value() const { return sum_ + lost_; }
+
+ private:
+  double sum_, lost_ = 0;
+};
+
+}  // namespace strata
