@@ -14,7 +14,8 @@
 namespace strata::net {
 namespace {
 
-constexpr std::uint64_t kMaxRasterBytes = (16384ull * 16384 * 2 * 4) + (1u << 20);  // of the largest layer
+constexpr std::uint64_t kTexelBytes = 9;  // of files that are imported: a double and whether it is valid
+constexpr std::uint64_t kMaxRasterBytes = (16384ull * 16384 * kTexelBytes) + (1u << 20);  // of the largest layer
 
 struct Format {
   const char* extension;
@@ -62,9 +63,10 @@ Result<Response> read_texels(const RouteContext& context, ByteBudget& budget, co
 }
 
 Result<void> check_size(const Layer& layer, std::uint64_t bytes) {
-  if (bytes <= raster_bytes(layer)) return {};
-  return fail(413, "Raster too large",
-              "A raster of this layer has at most " + std::to_string(raster_bytes(layer)) + " bytes.", "body");
+  const std::uint64_t most = std::uint64_t(layer.resolution) * layer.resolution * kTexelBytes + (1u << 20);
+  if (bytes <= most) return {};
+  return fail(413, "Raster too large", "A raster of this layer has at most " + std::to_string(most) + " bytes.",
+              "body");
 }
 
 // Before the body, where its length is told.

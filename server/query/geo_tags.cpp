@@ -31,17 +31,6 @@ std::span<const T> list_of(TIFF* tiff, std::uint32_t tag, TIFFDataType type) {
   return list ? std::span<const T>(list, count) : std::span<const T>();
 }
 
-void read_nodata(TIFF* tiff, MapTiff& info) {
-  const auto text = list_of<char>(tiff, kNodata, TIFF_ASCII);
-  std::string_view number(text.data(), text.size());
-  number = number.substr(0, number.find('\0'));
-  while (!number.empty() && number.front() == ' ') number.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (!number.empty() && error == std::errc() && std::isfinite(value))
-    info.nodata = value;  // NaN is never valid anyway
-}
-
 struct GeoKeys {
   bool is_point = false, is_geographic = false;
   int projected = 0;
@@ -69,8 +58,25 @@ WorldFile shifted(WorldFile world, double half) {
 
 }  // namespace
 
+std::optional<double> nodata_of(TIFF* tiff) {
+  const auto text = list_of<char>(tiff, kNodata, TIFF_ASCII);
+  std::string_view number(text.data(), text.size());
+  number = number.substr(0, number.find('\0'));
+  while (!number.empty() && number.front() == ' ') number.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  return !number.empty() && error == std::errc() && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+void set_nodata(TIFF* tiff, const char* number) {
+  static char name[] = "GDALNoDataValue";  // libtiff keeps no copy
+  static const TIFFFieldInfo field{kNodata, -1, -1, TIFF_ASCII, FIELD_CUSTOM, 1, 0, name};
+  TIFFMergeFieldInfo(tiff, &field, 1);
+  TIFFSetField(tiff, kNodata, number);
+}
+
 Result<void> read_geo_tags(TIFF* tiff, MapTiff& info) {
-  read_nodata(tiff, info);
+  info.nodata = nodata_of(tiff);
   const GeoKeys keys = read_keys(tiff);
   info.in_degrees = keys.is_geographic;
   if (keys.projected > 0) info.crs = "EPSG:" + std::to_string(keys.projected);

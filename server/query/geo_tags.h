@@ -11,4 +11,8 @@ namespace strata::query {
 // does: libgeotiff would bring PROJ and its 23 MB of data for two numbers. Refused (422): pixels without area.
 Result<void> read_geo_tags(TIFF* tiff, MapTiff& info);
 
+// GDAL's nodata of an open TIFF; nothing where there is none or it is NaN, which is never a value.
+std::optional<double> nodata_of(TIFF* tiff);
+void set_nodata(TIFF* tiff, const char* number);
+
 }  // namespace strata::query

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <bit>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -5,6 +7,7 @@
 
 #include "query/raster.h"
 #include "query/raster_rows.h"
+#include "query/raster_samples.h"
 
 namespace strata::query {
 namespace {
@@ -16,8 +19,6 @@ std::string dtype_of(ValueType type) {
   static constexpr const char* kNames[] = {"|u1", "<u2", "<u4", "|i1", "<i2", "<i4", "<f2", "<f4"};
   return kNames[static_cast<std::size_t>(type)];
 }
-
-std::string descr_of(ValueType type) { return "[('value','" + dtype_of(type) + "'),('valid','|b1')]"; }
 
 struct Header {
   std::string descr;  // without blanks, with single quotes
@@ -70,6 +71,54 @@ Result<void> check_shape(const Layer& layer, const Header& header) {
                        raster_needs(layer) + ".");
 }
 
+// "'>f4'"
+std::optional<SampleForm> form_of(std::string_view dtype) {
+  if (dtype.size() != 5 || dtype.front() != '\'' || dtype.back() != '\'') return std::nullopt;
+  const char order = dtype[1], kind = dtype[2];
+  if (std::string_view("<>|=").find(order) == std::string_view::npos) return std::nullopt;
+  SampleForm form;
+  form.bytes = dtype[3] - '0';
+  form.is_big_endian = order == '>';
+  if (kind == 'u')
+    form.kind = SampleForm::Kind::unsigned_whole;
+  else if (kind == 'i')
+    form.kind = SampleForm::Kind::signed_whole;
+  else if (kind == 'f')
+    form.kind = SampleForm::Kind::real;
+  else if (kind == 'b')
+    form.kind = SampleForm::Kind::truth;
+  else
+    return std::nullopt;
+  const int least = kind == 'f' ? 2 : 1, most = kind == 'b' ? 1 : 8;
+  const bool is_length = std::has_single_bit(static_cast<unsigned>(std::max(form.bytes, 0)));
+  return is_length && form.bytes >= least && form.bytes <= most ? std::optional(form) : std::nullopt;
+}
+
+// What an element holds: a value, and after it in a structured array whether it is valid.
+struct Element {
+  SampleForm value;
+  std::optional<SampleForm> valid;
+
+  std::size_t bytes() const { return static_cast<std::size_t>(value.bytes + (valid ? valid->bytes : 0)); }
+};
+
+Result<Element> element_of(const std::string& descr) {
+  constexpr std::string_view kFirst = "[('value',", kSecond = "),('valid',", kLast = ")]";
+  if (const auto value = form_of(descr)) return Element{*value, {}};
+  const std::string_view text = descr;
+  constexpr std::size_t kType = 5;  // "'<f4'"
+  if (text.size() == kFirst.size() + kSecond.size() + kLast.size() + 2 * kType && text.starts_with(kFirst) &&
+      text.substr(kFirst.size() + kType).starts_with(kSecond) && text.ends_with(kLast)) {
+    const auto value = form_of(text.substr(kFirst.size(), kType)),
+               valid = form_of(text.substr(text.size() - kLast.size() - kType, kType));
+    if (value && valid && valid->bytes == 1) return Element{*value, valid};
+  }
+  return refuse_raster(
+      "The array's type is " + descr.substr(0, 200) +
+      "; a layer takes bool, whole numbers of 1 to 8 bytes and floating-point ones of 2 to 8, alone or as "
+      "[('value', …), ('valid', '|b1')].");
+}
+
 }  // namespace
 
 Result<std::vector<std::uint8_t>> encode_npy(const Layer& layer, const TileMap& tiles) {
@@ -106,25 +155,27 @@ Result<std::vector<std::uint8_t>> encode_npy(const Layer& layer, const TileMap& 
 Result<TileMap> decode_npy(const Layer& layer, std::span<const std::uint8_t> bytes) {
   auto header = read_header(bytes);
   if (!header) return tl::unexpected(header.error());
-  if (header->descr != descr_of(layer.type))
-    return refuse_raster("The array's type is " + header->descr.substr(0, 200) + ", but the layer needs " +
-                         descr_of(layer.type) + ": the value and whether it is valid.");
-  if (header->fortran_order) return refuse_raster("The array is stored by columns; save it with order='C'.");
+  const auto element = element_of(header->descr);
+  if (!element) return tl::unexpected(element.error());
   if (auto shape = check_shape(layer, *header); !shape) return tl::unexpected(shape.error());
 
-  const int width = bytes_per_texel(layer.type);
-  const auto side = static_cast<std::size_t>(layer.resolution);
+  const auto side = static_cast<std::size_t>(layer.resolution), stride = element->bytes();
   const std::span<const std::uint8_t> data = bytes.subspan(header->data_at);
-  if (data.size() != side * side * (width + 1))
+  if (data.size() != side * side * stride)
     return refuse_raster("The file holds " + std::to_string(data.size()) +
-                         " bytes of texels, but its header promises " + std::to_string(side * side * (width + 1)) +
+                         " bytes of texels, but its header promises " + std::to_string(side * side * stride) +
                          ". It was cut or is damaged.");
   TileMapBuilder builder(layer);
+  const SampleReader reader(layer, element->value);
+  // In the order of the file: memory is read from its begin to its end.
   const std::uint8_t* texel = data.data();
-  for (int row = 0; row < layer.resolution; ++row)
-    for (int x = 0; x < layer.resolution; ++x, texel += width + 1)
-      if (texel[width] != 0)
-        if (auto put = builder.put(x, row, texel); !put) return tl::unexpected(put.error());
+  for (std::size_t slow = 0; slow < side; ++slow)
+    for (std::size_t fast = 0; fast < side; ++fast, texel += stride) {
+      if (element->valid ? texel[element->value.bytes] == 0 : reader.is_nodata(texel)) continue;
+      const auto row = static_cast<int>(header->fortran_order ? fast : slow),
+                 x = static_cast<int>(header->fortran_order ? slow : fast);
+      if (auto put = reader.put(builder, x, row, texel); !put) return tl::unexpected(put.error());
+    }
   return builder.finish();
 }
 

@@ -53,7 +53,7 @@ Result<void> TileMapBuilder::put(int x, int file_row, const std::uint8_t* value)
   std::memcpy(&bits, value, bytes_);
   if (is_float(type_) && !std::isfinite(decode_value(type_, bits)))
     return refuse_raster("The value in column " + std::to_string(x) + " of row " + std::to_string(file_row) +
-                         " is marked valid but is not a finite number. Mark such texels as not valid.");
+                         " is not a finite number. Mark such texels as not valid.");
   const int y = resolution_ - 1 - file_row;
   auto& tile = tiles_[std::size_t(y / kTileSize) * tiles_per_side_ + x / kTileSize];
   if (!tile) tile = std::make_shared<TileData>(type_);

@@ -213,7 +213,7 @@ def check_paths(server):
 
 def check_sizes(server):
     """A raster may be as large as its layer; what is larger is refused before it travels."""
-    for size, is_refused in ((2 * 2048 * 2048 + 128, False), (10 << 20, True), (3 << 30, True)):
+    for size, is_refused in ((2 * 2048 * 2048 + 128, False), (10 << 20, False), (40 << 20, True), (3 << 30, True)):
         answer = raw_request(server, f"PUT /api/v1{L}/texels.npy HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer {server.token}\r\n"
                                      f"Expect: 100-continue\r\nContent-Length: {size}\r\n\r\n".encode())
         assert answer.startswith(b"HTTP/1.1 413" if is_refused else b"HTTP/1.1 100"), (size, answer[:300])
