@@ -137,8 +137,10 @@ Result<void> read_valid_plane(TIFF* tiff, const TiffMemory& file, const Layer& l
                      });
 }
 
-bool find_mask(TIFF* tiff) {
-  for (int i = 1; i < kMostDirectories && TIFFSetDirectory(tiff, static_cast<std::uint16_t>(i)); ++i) {
+// Whether there is one, which is then the current directory.
+Result<bool> find_mask(TIFF* tiff, const TiffMemory& file) {
+  for (int i = 1; i < kMostDirectories && !TIFFLastDirectory(tiff); ++i) {
+    if (!TIFFSetDirectory(tiff, static_cast<std::uint16_t>(i))) return damaged(file);
     const auto kind = tag_of<std::uint32_t>(tiff, TIFFTAG_SUBFILETYPE);
     if ((kind & FILETYPE_MASK) != 0 && (kind & FILETYPE_REDUCEDIMAGE) == 0) return true;
   }
@@ -147,7 +149,9 @@ bool find_mask(TIFF* tiff) {
 
 // The internal mask of GDAL, of 1 or 8 bits. The first directory is the current one again afterwards.
 Result<void> read_mask(TIFF* tiff, TiffMemory& file, const Layer& layer, Painted& painted) {
-  if (!TIFFLastDirectory(tiff) && find_mask(tiff)) {
+  const auto has_mask = find_mask(tiff, file);
+  if (!has_mask) return tl::unexpected(has_mask.error());
+  if (*has_mask) {
     if (auto size = check_raster_size(layer, tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
                                       tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH));
         !size)
