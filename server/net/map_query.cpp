@@ -59,6 +59,20 @@ Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_d
   return {};
 }
 
+Result<void> confirm_map_crs(const Request& request, const Model& model, const std::string& crs) {
+  const std::string asked = request.query_or("crs", {});
+  for (const auto& [system, whose] : {std::pair(crs, "map"), std::pair(model.crs, "model")})
+    if (!asked.empty() && !system.empty() && asked != system)
+      return fail(422, "Other coordinates", "`crs` says " + asked + ", but the " + whose + " lies in " + system + ".",
+                  "crs");
+  if (!asked.empty() || crs.empty() || !model.crs.empty()) return {};
+  return fail(422, "Model without coordinate system",
+              "The map lies in " + crs +
+                  ", and the model has no coordinate system. If the model's coordinates are those of " + crs +
+                  ", repeat the request with `crs=" + crs + "`; a curator can also give the model this system.",
+              "crs");
+}
+
 Result<std::uint32_t> bits_of(const Layer& layer, double value, const std::string& where) {
   auto bits = encode_value(layer.type, value);
   if (bits) return *bits;

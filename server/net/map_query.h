@@ -35,6 +35,10 @@ Result<query::WorldFile> world_of(const Request& request, const MapFiles& files,
 // Refuses a map that says that it lies in another coordinate system than the model.
 Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_degrees);
 
+// The caller has to say that a map's coordinates are the model's where the map names a system and the model has none: `crs` of the
+// query names that system. Refused (422, at `crs`): it is absent, or another one than the map's or the model's.
+Result<void> confirm_map_crs(const Request& request, const Model& model, const std::string& crs);
+
 // The bits of a value in the layer; `where` tells what held it.
 Result<std::uint32_t> bits_of(const Layer& layer, double value, const std::string& where);
 

@@ -127,6 +127,8 @@ Result<MapValues> polygon_values(const Request& request, const MapFiles& files, 
   choice.value = *value;
   const auto features = features_of(files, target.room.model());
   if (!features) return tl::unexpected(features.error());
+  if (auto confirmed = confirm_map_crs(request, target.room.model(), features->crs); !confirmed)
+    return tl::unexpected(confirmed.error());
   std::optional<query::KeyNames> keys;
   if (!choice.attribute.empty()) {
     auto found = keys_of(target.room, target.layer, target.records);
@@ -171,6 +173,8 @@ Result<std::shared_ptr<const void>> budget_of(const MapFiles& files, const std::
 Result<MapPicture> map_picture(const Request& request, const MapFiles& files, const Model& model, ByteBudget& budget) {
   const auto tiff = tiff_of(files, model);
   if (!tiff) return tl::unexpected(tiff.error());
+  if (auto confirmed = confirm_map_crs(request, model, *tiff ? (*tiff)->crs : std::string()); !confirmed)
+    return tl::unexpected(confirmed.error());
   const auto world = world_of(request, files, *tiff ? (*tiff)->world : std::nullopt);
   if (!world) return tl::unexpected(world.error());
   auto held = budget_of(files, *tiff, budget);
@@ -187,6 +191,8 @@ Result<MapValues> picture_values(const Request& request, const MapFiles& files, 
     return fail(422, "Too many parameters", "Give `band` or `colors`, not both.", "colors");
   const auto tiff = tiff_of(files, target.room.model());
   if (!tiff) return tl::unexpected(tiff.error());
+  if (auto confirmed = confirm_map_crs(request, target.room.model(), *tiff ? (*tiff)->crs : std::string()); !confirmed)
+    return tl::unexpected(confirmed.error());
   const bool has_one_band = *tiff && (*tiff)->bands == 1 && (*tiff)->has_numbers;
   const bool by_band = request.query.contains("band") || (has_one_band && !by_color);
   if (!by_band) {

@@ -122,9 +122,9 @@ void add_map_routes(Router& router, const RouteContext& context) {
   };
   add(layer + "/readings", painting(context, "readings", paint_readings), {"radius_mm", "tolerance_mm"});
   add(layer + "/polygons", painting(context, "polygons", map(polygon_values)),
-      {"along", "value", "attribute", "names"});
+      {"along", "value", "attribute", "names", "crs"});
   add(layer + "/picture", painting(context, "picture", map(picture_values)),
-      {"along", "world", "band", "colors", "tolerance"});
+      {"along", "world", "band", "colors", "tolerance", "crs"});
   add(model + "/map-contents",
       answering([&context, budget](const Request& request) { return map_contents(context, *budget, request); }),
       {"tolerance"});

@@ -145,7 +145,7 @@ void add_orthophoto_routes(Router& router, const RouteContext& context) {
                 return start_orthophoto(context, *book, *budget, request);
               }),
               .role = Role::curator,
-              .query = {"name", "description", "along", "world", "resolution"},
+              .query = {"name", "description", "along", "world", "resolution", "crs"},
               .check = [](const Request& request) -> Result<void> {
                 auto wish = wish_of(request);
                 return wish ? Result<void>{} : tl::unexpected(wish.error());

@@ -87,6 +87,26 @@ def check_shapefile(server):
     return states, places
 
 
+def check_crs_question(server, path, good):
+    """The model has no coordinate system: a map that names one is painted only where the request says that it is the model's."""
+    polygons, of_polygons = form(a_shp=good, a_prj=UTM.encode())
+    raster = tiff(10, 10, lambda x, y: x, kind="B", scale=10.0, origin=(0, 100), epsg=25830), {"Content-Type": "image/tiff"}
+    assert contents(server, polygons, of_polygons)["crs"] == contents(server, *raster)["crs"] == "EPSG:25830"
+    for where, body, headers in ((query(path + "/polygons", value=1), polygons, of_polygons), (query(path + "/picture", band=1), *raster),
+                                 (query(path + "/picture", colors='{"#000000":1}'), *raster), (query(M + "/orthophotos", name="Ortho"), *raster)):
+        answer = server.post(where, body, headers=headers)
+        assert (answer.status, answer.json()["title"], answer.json()["field"]) == (422, "Model without coordinate system", "crs"), (where, answer)
+        assert "crs=EPSG:25830" in answer.json()["detail"], answer
+        for other in ("EPSG:32630", "25830", "EPSG:"):
+            answer = server.post(where + "&crs=" + other, body, headers=headers)
+            assert (answer.status, answer.json()["field"]) == (422, "crs") and "EPSG:25830" in answer.json()["detail"], (where, answer)
+    assert server.get(path + "/edits").json()["total"] == 0
+    for where, body, headers in ((query(path + "/polygons", value=1), polygons, of_polygons), (query(path + "/picture", band=1), *raster)):
+        assert server.ok("POST", where + "&crs=EPSG:25830", body, headers=headers).json()["texels_changed"] > 0
+        server.ok("POST", path + "/undo")
+    assert server.get(M).json()["crs"] == ""  # the answer is for this map alone
+
+
 def check_shapefile_refusals(server):
     path = layer(server, "Refused")
     good, table = shp(POLYGONS), dbf(TABLE)
@@ -113,6 +133,7 @@ def check_shapefile_refusals(server):
         answer = server.post(query(path + "/polygons", value=1), body, headers={"Content-Type": "application/zip"})
         assert answer.status == status and says in answer.json()["detail"], (what, answer)
     assert server.get(path + "/edits").json()["total"] == 0
+    check_crs_question(server, path, good)
     server.ok("PATCH", M, {"crs": "EPSG:32630"})
     body, headers = form(a_shp=good, a_prj=UTM.encode())
     answer = server.post(query(path + "/polygons", value=1), body, headers=headers)

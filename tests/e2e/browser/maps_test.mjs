@@ -6,6 +6,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { findings } from "../support/accessible.mjs";
 import { Browser, rgb } from "../support/browser.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
@@ -61,6 +62,7 @@ put("plan.png", png(64, 64, paper))
 place = lambda pixels: "%r\\n0\\n0\\n%r\\n%r\\n%r\\n" % (size / pixels, -size / pixels, x - size / 2 + size / pixels / 2, z + size / 2 - size / pixels / 2)
 put("plan.pgw", place(64).encode())
 put("depth.tif", tiff(16, 16, lambda u, v: 0.5 * u, nodata="-9999", scale=size / 16, origin=(x - size / 2, z + size / 2)))
+put("utm.tif", tiff(16, 16, lambda u, v: 100 + u, kind="B", scale=size / 16, origin=(x - size / 2, z + size / 2), epsg=25830))
 put("photo.png", png(32, 32, lambda u, v: (255, 0, 255)))
 put("photo.pgw", place(32).encode())
 `;
@@ -135,6 +137,26 @@ try {
   await paint();
   const depth = await statistics("depth");
   assert.ok(depth.texels > 1000 && depth.min >= 0 && depth.max <= 7.5, JSON.stringify(depth).slice(0, 200));
+
+  say("a map with a coordinate system on a model without one is asked about");
+  await open_dialog("Depth");
+  await give("utm.tif");
+  await page.getByText("16 × 16 px · 1 band · EPSG:25830").waitFor();
+  await seen_from_front();
+  await button("Paint").click();
+  const question = page.getByRole("alertdialog", { name: /The map lies in EPSG:25830, and this model has no coordinate system/ });
+  await question.waitFor();
+  await wait_for(() => question.getByRole("button", { name: "No", exact: true }).evaluate((each) => each.matches(":focus")), "the keyboard in the question");
+  assert.ok(await button("Paint").isDisabled());
+  assert.deepEqual(await findings(page), []);
+  await shot("maps-coordinate-system");
+  await question.getByRole("button", { name: "No", exact: true }).click();
+  await question.waitFor({ state: "detached" });
+  assert.ok((await statistics("depth")).max <= 7.5, "nothing was painted");
+  await button("Paint").click();
+  await button("Yes, use the map").click();
+  await dialog.waitFor({ state: "detached" });
+  assert.equal((await statistics("depth")).max, 115);
 
   say("who may only paint adds no names to the legend, and paints those that are there");
   const annotator = (await server.add_person("ann", "annotator")).token;

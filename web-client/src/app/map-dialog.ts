@@ -11,6 +11,7 @@ import "./dialog";
 import "./file-choice";
 import { follow_session } from "./follow-session";
 import "./map-colors";
+import { crs_in_doubt, crs_query, crs_question, crs_styles, focus_question, kNotAsked, type CrsAnswer } from "./map-crs";
 import {
   accepted, as_uploads, color_keys, color_rows, file_kind, kMapEndings, kTableEndings, picture_modes, table_kind, unknown_file,
   world_numbers, type Along, type ColorRow, type PictureMode,
@@ -43,6 +44,7 @@ export class StrataMapDialog extends LitElement {
   @state() private mode_: PictureMode = "luminance";
   @state() private rows_: readonly ColorRow[] = [];
   @state() private painting_ = false;
+  @state() private crs_: CrsAnswer = kNotAsked;
   private radius_mm_ = 5;
   private tolerance_mm_ = 5;
   private source_ = "";
@@ -62,6 +64,7 @@ export class StrataMapDialog extends LitElement {
     files_styles,
     form_styles,
     number_field_styles,
+    crs_styles,
     css`
       .pair {
         display: grid;
@@ -75,7 +78,9 @@ export class StrataMapDialog extends LitElement {
   ];
 
   override render(): TemplateResult {
-    const ready = this.kind_ !== null && !this.sending_.busy;
+    const crs = crs_in_doubt(this.contents_, this.session.model);
+    const asking = crs !== null && this.crs_.asked && this.crs_.taken === null;
+    const ready = this.kind_ !== null && !this.sending_.busy && !asking;
     return html`<strata-dialog heading=${words.title(label_of(this.layer))} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <form id="map" @submit=${(event: Event) => this.on_submit(event)}>
         <p class="hint">${words.lead}</p>
@@ -91,6 +96,7 @@ export class StrataMapDialog extends LitElement {
           ></strata-file-choice>
         </div>
         ${this.files_.length === 0 ? html`<p class="hint">${words.file_hint}</p>` : nothing} ${this.fields()}
+        ${asking ? crs_question(crs, (takes) => this.on_crs(takes ? crs : null)) : nothing}
         ${this.sending_.problem ? html`<p class="error" role="alert">${this.sending_.problem}</p>` : nothing}
         ${this.sending_.busy ? progress_line(this.sending_.share, this.painting_ ? words.working : words.looking) : nothing}
       </form>
@@ -230,6 +236,7 @@ export class StrataMapDialog extends LitElement {
   private async on_files(files: File[]): Promise<void> {
     this.sending_.cancel();
     [this.files_, this.kind_, this.contents_, this.attribute_, this.names_] = [files, null, null, "", ""];
+    this.crs_ = kNotAsked;
     this.sending_.refuse("");
     const names = files.map(({ name }) => name);
     const kind = file_kind(names);
@@ -291,7 +298,7 @@ export class StrataMapDialog extends LitElement {
   }
 
   private map_query(kind: "polygons" | "picture"): Record<string, string> | string {
-    const along = { along: this.along_ };
+    const along = { along: this.along_, ...crs_query(this.crs_) };
     if (kind === "polygons") {
       const value = String(this.session.painting.brush.value_of(this.layer));
       if (this.attribute_ === "") return { ...along, value };
@@ -306,11 +313,22 @@ export class StrataMapDialog extends LitElement {
     return colors === null ? words.colors_wrong : { ...placed, colors, tolerance: String(this.tolerance_) };
   }
 
+  private on_crs(taken: string | null): void {
+    this.crs_ = { asked: taken !== null, taken };
+    if (taken !== null) void this.apply();
+  }
+
   private async apply(): Promise<void> {
     if (!this.kind_ || this.sending_.busy) return;
     const request = this.request(this.kind_);
     if (typeof request === "string") {
       this.sending_.refuse(request);
+      return;
+    }
+    if (crs_in_doubt(this.contents_, this.session.model) !== null && this.crs_.taken === null) {
+      this.crs_ = { asked: true, taken: null };
+      await this.updateComplete;
+      focus_question(this.renderRoot);
       return;
     }
     this.painting_ = true;

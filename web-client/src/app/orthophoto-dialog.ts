@@ -7,6 +7,7 @@ import type { MapContents } from "../core/types";
 import "./dialog";
 import "./file-choice";
 import { accepted, as_uploads, file_kind, kPictureEndings, unknown_file, world_numbers, type Along } from "./map-file";
+import { crs_in_doubt, crs_query, crs_question, crs_styles, focus_question, kNotAsked, type CrsAnswer } from "./map-crs";
 import { direction_field, found_line, progress_line, world_field } from "./map-place";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
@@ -22,6 +23,7 @@ export class StrataOrthophotoDialog extends LitElement {
   @state() private files_: readonly File[] = [];
   @state() private contents_: MapContents | null = null;
   @state() private name_ = "";
+  @state() private crs_: CrsAnswer = kNotAsked;
   private along_: Along = "-z";
   private world_ = "";
   private readonly sending_ = new Sending(this);
@@ -30,12 +32,15 @@ export class StrataOrthophotoDialog extends LitElement {
     shared_styles,
     files_styles,
     form_styles,
+    crs_styles,
   ];
 
   override render(): TemplateResult {
     const { contents_: contents } = this;
+    const crs = crs_in_doubt(contents, this.session.model);
+    const asking = crs !== null && this.crs_.asked && this.crs_.taken === null;
     return html`<strata-dialog heading=${words.title} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      <form id="orthophoto" @submit=${(event: Event) => void this.on_submit(event)}>
+      <form id="orthophoto" @submit=${(event: Event) => this.on_submit(event)}>
         <p class="hint">${words.lead}</p>
         <div class="part">
           <span class="caption">${words.file}</span>
@@ -63,16 +68,17 @@ export class StrataOrthophotoDialog extends LitElement {
               ${direction_field(this.along_, (along) => (this.along_ = along))}
               ${world_field(contents, this.world_, (text) => (this.world_ = text))}`
           : nothing}
+        ${asking ? crs_question(crs, (takes) => this.on_crs(takes ? crs : null)) : nothing}
         ${this.sending_.problem ? html`<p class="error" role="alert">${this.sending_.problem}</p>` : nothing}
         ${this.sending_.busy ? progress_line(this.sending_.share, texts.maps.looking) : nothing}
       </form>
-      <button slot="actions" class="primary" form="orthophoto" ?disabled=${!contents || this.sending_.busy}>${words.add}</button>
+      <button slot="actions" class="primary" form="orthophoto" ?disabled=${!contents || this.sending_.busy || asking}>${words.add}</button>
     </strata-dialog>`;
   }
 
   private async on_files(files: File[]): Promise<void> {
     this.sending_.cancel();
-    [this.files_, this.contents_] = [files, null];
+    [this.files_, this.contents_, this.crs_] = [files, null, kNotAsked];
     this.sending_.refuse("");
     const names = files.map(({ name }) => name);
     if (file_kind(names) !== "map") {
@@ -89,8 +95,17 @@ export class StrataOrthophotoDialog extends LitElement {
     this.name_ = name_of_file(picture.name);
   }
 
-  private async on_submit(event: Event): Promise<void> {
+  private on_submit(event: Event): void {
     event.preventDefault();
+    void this.add();
+  }
+
+  private on_crs(taken: string | null): void {
+    this.crs_ = { asked: taken !== null, taken };
+    if (taken !== null) void this.add();
+  }
+
+  private async add(): Promise<void> {
     const { session, contents_: contents } = this;
     if (!contents || this.sending_.busy) return;
     const world = contents.world ? "" : world_numbers(this.world_);
@@ -98,8 +113,14 @@ export class StrataOrthophotoDialog extends LitElement {
       this.sending_.refuse(texts.maps.world_wrong);
       return;
     }
+    if (crs_in_doubt(contents, session.model) !== null && this.crs_.taken === null) {
+      this.crs_ = { asked: true, taken: null };
+      await this.updateComplete;
+      focus_question(this.renderRoot);
+      return;
+    }
     const name = this.name_.trim();
-    const query = { name, along: this.along_, ...(world ? { world } : {}) };
+    const query = { name, along: this.along_, ...crs_query(this.crs_), ...(world ? { world } : {}) };
     const files = as_uploads(this.files_);
     const job = await this.sending_.run((progress) => session.api.add_orthophoto(session.model_id, query, files, progress));
     if (!job) return;

@@ -693,6 +693,12 @@ export const texts = {
     world: "Die sechs Zahlen des Worldfiles (.tfw, .pgw, .jgw)",
     world_known: "Die Datei sagt, wo sie liegt.",
     world_wrong: "Bitte die sechs Zahlen des Worldfiles angeben: ohne sie ist die Lage des Bildes unbekannt.",
+    crs: {
+      question: (crs: string) => `Die Karte liegt in ${crs}, und dieses Modell hat kein Koordinatensystem. Sind die Koordinaten des Modells solche von ${crs}?`,
+      hint: "Sonst liegt die Karte an der falschen Stelle. Kuratoren können dem Modell sein Koordinatensystem geben; dann wird nicht mehr gefragt.",
+      yes: "Ja, Karte verwenden",
+      no: "Nein",
+    },
     along: "Blick auf die Karte",
     direction: {
       "-z": "von oben (Koordinaten x, y)",

@@ -679,6 +679,12 @@ export const texts = {
     world: "The six numbers of its world file (.tfw, .pgw, .jgw)",
     world_known: "The file says where it lies.",
     world_wrong: "Give the six numbers of the picture's world file: without them its place is not known.",
+    crs: {
+      question: (crs: string) => `The map lies in ${crs}, and this model has no coordinate system. Are the model's coordinates those of ${crs}?`,
+      hint: "If they are not, the map lies in the wrong place. A curator can give the model its coordinate system; then nobody is asked.",
+      yes: "Yes, use the map",
+      no: "No",
+    },
     along: "The map is looked at",
     direction: {
       "-z": "from above (coordinates x, y)",

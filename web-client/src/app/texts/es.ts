@@ -699,6 +699,12 @@ export const texts = {
     world: "Los seis números de su archivo de georreferencia (.tfw, .pgw, .jgw)",
     world_known: "El archivo dice dónde está.",
     world_wrong: "Indique los seis números del archivo de georreferencia: sin ellos no se conoce su lugar.",
+    crs: {
+      question: (crs: string) => `El mapa está en ${crs} y este modelo no tiene sistema de coordenadas. ¿Son las coordenadas del modelo las de ${crs}?`,
+      hint: "Si no lo son, el mapa queda en un lugar equivocado. Un conservador puede dar al modelo su sistema de coordenadas; entonces ya no se pregunta.",
+      yes: "Sí, usar el mapa",
+      no: "No",
+    },
     along: "El mapa se mira",
     direction: {
       "-z": "desde arriba (coordenadas x, y)",
