@@ -38,7 +38,7 @@ Picture halve(const Picture& picture) {
   return half;
 }
 
-glm::vec3 TextureSampler::sample(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const {
+glm::vec4 TextureSampler::sample_with_alpha(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const {
   // Far away coordinates keep their fraction as well as a double does; what is no number is at the origin.
   const auto finite = [](double value) { return std::abs(value) < 1e9 ? value : 0.0; };
   const double x = finite(uv.x) * picture_.width - 0.5, y = (1 - finite(uv.y)) * picture_.height - 0.5;

@@ -16,12 +16,14 @@ class TextureSampler {
   explicit TextureSampler(const Picture& picture) : picture_(picture) {}
 
   // Red, green, blue as stored, 0…255.
-  glm::vec3 sample(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const;
+  glm::vec3 sample(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const { return sample_with_alpha(uv, wrap_u, wrap_v); }
+  // The same, and alpha, which is not multiplied in.
+  glm::vec4 sample_with_alpha(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const;
 
  private:
-  glm::vec3 pixel(int x, int y) const {
+  glm::vec4 pixel(int x, int y) const {
     const std::uint8_t* p = &picture_.rgba[(static_cast<std::size_t>(y) * picture_.width + x) * 4];
-    return {p[0], p[1], p[2]};
+    return {p[0], p[1], p[2], p[3]};
   }
 
   const Picture& picture_;

@@ -45,12 +45,13 @@ void append(std::vector<std::uint8_t>& out, const T& value) {
 
 }  // namespace
 
-VertexPly::VertexPly(std::shared_ptr<const mesh::Geometry> geometry, std::vector<LayerView> layers)
-    : geometry_(std::move(geometry)), layers_(std::move(layers)) {
+VertexPly::VertexPly(std::shared_ptr<const mesh::Geometry> geometry, std::vector<LayerView> layers,
+                     std::optional<VertexColors> colors)
+    : geometry_(std::move(geometry)), layers_(std::move(layers)), colors_(std::move(colors)) {
   const mesh::Geometry& mesh = *geometry_;
   for (const glm::dvec3& position : mesh.positions) has_doubles_ |= glm::dvec3(glm::vec3(position)) != position;
   const auto same_color = [&](const mesh::Vertex& vertex) { return vertex.color == mesh.vertices.front().color; };
-  has_colors_ = !std::ranges::all_of(mesh.vertices, same_color);
+  has_colors_ = colors_ || !std::ranges::all_of(mesh.vertices, same_color);
   first_.assign(mesh.positions.size() + 1, 0);
   for (const mesh::Vertex& vertex : mesh.vertices) ++first_[vertex.position_index + 1];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
@@ -89,7 +90,10 @@ void VertexPly::append_vertex(std::uint32_t position, std::vector<std::uint8_t>&
     else
       append(out, static_cast<float>(place[axis]));
   const std::span of_position(vertices_.data() + first_[position], vertices_.data() + first_[position + 1]);
-  if (has_colors_) {
+  if (colors_) {
+    const auto color = colors_->at(of_position);
+    out.insert(out.end(), color.begin(), color.end());
+  } else if (has_colors_) {
     const std::uint32_t color = of_position.empty() ? 0 : mesh.vertices[of_position.front()].color;
     for (int channel = 0; channel < 3; ++channel) out.push_back(static_cast<std::uint8_t>(color >> (8 * channel)));
   }

@@ -18,6 +18,15 @@ bool is_memory_used_up(const Problem& problem) { return problem.title == "GPU me
 
 }  // namespace
 
+std::vector<LookView> looks_shown(const std::vector<Look>& by_order) {
+  std::vector<LookView> shown;
+  for (const Look& look : by_order)
+    if (look.visible) shown.push_back({look.id, look.opacity});
+  const std::size_t hidden = shown.size() - std::min(shown.size(), render::kMaxLooksShown);
+  shown.erase(shown.begin(), shown.begin() + static_cast<std::ptrdiff_t>(hidden));
+  return shown;
+}
+
 LookShelf::LookShelf(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers,
                      MemoryLedger& memory, std::function<void()> ready)
     : store_(store), renderer_(renderer), workers_(workers), memory_(memory), ready_(std::move(ready)) {}
@@ -41,11 +50,13 @@ void LookShelf::drop(std::int64_t id) {
 }
 
 std::vector<Look> LookShelf::all() const {
+  std::lock_guard lock(mutex_);
+  return by_order();
+}
+
+std::vector<Look> LookShelf::by_order() const {
   std::vector<Look> looks;
-  {
-    std::lock_guard lock(mutex_);
-    for (const auto& [id, slot] : slots_) looks.push_back(slot.look);
-  }
+  for (const auto& [id, slot] : slots_) looks.push_back(slot.look);
   std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.order < b.order; });
   return looks;
 }
@@ -70,15 +81,7 @@ void LookShelf::stop() {
 }
 
 std::vector<LookView> LookShelf::shown(const std::optional<std::vector<LookView>>& wanted) const {
-  if (wanted) return *wanted;
-  std::vector<const Look*> looks;
-  for (const auto& [id, slot] : slots_)
-    if (slot.look.visible) looks.push_back(&slot.look);
-  std::stable_sort(looks.begin(), looks.end(), [](const Look* a, const Look* b) { return a->order < b->order; });
-  std::vector<LookView> shown;
-  for (std::size_t i = looks.size() - std::min(looks.size(), render::kMaxLooksShown); i < looks.size(); ++i)
-    shown.push_back({looks[i]->id, looks[i]->opacity});
-  return shown;
+  return wanted ? *wanted : looks_shown(by_order());
 }
 
 std::vector<render::LookStyle> LookShelf::styles(const std::optional<std::vector<LookView>>& wanted) {

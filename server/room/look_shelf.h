@@ -18,6 +18,9 @@
 
 namespace strata::room {
 
+// The looks that are visible by default, bottom to top, of all by order: the topmost where a view takes no more.
+std::vector<LookView> looks_shown(const std::vector<Look>& by_order);
+
 // The looks of an open model. A look's texture is made when a view first shows it, on a worker, and kept while the room is open;
 // its encoded bytes are kept with it, so that it comes back after a lost context without the database. Up to 16384² is shown, which
 // OpenGL 4.5 guarantees, or less where the GPU's memory has no room for it. Its pixels are reserved in `memory` until they are on the
@@ -54,6 +57,7 @@ class LookShelf : public std::enable_shared_from_this<LookShelf> {
     std::optional<Problem> damage;  // the picture cannot be shown, ever
     std::vector<Loaded> waiting;
   };
+  std::vector<Look> by_order() const;                                                     // under the mutex
   std::vector<LookView> shown(const std::optional<std::vector<LookView>>& wanted) const;  // under the mutex
   void request(std::int64_t id, Loaded loaded);
   void load(std::int64_t id, int largest_side);

@@ -57,16 +57,16 @@ Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::in
 RecordColors::RecordColors(store::Store& store, boost::asio::thread_pool& workers, std::function<void()> ready)
     : store_(store), workers_(workers), ready_(std::move(ready)) {}
 
-Result<std::shared_ptr<const Palette>> RecordColors::make(const Wanted& wanted) const {
+Result<std::shared_ptr<const Palette>> RecordColors::make(store::Store& store, const Wanted& wanted) {
   Palette by_key = *wanted.palette;
   const Role seen_by = least_role(wanted.sight);
   if (!by_key.column.empty()) {
-    auto colored = by_column(store_, wanted.table, seen_by, by_key);
+    auto colored = by_column(store, wanted.table, seen_by, by_key);
     if (!colored) return tl::unexpected(colored.error());
     by_key = std::move(*colored);
   }
   if (wanted.highlight) {
-    const auto keys = highlighted_keys(store_, wanted.table, seen_by, *wanted.highlight, "highlight.filter");
+    const auto keys = highlighted_keys(store, wanted.table, seen_by, *wanted.highlight, "highlight.filter");
     if (!keys) return tl::unexpected(keys.error());
     by_key = highlighted_colors(by_key, *keys, wanted.highlight->isolate);
   }

@@ -38,7 +38,8 @@ class RecordColors : public std::enable_shared_from_this<RecordColors> {
   // The newest that is there; what is not is on its way.
   Found find(const Wanted& wanted);
   // The same as of now, made on the calling thread. Blocks.
-  Result<std::shared_ptr<const Palette>> make(const Wanted& wanted) const;
+  Result<std::shared_ptr<const Palette>> make(const Wanted& wanted) const { return make(store_, wanted); }
+  static Result<std::shared_ptr<const Palette>> make(store::Store& store, const Wanted& wanted);
   // Whether there is anything to be made of it: otherwise the palette itself serves.
   static bool needs_records(const Palette& palette, const std::shared_ptr<const Highlight>& highlight) {
     return highlight || !palette.column.empty();

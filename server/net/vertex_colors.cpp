@@ -1,0 +1,56 @@
+#include "net/vertex_colors.h"
+
+#include "core/picture.h"
+#include "room/look_shelf.h"
+#include "room/record_colors.h"
+
+namespace strata::net {
+namespace {
+
+Result<void> add_photo(const RouteContext& context, const room::LookView& look, query::VertexColors& colors) {
+  const auto encoded = context.store.look_picture(look.look_id);
+  if (!encoded) return tl::unexpected(encoded.error());
+  const auto info = inspect_picture(*encoded);
+  if (!info) return tl::unexpected(info.error());
+  // Reading takes at most twice the memory of its pixels.
+  const auto bytes = static_cast<std::uint64_t>(info->width) * static_cast<std::uint64_t>(info->height) * 8;
+  const auto share = context.rooms.memory().reserve(bytes, "a photo of the surface");
+  if (!share) return tl::unexpected(share.error());
+  const auto photo = decode_picture(*encoded);
+  if (!photo) return tl::unexpected(photo.error());
+  colors.add_photo(*photo, look.opacity);
+  return {};
+}
+
+Result<query::DrawnLayer> drawn(const RouteContext& context, Role role, const query::LayerView& view) {
+  auto palette = std::make_shared<const Palette>(view.layer.palette);
+  if (view.layer.table && room::RecordColors::needs_records(*palette, nullptr)) {
+    auto by_key = room::RecordColors::make(context.store, {*view.layer.table, sight_of(role), palette, nullptr});
+    if (!by_key) return tl::unexpected(by_key.error());
+    palette = std::move(*by_key);
+  }
+  return query::DrawnLayer{view.snapshot.tiles, view.layer.resolution, view.layer.type, std::move(palette),
+                           view.layer.opacity};
+}
+
+}  // namespace
+
+Result<ComposedVertices> compose_vertices(const RouteContext& context, room::Room& room, Role role,
+                                          const std::vector<query::LayerView>& bottom_to_top) {
+  const auto looks = room::looks_shown(room.looks());
+  const auto geometry = room.geometry();
+  const std::uint64_t bytes = looks.empty() ? 0 : geometry->vertices.size() * 3;
+  auto memory = context.rooms.memory().reserve(bytes, "the colours of a model's vertices");
+  if (!memory) return tl::unexpected(memory.error());
+  ComposedVertices composed{query::VertexColors(geometry), std::move(*memory)};
+  for (const room::LookView& look : looks)
+    if (auto added = add_photo(context, look, composed.colors); !added) return tl::unexpected(added.error());
+  for (const query::LayerView& view : bottom_to_top) {
+    auto layer = drawn(context, role, view);
+    if (!layer) return tl::unexpected(layer.error());
+    composed.colors.add_layer(std::move(*layer));
+  }
+  return composed;
+}
+
+}  // namespace strata::net
