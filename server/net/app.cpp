@@ -117,6 +117,7 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   add_statistics_routes(router_, context_);
   add_quantity_routes(router_, context_);
   add_extent_routes(router_, context_);
+  add_feature_routes(router_, context_);
   add_vertex_routes(router_, context_);
   add_frame_routes(router_, context_);
   add_figure_routes(router_, context_);

@@ -41,6 +41,27 @@ std::string palette_label(const Layer& layer, double value) {
   return {};
 }
 
+std::string quantity_label(const query::Quantity& quantity, const Layer& layer, const RecordNames& names) {
+  if (layer.kind == LayerKind::database) {
+    const auto name = names.find(static_cast<std::int64_t>(*quantity.value));
+    return name == names.end() ? std::string() : name->second;
+  }
+  // The colour of a step, and with it its label, begins at its point.
+  if (!quantity.value && (layer.palette.mode != PaletteMode::step || !quantity.from)) return {};
+  const double at = quantity.value ? *quantity.value : *quantity.from;
+  return palette_label(layer, at);
+}
+
+std::string quantity_text(const query::Quantity& quantity, const std::string& label) {
+  if (!label.empty()) return label;
+  if (quantity.value) return csv_number(*quantity.value, ',');
+  if (quantity.from && quantity.to)
+    return "from " + csv_number(*quantity.from, ',') + " to " + csv_number(*quantity.to, ',');
+  if (quantity.from) return "from " + csv_number(*quantity.from, ',');
+  if (quantity.to) return "below " + csv_number(*quantity.to, ',');
+  return "all";
+}
+
 Result<std::vector<std::string>> class_names(const RouteContext& context, const Layer& layer, Role seen_by,
                                              const std::vector<double>& values, std::optional<std::int64_t> at,
                                              const std::string& language) {

@@ -21,6 +21,11 @@ Result<RecordNames> record_names(const RouteContext& context, std::int64_t table
 // What the layer's legend calls a value of its own; empty: it has no label for it.
 std::string palette_label(const Layer& layer, double value);
 
+// What a class is called: the record's name, the label of the legend, or nothing.
+std::string quantity_label(const query::Quantity& quantity, const Layer& layer, const RecordNames& names);
+// As people read it in a column of its own: its label, or its value or range.
+std::string quantity_text(const query::Quantity& quantity, const std::string& label);
+
 // Names of values of a layer, in their order: the record's name, or the label of the legend, or else the number.
 Result<std::vector<std::string>> class_names(const RouteContext& context, const Layer& layer, Role seen_by,
                                              const std::vector<double>& values, std::optional<std::int64_t> at,

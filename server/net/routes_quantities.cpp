@@ -2,7 +2,6 @@
 #include <set>
 
 #include "core/compensated_sum.h"
-#include "core/csv.h"
 #include "core/term_list.h"
 #include "net/as_of.h"
 #include "net/class_names.h"
@@ -56,30 +55,6 @@ Result<OfMarks> marks_of(const RouteContext& context, const Table& table, Role s
   return marks;
 }
 
-std::string plain_number(double value) { return csv_number(value, ','); }
-
-// What a class is called: the record's name, the label of the legend, or nothing.
-std::string label_of(const query::Quantity& quantity, const Layer& layer, const Names& names) {
-  if (layer.kind == LayerKind::database) {
-    const auto name = names.find(static_cast<std::int64_t>(*quantity.value));
-    return name == names.end() ? std::string() : name->second;
-  }
-  // The colour of a step, and with it its label, begins at its point.
-  if (!quantity.value && (layer.palette.mode != PaletteMode::step || !quantity.from)) return {};
-  const double at = quantity.value ? *quantity.value : *quantity.from;
-  return palette_label(layer, at);
-}
-
-// As people read it in a column of its own.
-std::string class_text(const query::Quantity& quantity, const std::string& label) {
-  if (!label.empty()) return label;
-  if (quantity.value) return plain_number(*quantity.value);
-  if (quantity.from && quantity.to) return "from " + plain_number(*quantity.from) + " to " + plain_number(*quantity.to);
-  if (quantity.from) return "from " + plain_number(*quantity.from);
-  if (quantity.to) return "below " + plain_number(*quantity.to);
-  return "all";
-}
-
 nlohmann::json sums_json(const query::Quantity& quantity) {
   return {{"pieces", quantity.pieces}, {"texels", quantity.texels}, {"area_m2", quantity.area_m2}};
 }
@@ -96,8 +71,8 @@ nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const N
   };
   for (const query::Quantity& quantity : all.classes) {
     nlohmann::json json = add_share(sums_json(quantity), quantity);
-    const std::string label = label_of(quantity, layer, names);
-    json["class"] = class_text(quantity, label);
+    const std::string label = quantity_label(quantity, layer, names);
+    json["class"] = quantity_text(quantity, label);
     if (quantity.value && layer.kind == LayerKind::database) {
       const auto key = static_cast<std::int64_t>(*quantity.value);
       json["key"] = key;
@@ -142,8 +117,8 @@ Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& na
     sheet.rows.push_back(std::move(row));
   };
   for (const query::Quantity& quantity : all.classes) {
-    const std::string label = label_of(quantity, layer, names);
-    add(quantity, label.empty() && quantity.value ? SheetCell(*quantity.value) : class_text(quantity, label),
+    const std::string label = quantity_label(quantity, layer, names);
+    add(quantity, label.empty() && quantity.value ? SheetCell(*quantity.value) : quantity_text(quantity, label),
         has_keys ? marks.of(static_cast<std::int64_t>(*quantity.value)) : std::vector<double>());
   }
   add(all.sum, "total", marks.sum());

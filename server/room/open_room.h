@@ -76,6 +76,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
                                         const Selection& selection) override;
   Result<query::Quantities> quantities(const std::string& layer, At at) override;
+  Result<query::Perimeters> perimeters(const std::string& layer, At at) override;
   Result<query::SurfaceTexels> surface_texels(const std::string& layer, const Selection& selection) override;
   Result<TileMap> dabs(const Layer& layer, const std::vector<PlacedValue>& values, double radius,
                        double tolerance) override;

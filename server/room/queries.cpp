@@ -260,6 +260,18 @@ Result<query::Quantities> OpenRoom::quantities(const std::string& layer, At at) 
   return query::quantities(views->front(), **map, **graph, query::classes_of(views->front().layer), model().metres());
 }
 
+Result<query::Perimeters> OpenRoom::perimeters(const std::string& layer, At at) {
+  touch();
+  const auto views = layer_views({layer}, at);
+  if (!views) return tl::unexpected(views.error());
+  const auto map = surface_map(views->front().layer.resolution);
+  if (!map) return tl::unexpected(map.error());
+  const auto graph = surface_->graph(**map);
+  if (!graph) return tl::unexpected(graph.error());
+  return query::measure_perimeters(views->front(), **map, **graph, nullptr, query::classes_of(views->front().layer),
+                                   mesh::background_threads());
+}
+
 Result<query::SurfaceTexels> OpenRoom::surface_texels(const std::string& layer, const Selection& selection) {
   touch();
   auto views = layer_views({layer}, selection.at);

@@ -15,6 +15,7 @@
 #include "core/picture.h"
 #include "query/cross_table.h"
 #include "query/key_areas.h"
+#include "query/perimeter.h"
 #include "query/profile.h"
 #include "query/quantities.h"
 #include "query/seen_layers.h"
@@ -286,6 +287,8 @@ class Room {
                                                 const Selection& selection = {}) = 0;
   // How much there is of each class of the layer's legend (query::classes_of).
   virtual Result<query::Quantities> quantities(const std::string& layer, At at = {}) = 0;
+  // How long the borders of those classes are, model units (query::measure_perimeters).
+  virtual Result<query::Perimeters> perimeters(const std::string& layer, At at = {}) = 0;
   // A layer with the places of its texels where the selection holds, to be read at leisure.
   virtual Result<query::SurfaceTexels> surface_texels(const std::string& layer, const Selection& selection = {}) = 0;
   // What maps and measurements paint (query/flat_map, query/dabs), for an ImportEdit `over` the layer. Values are bits of its type.

@@ -64,6 +64,10 @@ class SeenRoom final : public Room {
     if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
     return room_->quantities(layer, at);
   }
+  Result<query::Perimeters> perimeters(const std::string& layer, At at) override {
+    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    return room_->perimeters(layer, at);
+  }
   Result<query::SurfaceTexels> surface_texels(const std::string& layer, const Selection& selection) override {
     if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
     return room_->surface_texels(layer, seen_by(selection));

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { color_keys, color_rows, file_kind, picture_modes, table_kind, unknown_file, world_numbers } from "../src/app/map-file";
-import { formats_of, raster_format } from "../src/app/raster-files";
+import { formats_of, plan_of, raster_format } from "../src/app/raster-files";
 import type { Layer, MapColor } from "../src/core/types";
 
 describe("raster files", () => {
@@ -18,6 +18,10 @@ describe("raster files", () => {
   it("PNG is offered for what it can hold", () => {
     expect(formats_of({ type: "u16" } as Layer)).toEqual(["tif", "png", "npy"]);
     expect(formats_of({ type: "f32" } as Layer)).toEqual(["tif", "npy"]);
+  });
+
+  it("outlines are laid on the ground, whichever axis is up", () => {
+    expect(["x", "y", "z", "-x", "-y", "-z"].map(plan_of)).toEqual(["-x", "-y", "-z", "-x", "-y", "-z"]);
   });
 });
 

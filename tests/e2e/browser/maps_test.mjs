@@ -186,6 +186,24 @@ try {
   await shot("maps-vertices");
   await page.keyboard.press("Escape");
 
+  say("outlines of a layer are saved for a map");
+  const saved = async (command) => {
+    await button("Options for pieces").click();
+    if (command === "Save outlines as GeoJSON") await shot("maps-outlines");
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("menuitem", { name: command, exact: true }).click()]);
+    return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+  };
+  const pieces = (await server.json("GET", `${base}/layers`)).layers.find(({ name }) => name === "pieces");
+  const json = await saved("Save outlines as GeoJSON");
+  const outlines = JSON.parse(json.bytes.toString());
+  assert.deepEqual([json.name, outlines.name], [`demo-pot-${pieces.slug}.geojson`, `demo-pot-${pieces.slug}`]);
+  const painted = (await statistics(pieces.slug)).keys.map(({ key }) => key);
+  const areas = outlines.features.filter(({ properties }) => properties.kind === "areas");
+  assert.deepEqual(areas.map(({ properties }) => properties.key ?? properties.value), painted);
+  assert.ok(areas.some(({ geometry }) => geometry.coordinates.length > 0));
+  const gpkg = await saved("Save outlines as GeoPackage");
+  assert.deepEqual([gpkg.name, gpkg.bytes.subarray(0, 15).toString()], [`demo-pot-${pieces.slug}.gpkg`, "SQLite format 3"]);
+
   say("an orthophoto becomes a look");
   for (const { id } of (await server.json("GET", `${base}/layers`)).layers) await server.json("PATCH", `${base}/layers/${id}`, { visible: false });
   await page.locator("strata-view-panel").getByRole("button", { name: "View", exact: true }).click();

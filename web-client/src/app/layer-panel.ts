@@ -19,7 +19,7 @@ import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { drag_styles, shared_styles } from "./styles";
-import { choose_raster, formats_of, save_raster } from "./raster-files";
+import { choose_raster, formats_of, kFeatureFormats, save_features, save_raster } from "./raster-files";
 import type { TermsRequest } from "./terms-dialog";
 import { texts } from "./texts";
 import { visibility_badge } from "./visibility";
@@ -321,6 +321,12 @@ export class StrataLayerPanel extends LitElement {
             (format) =>
               html`<button class="quiet" role="menuitem" @click=${() => save_raster(session, layer, format)}>
                 ${icon("import")}${texts.rasters.save[format]}
+              </button>`,
+          )}
+          ${kFeatureFormats.map(
+            (format) =>
+              html`<button class="quiet" role="menuitem" @click=${() => save_features(session, layer, format)}>
+                ${icon("import")}${texts.rasters.save_outlines[format]}
               </button>`,
           )}
           ${session.can_paint && !session.is_locked(layer)

@@ -1,6 +1,7 @@
-// A layer's texels as files: saved from the page, and put back from one.
+// A layer's texels as files: saved from the page, and put back from one; and its outlines for maps.
 
 import { label_of } from "../core/cells";
+import { page_locale } from "../core/locale";
 import type { Layer } from "../core/types";
 import { format_area } from "../core/measure";
 import { ask } from "./dialog";
@@ -25,6 +26,17 @@ export const formats_of = (layer: Layer): RasterFormat[] =>
 
 export function save_raster(session: ModelSession, layer: Layer, format: RasterFormat): void {
   save_from(session.api.texels_url(session.model_id, layer.id, format), `${layer.slug}.${format}`);
+}
+
+export const kFeatureFormats = ["geojson", "gpkg"] as const;
+export type FeatureFormat = (typeof kFeatureFormats)[number];
+
+/** From above, as the model stands: the map of a wall that is `y` up is its plan in x and z. */
+export const plan_of = (up: string): string => `-${up.at(-1)}`;
+
+export function save_features(session: ModelSession, layer: Layer, format: FeatureFormat): void {
+  const query = { f: format, along: plan_of(session.model?.up ?? "z"), lang: page_locale() };
+  save_from(session.api.features_url(session.model_id, layer.id, query), `${layer.slug}.${format}`);
 }
 
 /** Asks for a file and makes the layer hold what is in it. */

@@ -624,6 +624,10 @@ export class Api {
   quantities_url(model: Id, layer: Id, query: SheetQuery): string {
     return `${kBase}${layer_path(model, layer)}/quantities?${new URLSearchParams({ ...query })}`;
   }
+  /** Where outlines of a layer's classes, and lines and points of its records, are had for maps; `along`: the way that the map is looked at. */
+  features_url(model: Id, layer: Id, query: { f: string; along: string; lang: string }): string {
+    return `${kBase}${layer_path(model, layer)}/features?${new URLSearchParams({ ...query })}`;
+  }
   /** Areas where two layers meet: layers of whole numbers or keys. */
   async cross_table(model: Id, rows: Id, columns: Id): Promise<wire.CrossTable> {
     return this.json("POST", `/models/${encodeURIComponent(model)}/cross-table`, { rows, columns });

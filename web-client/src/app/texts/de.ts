@@ -726,6 +726,7 @@ export const texts = {
 
   rasters: {
     save: { tif: "Als GeoTIFF sichern", png: "Als PNG sichern", npy: "Für NumPy sichern" },
+    save_outlines: { geojson: "Umrisse als GeoJSON sichern", gpkg: "Umrisse als GeoPackage sichern" },
     import: "Durch ein Raster ersetzen …",
     title: (layer) => `Inhalt von „${layer}“ ersetzen?`,
     lead: (file) => `Die Ebene enthält danach, was in „${file}“ steht: eine Datei, die aus einer Ebene dieses Modells gesichert wurde, verändert oder nicht. Das lässt sich rückgängig machen.`,

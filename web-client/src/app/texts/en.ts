@@ -712,6 +712,7 @@ export const texts = {
 
   rasters: {
     save: { tif: "Save as GeoTIFF", png: "Save as PNG", npy: "Save for NumPy" },
+    save_outlines: { geojson: "Save outlines as GeoJSON", gpkg: "Save outlines as GeoPackage" },
     import: "Replace from a raster…",
     title: (layer: string) => `Replace what “${layer}” holds?`,
     lead: (file: string) => `The layer then holds what is in “${file}”: a file that was saved from a layer of this model, changed or not. You can undo it.`,

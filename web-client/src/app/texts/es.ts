@@ -732,6 +732,7 @@ export const texts = {
 
   rasters: {
     save: { tif: "Guardar como GeoTIFF", png: "Guardar como PNG", npy: "Guardar para NumPy" },
+    save_outlines: { geojson: "Guardar contornos como GeoJSON", gpkg: "Guardar contornos como GeoPackage" },
     import: "Sustituir por un ráster…",
     title: (layer) => `¿Sustituir lo que contiene «${layer}»?`,
     lead: (file) => `La capa tendrá después lo que hay en «${file}»: un archivo guardado de una capa de este modelo, modificado o no. Se puede deshacer.`,

@@ -1,0 +1,243 @@
+#include "net/layer_features.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+
+#include "core/column_value.h"
+#include "core/mark.h"
+#include "net/class_names.h"
+#include "net/record_csv.h"
+
+namespace strata::net {
+namespace {
+
+using Kind = FeatureField::Kind;
+
+// The table of a database layer, with the records that may have features.
+struct Records {
+  std::vector<Column> columns;  // that features have as attributes
+  std::vector<Column> marks;    // of lines and points
+  std::map<std::int64_t, Record> by_key;
+  RecordNames names;
+  WordsOfTables words;
+};
+
+Result<Records> read_records(const RouteContext& context, const FeatureWish& wish, std::vector<std::int64_t> painted) {
+  store::Store::RecordQuery query;
+  query.limit = store::kMostRecords;
+  if (wish.at) {
+    const auto then = context.store.table_sequence_when(*wish.layer.table, wish.layer.model_id, *wish.at);
+    if (!then) return tl::unexpected(then.error());
+    query.at = *then;
+  }
+  const auto table = context.store.table(std::to_string(*wish.layer.table), wish.role);
+  if (!table) return tl::unexpected(table.error());
+  // Records that are painted nowhere may have lines and points.
+  const auto is_mark = [](const Column& column) { return holds_marks(column.kind); };
+  if (std::ranges::none_of(table->columns, is_mark)) query.keys = std::move(painted);
+  auto page = context.store.records(table->id, wish.role, query);
+  if (!page) return tl::unexpected(page.error());
+  Records records;
+  for (const Column& column : page->table.columns)
+    if (is_mark(column))
+      records.marks.push_back(column);
+    else if (!holds_attachments(column.kind))
+      records.columns.push_back(column);
+  std::vector<std::int64_t> keys;
+  for (Record& record : page->records) {
+    keys.push_back(record.key);
+    records.by_key.emplace(record.key, std::move(record));
+  }
+  auto names = record_names(context, table->id, wish.role, std::move(keys), query.at, wish.language);
+  if (!names) return tl::unexpected(names.error());
+  records.names = std::move(*names);
+  auto words = words_of(context.store, records.columns, wish.role, wish.language);
+  if (!words) return tl::unexpected(words.error());
+  records.words = std::move(*words);
+  return records;
+}
+
+Kind kind_of(const Column& column) {
+  switch (column.kind) {
+    case ColumnKind::integer: return Kind::integer;
+    case ColumnKind::numeric: return Kind::real;
+    case ColumnKind::boolean: return Kind::boolean;
+    default: return Kind::text;
+  }
+}
+
+FeatureValue value_of(const Record& record, const Column& column, const WordsOfTables& words) {
+  const auto found = record.values.find(column.id);
+  if (found == record.values.end() || found->second.is_null()) return {};
+  const nlohmann::json& value = found->second;
+  if (auto word = term_word(record, column, words)) return std::move(*word);
+  switch (kind_of(column)) {
+    case Kind::integer: return value.get<std::int64_t>();
+    case Kind::real: return value.get<double>();
+    case Kind::boolean: return value.get<bool>();
+    default: return print_value(column, value);
+  }
+}
+
+// The names of a table's fields: what is called like one of ours, or like what formats call theirs, gets `column_` before its name.
+class Fields {
+ public:
+  explicit Fields(std::vector<FeatureField> own) : fields_(std::move(own)) {
+    for (const FeatureField& field : fields_) taken_.insert(field.name);
+  }
+  void add(const Column& column) {
+    std::string name = column.slug;
+    while (taken_.contains(name)) name = "column_" + name;
+    taken_.insert(name);
+    fields_.push_back({std::move(name), kind_of(column)});
+  }
+  std::vector<FeatureField> take() { return std::move(fields_); }
+
+ private:
+  std::vector<FeatureField> fields_;
+  std::set<std::string> taken_{"fid", "geom", "kind", "ogc_fid", "rowid"};
+};
+
+FeatureValue text_or_nothing(std::string text) { return text.empty() ? FeatureValue{} : FeatureValue(std::move(text)); }
+
+void add_record(Feature& feature, const Records& records, std::int64_t key) {
+  const auto record = records.by_key.find(key);
+  for (const Column& column : records.columns)
+    feature.values.push_back(record == records.by_key.end() ? FeatureValue{}
+                                                            : value_of(record->second, column, records.words));
+}
+
+// Which class of query::classes_of it counts.
+std::uint32_t class_of(const query::Quantity& quantity, const Layer& layer, const query::ValueClasses& classes) {
+  if (quantity.value) return classes.of(encode_value(layer.type, *quantity.value).value_or(0), *quantity.value);
+  std::uint32_t range = 0;
+  while (range < classes.limits.size() && classes.from(range) != quantity.from) ++range;
+  return range;
+}
+
+FeatureTable areas_of(const FeatureWish& wish, const query::Quantities& all, const query::Perimeters& perimeters,
+                      query::PlaneOutlines outlines, const Records& records) {
+  const Layer& layer = wish.layer;
+  const Model model = wish.room->model();
+  const query::ValueClasses classes = query::classes_of(layer);
+  const bool has_keys = layer.table.has_value();
+  std::vector<FeatureField> own;
+  if (has_keys)
+    own.push_back({"key", Kind::integer});
+  else if (classes.each)
+    own.push_back({"value", Kind::real});
+  else
+    own.insert(own.end(), {{"from", Kind::real}, {"to", Kind::real}});
+  own.insert(own.end(), {{"name", Kind::text},
+                         {"area_m2", Kind::real},
+                         {"perimeter_m", Kind::real},
+                         {"texels", Kind::integer},
+                         {"pieces", Kind::integer},
+                         {"layer", Kind::text},
+                         {"model", Kind::text}});
+  Fields fields(std::move(own));
+  for (const Column& column : records.columns) fields.add(column);
+  FeatureTable table{FeatureKind::areas, "areas", fields.take(), {}};
+  const auto number = [](const std::optional<double>& value) { return value ? FeatureValue(*value) : FeatureValue{}; };
+  for (const query::Quantity& quantity : all.classes) {
+    Feature& feature = table.features.emplace_back();
+    const std::uint32_t a_class = class_of(quantity, layer, classes);
+    const std::int64_t key = has_keys ? static_cast<std::int64_t>(*quantity.value) : 0;
+    if (has_keys)
+      feature.values = {key};
+    else if (classes.each)
+      feature.values = {*quantity.value};
+    else
+      feature.values = {number(quantity.from), number(quantity.to)};
+    const std::string label = quantity_label(quantity, layer, records.names);
+    feature.values.push_back(text_or_nothing(has_keys ? label : quantity_text(quantity, label)));
+    const auto length = perimeters.of_class.find(a_class);
+    feature.values.emplace_back(quantity.area_m2);
+    feature.values.emplace_back(length == perimeters.of_class.end() ? 0 : length->second * model.metres());
+    feature.values.emplace_back(static_cast<std::int64_t>(quantity.texels));
+    feature.values.emplace_back(static_cast<std::int64_t>(quantity.pieces));
+    feature.values.emplace_back(layer.slug);
+    feature.values.emplace_back(model.slug);
+    add_record(feature, records, key);
+    if (const auto outline = outlines.find(a_class); outline != outlines.end())
+      feature.geometry = std::move(outline->second);
+  }
+  return table;
+}
+
+FeatureTable marks_in(const FeatureWish& wish, const Records& records, const Column& marks) {
+  const bool are_lines = marks.kind == ColumnKind::line;
+  const Model model = wish.room->model();
+  std::vector<FeatureField> own{{"key", Kind::integer}, {"name", Kind::text}};
+  if (are_lines) own.push_back({"length_m", Kind::real});
+  own.insert(own.end(), {{"layer", Kind::text}, {"model", Kind::text}});
+  Fields fields(std::move(own));
+  for (const Column& column : records.columns) fields.add(column);
+  FeatureTable table{are_lines ? FeatureKind::lines : FeatureKind::points,
+                     (are_lines ? "lines_" : "points_") + marks.slug,
+                     fields.take(),
+                     {}};
+  for (const auto& [key, record] : records.by_key)
+    for (const Mark& mark : marks_of(record, marks)) {
+      if (mark.model != model.id) continue;
+      Feature& feature = table.features.emplace_back();
+      const auto name = records.names.find(key);
+      feature.values = {key, text_or_nothing(name == records.names.end() ? std::string() : name->second)};
+      if (are_lines) feature.values.emplace_back(length_of(mark) * model.metres());
+      feature.values.emplace_back(wish.layer.slug);
+      feature.values.emplace_back(model.slug);
+      add_record(feature, records, key);
+      query::FlatRing path;
+      for (const glm::dvec3& place : mark.places)
+        path.emplace_back(place[wish.plane.right], place[wish.plane.up], place[wish.plane.depth]);
+      feature.geometry = {{{std::move(path)}}};
+    }
+  return table;
+}
+
+// Coordinates of a map are metres, and only what is seen along z lies in it.
+int epsg_of(const Model& model, const query::OutlinePlane& plane) {
+  constexpr std::string_view kAuthority = "EPSG:";
+  int code = 0;
+  if (plane.depth == 2 && model.unit == Unit::m && model.crs.starts_with(kAuthority))
+    std::from_chars(model.crs.data() + kAuthority.size(), model.crs.data() + model.crs.size(), code);
+  return code;
+}
+
+}  // namespace
+
+Result<FeatureSet> layer_features(const RouteContext& context, const FeatureWish& wish) {
+  const Model model = wish.room->model();
+  const auto all = wish.room->quantities(wish.layer.slug, wish.at);
+  if (!all) return tl::unexpected(all.error());
+  const auto perimeters = wish.room->perimeters(wish.layer.slug, wish.at);
+  if (!perimeters) return tl::unexpected(perimeters.error());
+  room::Selection selection;
+  selection.at = wish.at;
+  const auto texels = wish.room->surface_texels(wish.layer.slug, selection);
+  if (!texels) return tl::unexpected(texels.error());
+  auto outlines = query::plane_outlines(texels->view, *wish.room->geometry(), *texels->map,
+                                        query::classes_of(wish.layer), wish.plane);
+  if (!outlines) return tl::unexpected(outlines.error());
+  Records records;
+  if (wish.layer.table) {
+    std::vector<std::int64_t> painted;
+    for (const query::Quantity& quantity : all->classes) painted.push_back(static_cast<std::int64_t>(*quantity.value));
+    auto read = read_records(context, wish, std::move(painted));
+    if (!read) return tl::unexpected(read.error());
+    records = std::move(*read);
+  }
+  FeatureSet set;
+  set.name = model.slug + "-" + wish.layer.slug;
+  set.unit = name(model.unit);
+  for (const int axis : {wish.plane.right, wish.plane.up, wish.plane.depth}) set.axes += "xyz"[axis];
+  set.epsg = epsg_of(model, wish.plane);
+  set.description = wish.layer.name + " on " + model.name + ": " + set.axes + " in " + set.unit;
+  set.tables.push_back(areas_of(wish, *all, *perimeters, std::move(*outlines), records));
+  for (const Column& marks : records.marks) set.tables.push_back(marks_in(wish, records, marks));
+  return set;
+}
+
+}  // namespace strata::net

@@ -1,0 +1,59 @@
+#include "net/as_of.h"
+#include "net/feature_json.h"
+#include "net/geopackage.h"
+#include "net/layer_features.h"
+#include "net/map_query.h"
+#include "net/routes.h"
+
+namespace strata::net {
+namespace {
+
+enum class FeatureFormat { geojson, gpkg };
+
+// `f`, or where that is absent what Accept names; GeoJSON where neither says anything. 406 for what is none of them.
+Result<FeatureFormat> feature_format(const Request& request) {
+  const auto asked = request.query.find("f");
+  if (asked == request.query.end())
+    return request.header("accept").find(kGeoPackageType) == std::string_view::npos ? FeatureFormat::geojson
+                                                                                    : FeatureFormat::gpkg;
+  if (asked->second == "geojson") return FeatureFormat::geojson;
+  if (asked->second == "gpkg") return FeatureFormat::gpkg;
+  return fail(406, "Unknown format", "`f` is geojson or gpkg.", "f");
+}
+
+Result<Response> read_features(const RouteContext& context, const Request& request) {
+  const auto format = feature_format(request);
+  if (!format) return tl::unexpected(format.error());
+  const auto axis = axis_of(request);
+  if (!axis) return tl::unexpected(axis.error());
+  const auto language = asked_language(request);
+  if (!language) return tl::unexpected(language.error());
+  auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return tl::unexpected(room.error());
+  const auto layer = (*room)->layer(request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  const auto at = find_sequence(context, **room, as_of(request));
+  if (!at) return tl::unexpected(at.error());
+  const auto sequence = at->value_or((*room)->sequence());
+  auto set = layer_features(context,
+                            {*room, *layer, *at, {axis->u, axis->v, 3 - axis->u - axis->v}, request.role(), *language});
+  if (!set) return tl::unexpected(set.error());
+  auto response =
+      *format == FeatureFormat::geojson ? feature_json(std::move(*set)) : geopackage(*set, context.options.upload_dir);
+  if (!response) return response;
+  add_sequences(*response, sequence, (*room)->durable_sequence());
+  response->with("Vary", "Accept");
+  return response;
+}
+
+}  // namespace
+
+void add_feature_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/layers/{layer}/features",
+              .handler = answering([&context](const Request& request) { return read_features(context, request); }),
+              .query = {"f", "along", "at", "lang"},
+              .is_question = true});
+}
+
+}  // namespace strata::net
