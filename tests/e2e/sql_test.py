@@ -78,6 +78,23 @@ def check_edits(server, reader):
     check_areas(server, reader)
 
 
+def check_places(server, reader):
+    """Analysts get places as text, and may call what makes it."""
+    rows = reader.rows("SELECT * FROM areas WHERE model = 'Sheet'")
+    assert rows and all(row["geometry_wkt"] == f"POINT Z ({row['centroid_x']} {row['centroid_y']} {row['centroid_z']})" and row["srid"] == "" for row in rows), rows
+    server.ok("PATCH", M, {"crs": "EPSG:25832"})
+    assert {row["srid"] for row in reader.rows("SELECT srid FROM areas WHERE model = 'Sheet' UNION SELECT srid FROM models WHERE model = 'Sheet'")} == {"25832"}
+    model = server.get(M).json()["id"]
+    server.ok("POST", "/tables/units/columns", {"name": "Crack", "kind": "line"})
+    server.ok("PATCH", "/tables/units/records/1", {"values": {"crack": [{"model": model, "coordinates": [[1.5, 2, 3], [4, 5, 6]]}]}})
+    (row,) = reader.rows(f'SELECT "Crack (wkt)" AS all, wkt("Crack", {model}) AS here, wkt("Crack", {model + 1}) AS elsewhere FROM "Units" WHERE key = 1')
+    assert row == {"all": "MULTILINESTRING Z ((1.5 2.0 3.0, 4.0 5.0 6.0))", "here": row["all"], "elsewhere": ""}, row
+    server.ok("DELETE", "/tables/units/columns/crack")
+    assert "Crack (wkt)" not in columns(reader, "Units")
+    server.ok("PATCH", M + "/layers/marks", {"labels": {"de": "Zeichen"}})
+    assert reader.rows("SELECT labels ->> 'de' AS de FROM layers WHERE layer = 'Marks'") == [{"de": "Zeichen"}]
+
+
 def views(reader):
     return {row["table"]: row["view"] for row in reader.rows("SELECT * FROM tables")}
 
@@ -164,6 +181,7 @@ def main():
         server.ok("POST", "/projects/default/tables", {"name": "Units", "columns": [{"name": "Code", "required": True, "unique": True}]})
         server.ok("POST", "/tables/units/records", {"records": [{"values": {"code": f"SU {n}"}} for n in (1, 2, 3)]})
         check_edits(server, reader)
+        check_places(server, reader)
         check_tables(server, reader)
         check_rights(reader)
         password = reader.password
