@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/label_text.h"
 #include "core/search_text.h"
 
 namespace strata {
@@ -159,8 +160,7 @@ std::vector<ListedTerm> list_terms(const TermColumns& columns, std::span<const R
 }
 
 std::string label_in(const Term& term, const std::string& language) {
-  for (std::string tag = language; !tag.empty(); tag.resize(tag.find('-') == std::string::npos ? 0 : tag.rfind('-')))
-    if (const auto label = term.labels.find(tag); label != term.labels.end()) return label->second;
+  if (const std::string* label = find_label(term.labels, language)) return *label;
   if (!term.label.empty()) return term.label;
   return term.labels.empty() ? term.code : term.labels.begin()->second;
 }

@@ -1,12 +1,15 @@
 #include "figure/legend.h"
 
+#include "core/label_text.h"
 #include "core/number_text.h"
 
 namespace strata::figure {
 
-Legend legend_of(const Layer& layer, const Palette& palette, const std::set<double>* there) {
+Legend legend_of(const Layer& layer, const Palette& palette, const std::set<double>* there,
+                 const std::string& language) {
   Legend legend;
-  legend.title = layer.unit.empty() ? layer.name : layer.name + " [" + layer.unit + "]";
+  legend.title = label_or(layer.labels, language, layer.name);
+  if (!layer.unit.empty()) legend.title += " [" + layer.unit + "]";
   if (palette.mode == PaletteMode::linear) {
     constexpr int kSteps = 64;
     for (int i = 0; i < kSteps; ++i)

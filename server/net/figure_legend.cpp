@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/label_text.h"
 #include "room/provisional.h"
 
 namespace strata::net {
@@ -115,7 +116,7 @@ Result<std::vector<figure::Legend>> legends_of(const RouteContext& context, cons
     }
     const bool waits = wish.shown.provisional.contains(layer.id);  // also where it was erased
     if (!is_shown && !waits) continue;
-    legends.push_back(figure::legend_of(layer, palette, &there));
+    legends.push_back(figure::legend_of(layer, palette, &there, wish.language));
     if (waits) {
       const Palette::Point& mark = room::provisional_palette()->points.front();
       legends.back().entries.push_back({wish.waiting_label, mark.color, mark.pattern, mark.angle, true});
@@ -124,7 +125,9 @@ Result<std::vector<figure::Legend>> legends_of(const RouteContext& context, cons
     const auto table = context.store.table(std::to_string(*layer.table), wish.role);
     const Column* column = table ? find_column(table->columns, palette.column) : nullptr;
     if (column)
-      legends.back().title = layer.name + ": " + column->name + (column->unit.empty() ? "" : " [" + column->unit + "]");
+      legends.back().title = label_or(layer.labels, wish.language, layer.name) + ": " +
+                             label_or(column->labels, wish.language, column->name) +
+                             (column->unit.empty() ? "" : " [" + column->unit + "]");
   }
   return legends;
 }

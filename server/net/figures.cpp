@@ -328,6 +328,9 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
                    asked->continued};
   wish.legend = asked->legend;
   wish.waiting_label = asked->provisional;
+  const auto language = asked_language(request);
+  if (!language) return tl::unexpected(language.error());
+  wish.language = *language;
   return wish;
 }
 

@@ -27,6 +27,7 @@ struct FigureWish {
   figure::Captions captions;
   bool legend = true;
   std::string waiting_label;  // what the legend calls what waits for review
+  std::string language;       // in which it calls layers and columns that have a name in it; empty: in none
   struct Labels {
     Layer layer;
     Column column;

@@ -53,6 +53,7 @@ void add_figure_routes(Router& router, const RouteContext& context) {
       {.method = Method::post,
        .pattern = "/api/v1/models/{model}/figures",
        .handler = answering([&context, budget](const Request& request) { return answer(context, budget, request); }),
+       .query = {"lang"},
        .body = BodyKind::memory,
        .max_body = context.options.max_json_bytes,
        .is_question = true});

@@ -29,8 +29,8 @@ SVG = "{http://www.w3.org/2000/svg}"
 BARE = {"legend": False, "light": UNLIT, "looks": [], "title": "", "credit": ""}
 
 
-def figure(server, expect=200, token=True, model="sheet", **wish):
-    answer = server.request("POST", f"/models/{model}/figures", wish, token=token)
+def figure(server, expect=200, token=True, model="sheet", lang="", **wish):
+    answer = server.request("POST", f"/models/{model}/figures" + (f"?lang={lang}" if lang else ""), wish, token=token)
     assert answer.status == expect, (wish, answer)
     return answer
 
@@ -250,6 +250,10 @@ def legends(server):
         wish = {"direction": "top", "format": "svg", "dpi": 50, "scale": 1, "layers": [*others, {"layer": "high", **high}], **more}
         return group_of(figure(server, **wish).body, "legend")[1]
     assert told() == ["High", "High 1", "Low", "Low 2"], told()
+    server.ok("PATCH", M + "/layers/high", {"labels": {"de": "Oben"}})
+    assert told(lang="de-AT") == ["Oben", "High 1", "Low", "Low 2"], told(lang="de-AT")
+    assert told(lang="es")[0] == "High", "it has no name in Spanish"
+    figure(server, 422, lang="x" * 36, direction="top")
     assert told({"opacity": 0.5}) == ["High", "High 1", "Low", "Low 1", "Low 2"]
     assert told({"visible": False}) == ["Low", "Low 1", "Low 2"]
     hatched = {"palette": {"mode": "categorical", "points": [{"at": 1, "color": "#2040ff", "label": "Lines", "pattern": "hatch"}]}}

@@ -216,7 +216,12 @@ TEST(LegendOf, TellsClassesAndRamps) {
   EXPECT_EQ(legend.entries[1].label, "2.5");
   const std::set<double> there{2.5, 7};
   ASSERT_EQ(legend_of(layer, classes, &there).entries.size(), 1u) << "of classes that are not there nothing is told";
+  layer.labels = {{"de", "Schäden"}, {"pt-BR", "Danos"}};
+  EXPECT_EQ(legend_of(layer, classes, nullptr, "de-at").title, "Schäden");
+  EXPECT_EQ(legend_of(layer, classes, nullptr, "pt-br").title, "Danos");
+  EXPECT_EQ(legend_of(layer, classes, nullptr, "fr").title, "Damage") << "it has no name in it";
   layer.unit = "%";
+  EXPECT_EQ(legend_of(layer, classes, nullptr, "de").title, "Schäden [%]");
   const Legend ramp =
       legend_of(layer, {PaletteMode::linear, 0, 40, {{0, {0, 0, 0, 255}}, {40, {255, 255, 255, 255}}}, "", {}});
   EXPECT_EQ(ramp.title, "Damage [%]");

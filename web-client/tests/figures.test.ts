@@ -124,7 +124,7 @@ let saved: string[];
 const json = (body: unknown, status = 200): Response => new Response(JSON.stringify(body), { status });
 const job = (state: string, more: object = {}): object => ({ id: 5, kind: "figure", state, progress: 0.5, message: "Tile 3 of 6", ...more });
 const file = { name: "pot-front.pdf", media_type: "application/pdf", bytes: 1234 };
-const kFigures = "POST /api/v1/models/9/figures";
+const kFigures = "POST /api/v1/models/9/figures?lang=en-GB";
 
 beforeEach(() => {
   vi.useFakeTimers();
@@ -170,7 +170,7 @@ describe("a figure", () => {
 
   it("is asked for as a job, followed, and saved under its name where somebody waits for it", async () => {
     const key = await make();
-    expect(calls[0]).toMatchObject({ path: "/api/v1/models/9/figures", body: { direction: "front", scale: 5 }, headers: { Prefer: "respond-async" } });
+    expect(calls[0]).toMatchObject({ path: "/api/v1/models/9/figures?lang=en-GB", body: { direction: "front", scale: 5 }, headers: { Prefer: "respond-async" } });
     await poll();
     expect(jobs.entries).toMatchObject([{ key, name: "Figure: Pot", job: { state: "running", progress: 0.5 } }]);
     await end(job("done", { file }));

@@ -32,7 +32,7 @@ const asked = new Map(); // who → { preview, file }
 function listen(who) {
   asked.set(who, {});
   who.page.on("request", (request) => {
-    if (request.method() === "POST" && request.url().endsWith("/figures"))
+    if (request.method() === "POST" && new URL(request.url()).pathname.endsWith("/figures"))
       asked.get(who)[request.headers()["prefer"] === "respond-async" ? "file" : "preview"] = request.postDataJSON();
   });
 }
@@ -208,7 +208,7 @@ try {
   await radio(ada, "600 dpi").click();
   await radio(ada, "TIFF").click();
   const [started] = await Promise.all([
-    ada.page.waitForResponse((answer) => answer.request().method() === "POST" && answer.url().endsWith("/figures") && answer.status() === 202),
+    ada.page.waitForResponse((answer) => answer.request().method() === "POST" && new URL(answer.url()).pathname.endsWith("/figures") && answer.status() === 202),
     button(ada, "Make the figure").click(),
   ]);
   await bar(ada).waitFor();

@@ -2,7 +2,7 @@
 // problem a person can read.
 
 import type { CameraMessage } from "./camera";
-import { person_languages } from "./locale";
+import { page_locale, person_languages } from "./locale";
 import { own_problems } from "./own-problems";
 import type * as wire from "./protocol.gen";
 import {
@@ -819,7 +819,7 @@ const records_path = (place: RecordPlace): string =>
 
 const comment_path = (id: number): string => `/comments/${id}`;
 
-const figures_path = (model: Id): string => `/models/${encodeURIComponent(model)}/figures`;
+const figures_path = (model: Id): string => `/models/${encodeURIComponent(model)}/figures?${new URLSearchParams({ lang: page_locale() })}`;
 
 const views_path = (model: Id): string => `/models/${encodeURIComponent(model)}/views`;
 const view_path = (model: Id, view: Id): string => `${views_path(model)}/${encodeURIComponent(view)}`;
