@@ -241,7 +241,7 @@ describe("the comments of a model", () => {
   let comments: Comments;
   const settle = (): Promise<void> => new Promise((resolve) => setTimeout(resolve, 0));
   const list = (...all: Comment[]): void =>
-    void answers.set("GET /api/v1/models/1/comments?limit=1000&offset=0", () => [200, { comments: all, total: all.length }]);
+    void answers.set("GET /api/v1/models/1/comments?limit=1000", () => [200, { comments: all, total: all.length }]);
 
   function open(): Comments {
     const camera = front_camera();
@@ -293,7 +293,7 @@ describe("the comments of a model", () => {
   it("may name the people of the project, who are asked for once, and again where that failed", async () => {
     expect(await comments.load_people()).toEqual([]);
     const dora = { user: "dora", full_name: "Dora D." };
-    answers.set("GET /api/v1/projects/7/people?limit=1000&offset=0", () => [200, { people: [{ user: "ada", full_name: "", color: "#aa3333" }, dora], total: 2 }]);
+    answers.set("GET /api/v1/projects/7/people?limit=1000", () => [200, { people: [{ user: "ada", full_name: "", color: "#aa3333" }, dora], total: 2 }]);
     const asked = (): number => calls.filter(({ call }) => call.includes("/people")).length;
     expect(asked()).toBe(1);
     expect(await Promise.all([comments.load_people(), comments.load_people()])).toEqual([[dora], [dora]]);
@@ -342,7 +342,7 @@ describe("the comments of a model", () => {
   });
 
   it("are told not to be there when they cannot be read, and read again", async () => {
-    answers.delete("GET /api/v1/models/1/comments?limit=1000&offset=0");
+    answers.delete("GET /api/v1/models/1/comments?limit=1000");
     comments = open();
     comments.welcome("ada");
     await settle();

@@ -4,7 +4,7 @@ import { invitation_of, is_useless_link, login_path_of, password_words, sign_in_
 import { route_of } from "../src/app/routes";
 import { texts } from "../src/app/texts";
 import { told_date, told_time } from "../src/app/times";
-import { Api, ApiError } from "../src/core/api";
+import { Api, ApiError, next_page } from "../src/core/api";
 import { browser_of, called, find_people, initials, is_user_name, may_change, password_mistake, role_by_groups, roles_of_tokens, roles_of_tokens_in, roles_to_give } from "../src/core/people";
 import type { Person } from "../src/core/protocol.gen";
 import { may_administer } from "../src/core/types";
@@ -15,13 +15,13 @@ const person = (user: string, full_name = "", more: Partial<Person> = {}): Perso
 const refusal = (status: number, more: { field?: string; detail?: string } = {}): ApiError => new ApiError({ status, title: "Refused", ...more });
 
 /** An interface whose server gives these answers in turn, and what it was asked. */
-function api_of(...answers: [status: number, body: unknown][]): { api: Api; asked: { what: string; body: unknown; headers: Record<string, string> }[] } {
+function api_of(...answers: [status: number, body: unknown, headers?: Record<string, string>][]): { api: Api; asked: { what: string; body: unknown; headers: Record<string, string> }[] } {
   const asked: { what: string; body: unknown; headers: Record<string, string> }[] = [];
   const api = new Api(async (path, init) => {
-    const [status, body] = answers[asked.length] ?? [500, {}];
+    const [status, body, told = {}] = answers[asked.length] ?? [500, {}];
     const sent = typeof init!.body === "string" ? (JSON.parse(init!.body) as unknown) : null;
     asked.push({ what: `${init!.method} ${path}`, body: sent, headers: init!.headers as Record<string, string> });
-    return new Response(JSON.stringify(body), { status });
+    return new Response(status === 204 ? null : JSON.stringify(body), { status, headers: told });
   });
   return { api, asked };
 }
@@ -205,12 +205,41 @@ describe("the interface", () => {
   });
   it("brings all people, page by page", async () => {
     const page = (from: number, to: number): Person[] => Array.from({ length: to - from }, (_, n) => person(`p${from + n}`));
-    const { api, asked } = api_of([200, { users: page(0, 1000), total: 1200 }], [200, { users: page(1000, 1200), total: 1200 }]);
+    const next = { Link: '</api/v1/users?limit=1000&after=WyJh>; rel="next"' };
+    const { api, asked } = api_of([200, { users: page(0, 1000), total: 1200 }, next], [200, { users: page(1000, 1200), total: 1200 }]);
     expect((await api.people()).length).toBe(1200);
-    expect(asked.map(({ what }) => what)).toEqual(["GET /api/v1/users?limit=1000&offset=0", "GET /api/v1/users?limit=1000&offset=1000"]);
+    expect(asked.map(({ what }) => what)).toEqual(["GET /api/v1/users?limit=1000", "GET /api/v1/users?limit=1000&after=WyJh"]);
   });
   it("ends although people went away between two pages", async () => {
-    const { api } = api_of([200, { users: [person("a")], total: 3 }], [200, { users: [], total: 1 }]);
+    const { api } = api_of([200, { users: [person("a")], total: 3 }, { Link: '</api/v1/users?after=x>; rel="next", </api/v1/users?offset=0>; rel="prev"' }], [200, { users: [], total: 1 }]);
     expect((await api.people()).map(({ user }) => user)).toEqual(["a"]);
+  });
+  it("follows no link that leads elsewhere", () => {
+    for (const link of [null, "", '<https://else.example/api/v1/users>; rel="next"', '</users>; rel="next"', '</api/v1/users>; rel="prev"']) expect(next_page(link)).toBeNull();
+  });
+  it("names the version in every change of what has one", async () => {
+    const seen: [number, unknown, Record<string, string>] = [200, { palette: {} }, { ETag: '"v7"' }];
+    const changes: ((api: Api) => Promise<unknown>)[] = [
+      (api) => api.set_title_column("units", 3),
+      (api) => api.change_column("units", "depth", { name: "Depth" }),
+      (api) => api.drop_column("units", "depth"),
+      (api) => api.change_record("units", 1, { values: {} }),
+      (api) => api.delete_record("units", 1, { what: "clear" }),
+      (api) => api.delete_look(1, 2),
+      (api) => api.change_look(1, 2, { name: "x" }),
+      (api) => api.change_layer(1, 2, { name: "x" } as never),
+      (api) => api.delete_layer(1, 2),
+      (api) => api.delete_model(1),
+      (api) => api.delete_table("units"),
+      (api) => api.delete_project("villa"),
+    ];
+    for (const change of changes) {
+      const { api, asked } = api_of(seen, [200, { palette: {} }]);
+      await change(api);
+      expect(asked.map(({ headers }) => headers["If-Match"])).toEqual([undefined, '"v7"']);
+    }
+    const { api, asked } = api_of([200, {}]);
+    await api.change_record("units", 1, { values: {}, version: 4 });
+    expect(asked[0]!.headers["If-Match"]).toBe('"v4"');
   });
 });

@@ -33,19 +33,19 @@ describe("a change of a project", () => {
   it("is made of the project that this person sees", async () => {
     const server = new FakeServer();
     const seen = { ...server.now, role: "administrator" } as Project; // as lists have it
-    expect(await new ProjectChange(server, seen).save(wanted)).toMatchObject({ name: "Villa Giulia" });
+    expect(await new ProjectChange(server, seen).save(wanted, false)).toMatchObject({ name: "Villa Giulia" });
     expect(server.version).toBe(2);
   });
 
   it("is not put over another's that this person has not seen, until they say so once more", async () => {
-    for (const other of [{ name: "Villa Julia" }, { description: "Mosaics" }]) {
+    for (const other of [{ name: "Villa Julia" }, { description: "Mosaics" }, { require_if_match: true }]) {
       const server = new FakeServer();
       const change = new ProjectChange(server, { ...server.now });
       server.put(other);
-      expect(await change.save(wanted)).toBeNull();
+      expect(await change.save(wanted, false)).toBeNull();
       expect(server.now).toMatchObject(other);
       expect(change.name).toBe(server.now.name);
-      expect(await change.save(wanted)).toMatchObject({ name: "Villa Giulia", description: "Frescoes" });
+      expect(await change.save(wanted, false)).toMatchObject({ name: "Villa Giulia", description: "Frescoes", require_if_match: false });
     }
   });
 
@@ -53,15 +53,15 @@ describe("a change of a project", () => {
     const server = new FakeServer();
     const change = new ProjectChange(server, { ...server.now });
     server.meanwhile = () => server.put({ name: "First" });
-    expect([await change.save(wanted), change.name]).toEqual([null, "First"]);
+    expect([await change.save(wanted, false), change.name]).toEqual([null, "First"]);
     server.put({ name: "Second" });
-    expect([await change.save(wanted), change.name]).toEqual([null, "Second"]);
-    expect(await change.save(wanted)).toMatchObject({ name: "Villa Giulia" });
+    expect([await change.save(wanted, false), change.name]).toEqual([null, "Second"]);
+    expect(await change.save(wanted, false)).toMatchObject({ name: "Villa Giulia" });
   });
 
   it("says what else goes wrong", async () => {
     const server = new FakeServer();
     server.change_project = () => Promise.reject(new ApiError({ status: 403, title: "Not allowed" }));
-    await expect(new ProjectChange(server, server.now).save(wanted)).rejects.toMatchObject({ status: 403 });
+    await expect(new ProjectChange(server, server.now).save(wanted, false)).rejects.toMatchObject({ status: 403 });
   });
 });

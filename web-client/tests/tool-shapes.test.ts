@@ -34,7 +34,7 @@ describe("the shapes that all people share", () => {
     shapes.want();
     shapes.want();
     await settle();
-    expect(asked).toEqual([["GET", "/api/v1/tools"]]);
+    expect(asked).toEqual([["GET", "/api/v1/tools?limit=1000"]]);
     expect(shapes.list.map(({ name }) => name)).toEqual(["Leaf", "Star"]);
     shapes.refresh();
     expect(asked).toHaveLength(2);

@@ -13,6 +13,13 @@ export interface Called {
   text: string;
 }
 
+/** Something that is so or not, beside name and text. */
+export interface NamingOption {
+  label: string;
+  hint: string;
+  checked: boolean;
+}
+
 /** What the fields are called, and what is said where there is no name. */
 export interface NamingWords {
   name: string;
@@ -21,6 +28,10 @@ export interface NamingWords {
   text: string;
   text_hint?: string;
 }
+
+const option_field = ({ label, hint, checked }: NamingOption): TemplateResult =>
+  html`<label class="check"><input type="checkbox" aria-describedby="option-hint" .defaultChecked=${checked} />${label}</label>
+    <p class="hint" id="option-hint">${hint}</p>`;
 
 @customElement("strata-naming-dialog")
 export class StrataNamingDialog extends LitElement {
@@ -33,14 +44,16 @@ export class StrataNamingDialog extends LitElement {
   @property({ attribute: false }) words!: NamingWords;
   /** What it is called so far; null: it is new. */
   @property({ attribute: false }) called: Called | null = null;
+  @property({ attribute: false }) option: NamingOption | null = null;
   /** Answers what is wrong; nothing: it is done, and the dialog closes. `key` is the same for each attempt at the same words. */
-  @property({ attribute: false }) save!: (called: Called, key: string) => Promise<string>;
+  @property({ attribute: false }) save!: (called: Called, key: string, checked: boolean) => Promise<string>;
   @state() private problem_ = "";
   @state() private busy_ = false;
   @query("strata-dialog") private dialog_!: StrataDialog;
   @query("form") private form_!: HTMLFormElement;
   @query("input") private name_!: HTMLInputElement;
   @query("textarea") private text_!: HTMLTextAreaElement;
+  @query("input[type=checkbox]") private option_!: HTMLInputElement | null;
   private key_ = new_id();
 
   static override styles = [
@@ -66,6 +79,7 @@ export class StrataNamingDialog extends LitElement {
           <span>${words.text}</span>
           <textarea maxlength="10000" .defaultValue=${called?.text ?? ""} placeholder=${words.text_hint ?? ""}></textarea>
         </label>
+        ${this.option ? option_field(this.option) : nothing}
       </form>
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
       <button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>${this.yes}</button>
@@ -91,7 +105,7 @@ export class StrataNamingDialog extends LitElement {
   private async attempt(called: Called): Promise<void> {
     this.busy_ = true;
     try {
-      this.problem_ = await this.save(called, this.key_);
+      this.problem_ = await this.save(called, this.key_, this.option_?.checked ?? false);
       if (this.problem_ === "") this.dialog_.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

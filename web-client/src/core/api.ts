@@ -125,7 +125,7 @@ export class Api {
   }
   /** Where this person is signed in, the newest first. */
   async sign_in_sessions(): Promise<wire.SignInSession[]> {
-    return (await this.json<wire.SignInSessionList>("GET", "/me/sessions")).sessions;
+    return this.all("/me/sessions", "sessions");
   }
   async end_session(id: number): Promise<void> {
     await this.request("DELETE", `/me/sessions/${id}`);
@@ -134,7 +134,7 @@ export class Api {
     await this.request("DELETE", "/me/sessions");
   }
   async script_tokens(): Promise<wire.ScriptToken[]> {
-    return (await this.json<wire.ScriptTokenList>("GET", "/me/tokens")).tokens;
+    return this.all("/me/tokens", "tokens");
   }
   async create_token(token: wire.ScriptTokenCreate): Promise<wire.ScriptTokenMade> {
     return this.json("POST", "/me/tokens", token);
@@ -154,12 +154,7 @@ export class Api {
 
   /** By name. */
   async people(): Promise<wire.Person[]> {
-    const people: wire.Person[] = [];
-    for (;;) {
-      const page = await this.json<wire.PersonList>("GET", `/users?limit=1000&offset=${people.length}`);
-      people.push(...page.users);
-      if (people.length >= page.total || page.users.length === 0) return people;
-    }
+    return this.all("/users", "users");
   }
   async invite(person: wire.PersonCreate): Promise<wire.Invitation> {
     return this.json("POST", "/users", person);
@@ -176,7 +171,7 @@ export class Api {
   }
 
   async projects(): Promise<wire.Project[]> {
-    return (await this.json<wire.ProjectList>("GET", "/projects?limit=1000")).projects;
+    return this.all("/projects", "projects");
   }
   async project(project: Id): Promise<Versioned<wire.Project>> {
     return this.versioned("GET", project_path(project));
@@ -212,7 +207,7 @@ export class Api {
 
   /** By name; there are 200 at most. */
   async groups(): Promise<wire.Group[]> {
-    return (await this.json<wire.GroupList>("GET", "/groups?limit=1000")).groups;
+    return this.all("/groups", "groups");
   }
   async group(id: number): Promise<wire.GroupDetail> {
     return this.json("GET", `/groups/${id}`);
@@ -229,12 +224,7 @@ export class Api {
   }
 
   async models(): Promise<Model[]> {
-    const models: Model[] = [];
-    for (;;) {
-      const page = await this.json<wire.ModelList>("GET", `/models?limit=1000&offset=${models.length}`);
-      models.push(...page.models);
-      if (models.length >= page.total || page.models.length === 0) return models;
-    }
+    return this.all("/models", "models");
   }
   async model(id: Id): Promise<Versioned<Model>> {
     return this.versioned("GET", `/models/${encodeURIComponent(id)}`);
@@ -263,8 +253,7 @@ export class Api {
   }
 
   async layers(model: Id): Promise<Layer[]> {
-    const path = `/models/${encodeURIComponent(model)}/layers?limit=1000`;
-    return (await this.json<wire.LayerList>("GET", path)).layers.map(complete_layer);
+    return (await this.all<wire.Layer>(`/models/${encodeURIComponent(model)}/layers`, "layers")).map(complete_layer);
   }
   async create_layer(model: Id, layer: LayerCreate): Promise<Layer> {
     return complete_layer(await this.json<wire.Layer>("POST", `/models/${encodeURIComponent(model)}/layers`, layer));
@@ -308,7 +297,7 @@ export class Api {
     await this.request("DELETE", layer_path(model, layer), undefined, { "If-Match": etag });
   }
   async looks(model: Id): Promise<wire.Look[]> {
-    return (await this.json<wire.LookList>("GET", `/models/${encodeURIComponent(model)}/looks`)).looks;
+    return this.all(`/models/${encodeURIComponent(model)}/looks`, "looks");
   }
   /** A picture on the model's texture coordinates, named as its file. */
   async create_look(model: Id, file: File): Promise<wire.Look> {
@@ -324,7 +313,7 @@ export class Api {
     return (await this.versioned<wire.Look>("PATCH", path, change, etag)).value;
   }
   async delete_look(model: Id, look: Id): Promise<void> {
-    await this.request("DELETE", look_path(model, look));
+    await this.delete_as_read(look_path(model, look));
   }
   /** What was done in a project, newest first; `before`: `next` of the page before. */
   async activity(project: Id, { model, before, limit }: { model: Id | undefined; before: string | undefined; limit: number }): Promise<wire.ActivityList> {
@@ -345,21 +334,11 @@ export class Api {
   }
   /** Who sees the project, by name. */
   async project_people(project: Id): Promise<wire.ProjectPerson[]> {
-    const people: wire.ProjectPerson[] = [];
-    for (;;) {
-      const page = await this.json<wire.ProjectPersonList>("GET", `${project_path(project)}/people?limit=1000&offset=${people.length}`);
-      people.push(...page.people);
-      if (people.length >= page.total || page.people.length === 0) return people;
-    }
+    return this.all(`${project_path(project)}/people`, "people");
   }
   /** Of a model, with replies, by id. */
   async comments(model: Id): Promise<wire.Comment[]> {
-    const comments: wire.Comment[] = [];
-    for (;;) {
-      const page = await this.json<wire.CommentList>("GET", `/models/${encodeURIComponent(model)}/comments?limit=1000&offset=${comments.length}`);
-      comments.push(...page.comments);
-      if (comments.length >= page.total || page.comments.length === 0) return comments;
-    }
+    return this.all(`/models/${encodeURIComponent(model)}/comments`, "comments");
   }
   async comment(id: number): Promise<wire.Comment> {
     return this.json("GET", comment_path(id));
@@ -389,7 +368,7 @@ export class Api {
     return this.json("POST", `${layer_path(model, layer)}/review`, decision);
   }
   async views(model: Id): Promise<wire.View[]> {
-    return (await this.json<wire.ViewList>("GET", `${views_path(model)}?limit=1000`)).views; // it has no more
+    return this.all(views_path(model), "views");
   }
   async view(model: Id, view: Id): Promise<wire.View> {
     return this.json("GET", view_path(model, view));
@@ -419,7 +398,7 @@ export class Api {
 
   /** All tours of a model. */
   async tours(model: Id): Promise<wire.TourEntry[]> {
-    return (await this.json<wire.TourList>("GET", `${tours_path(model)}?limit=1000`)).tours; // it has no more
+    return this.all(tours_path(model), "tours");
   }
   async tour(model: Id, tour: Id): Promise<wire.Tour> {
     return this.json("GET", tour_path(model, tour));
@@ -438,12 +417,7 @@ export class Api {
   }
   /** Those that this person may see to: administrators all, curators those of their projects. */
   async kiosks(): Promise<wire.Kiosk[]> {
-    const kiosks: wire.Kiosk[] = [];
-    for (;;) {
-      const page = await this.json<wire.KioskList>("GET", `/kiosks?limit=1000&offset=${kiosks.length}`);
-      kiosks.push(...page.kiosks);
-      if (kiosks.length >= page.total || page.kiosks.length === 0) return kiosks;
-    }
+    return this.all("/kiosks", "kiosks");
   }
   /** The link is told this once. */
   async create_kiosk(model: Id, tour: Id, kiosk: wire.KioskCreate): Promise<wire.KioskMade> {
@@ -457,7 +431,7 @@ export class Api {
     return this.json("POST", `${kiosk_path(kiosk)}/reload`);
   }
   async tables(project: Id): Promise<wire.Table[]> {
-    return (await this.json<wire.TableList>("GET", `${project_path(project)}/tables?limit=1000`)).tables;
+    return this.all(`${project_path(project)}/tables`, "tables");
   }
   async table(table: Id): Promise<wire.Table> {
     return this.json("GET", table_path(table));
@@ -469,16 +443,16 @@ export class Api {
   }
   /** The column that says what a record is called, by its id; null: the best one by rule. */
   async set_title_column(table: Id, column: number | null): Promise<wire.Table> {
-    return this.json("PATCH", table_path(table), { title_column: column === null ? "" : `${column}` });
+    return this.change_as_read(table_path(table), table_path(table), { title_column: column === null ? "" : `${column}` });
   }
   async create_column(table: Id, column: wire.ColumnCreate): Promise<wire.ColumnChanged> {
     return this.json("POST", `${table_path(table)}/columns`, column);
   }
   async change_column(table: Id, column: Id, change: wire.ColumnPatch): Promise<wire.ColumnChanged> {
-    return this.json("PATCH", `${table_path(table)}/columns/${encodeURIComponent(column)}`, change);
+    return this.change_as_read(table_path(table), column_path(table, column), change);
   }
   async drop_column(table: Id, column: Id): Promise<void> {
-    await this.request("DELETE", `${table_path(table)}/columns/${encodeURIComponent(column)}`);
+    await this.delete_as_read(column_path(table, column), table_path(table));
   }
   /** Of the caller's changes of columns and records, the newest. */
   async undo_table(table: Id): Promise<wire.TableChanged> {
@@ -512,12 +486,15 @@ export class Api {
   }
   /** With the version that was read: another's change in between is an ApiError of status 412. */
   async change_record(table: Id, key: number, change: wire.RecordPatch): Promise<wire.TableRecord> {
-    return this.json("PATCH", `${records_path({ table })}/${key}`, change);
+    const path = `${records_path({ table })}/${key}`;
+    if (change.version === undefined) return this.change_as_read(path, path, change);
+    return (await this.versioned<wire.TableRecord>("PATCH", path, change, etag_of(change.version))).value;
   }
   /** `texels`: what becomes of the surface that has the record's key. */
   async delete_record(table: Id, key: number, texels: TexelsOfDeleted): Promise<void> {
     const query = new URLSearchParams({ texels: texels.what, ...(texels.what === "reassign" ? { to: `${texels.to}` } : {}) });
-    await this.request("DELETE", `${records_path({ table })}/${key}?${query}`);
+    const path = `${records_path({ table })}/${key}`;
+    await this.delete_as_read(`${path}?${query}`, path);
   }
   /** Files of a record. */
   async attachments(table: Id, key: number): Promise<wire.Attachment[]> {
@@ -563,7 +540,7 @@ export class Api {
     return this.parsed(await this.request_raw("POST", `${place}/terms?${query}`, file, { "Content-Type": type }));
   }
   async templates(): Promise<wire.Template[]> {
-    return (await this.json<wire.TemplateList>("GET", "/templates?limit=1000")).templates;
+    return this.all("/templates", "templates");
   }
   /** Makes its tables, and its layers on the model. */
   async use_template(project: Id, template: Id, use: wire.TemplateUse): Promise<TemplateMade> {
@@ -580,7 +557,7 @@ export class Api {
     }
   }
   async tools(): Promise<wire.Tool[]> {
-    return (await this.json<wire.ToolList>("GET", "/tools")).tools;
+    return this.all("/tools", "tools");
   }
   async create_tool(picture: Blob, name: string, part: string): Promise<wire.Tool> {
     const query = new URLSearchParams({ name, part });
@@ -728,6 +705,27 @@ export class Api {
     return { done, cancel: () => request.abort() };
   }
 
+  /** Every entry of a list, page by page: each begins where the one before ended, whatever others write meanwhile. */
+  private async all<T>(path: string, list: string): Promise<T[]> {
+    const found: T[] = [];
+    for (let next: string | null = `${path}?limit=1000`; next !== null; ) {
+      const response: Response = await this.request("GET", next);
+      found.push(...(await this.parsed<Record<string, T[]>>(response))[list]!);
+      next = next_page(response.headers.get("Link"));
+    }
+    return found;
+  }
+
+  /** A change that stands on its own: of whatever is there now, whose version it names. `versioned`: what has the version. */
+  private async change_as_read<T>(versioned: string, path: string, change: unknown): Promise<T> {
+    const { etag } = await this.versioned("GET", versioned);
+    return (await this.versioned<T>("PATCH", path, change, etag)).value;
+  }
+  private async delete_as_read(path: string, versioned = path): Promise<void> {
+    const { etag } = await this.versioned("GET", versioned);
+    await this.request("DELETE", path, undefined, { "If-Match": etag });
+  }
+
   private async json<T>(method: string, path: string, body?: unknown): Promise<T> {
     return (await this.versioned<T>(method, path, body)).value;
   }
@@ -814,6 +812,8 @@ const project_path = (project: Id): string => `/projects/${encodeURIComponent(pr
 
 const table_path = (table: Id): string => `/tables/${encodeURIComponent(table)}`;
 
+const column_path = (table: Id, column: Id): string => `${table_path(table)}/columns/${encodeURIComponent(column)}`;
+
 const records_path = (place: RecordPlace): string =>
   `${"table" in place ? table_path(place.table) : layer_path(place.model, place.layer)}/records`;
 
@@ -838,6 +838,12 @@ const cancelled = (): ApiError => new ApiError({ status: 499, title: "Cancelled"
 function unreachable(): ApiError {
   const [title, detail] = own_problems().unreachable;
   return new ApiError({ status: 0, title, detail });
+}
+
+/** Where the next page of a list is, below `kBase`, by the `Link` of this one (RFC 8288); null: it is the last. */
+export function next_page(link: string | null): string | null {
+  const target = /<([^>]*)>\s*;\s*rel="?next"?/.exec(link ?? "")?.[1];
+  return target?.startsWith(kBase) ? target.slice(kBase.length) : null;
 }
 
 /** The problem in an answer's text; where the text is not one, what the status means in plain words. */

@@ -1215,6 +1215,8 @@ export interface Project {
   name: string;
   slug: string;
   description: string;
+  /** Changes and deletions in the project of what has a version must name it in If-Match (428). */
+  require_if_match?: boolean;
   /** Of who asks, there; in lists. */
   role?: Role;
   /** That give who asks this role there, in lists; absent: it is their own, or what they may do everywhere. */
@@ -1457,6 +1459,8 @@ export interface ProjectCreate {
 export interface ProjectPatch {
   name?: string;
   description?: string;
+  /** As in Project. Curators change it, too. */
+  require_if_match?: boolean;
 }
 
 /** Models. */
