@@ -752,6 +752,7 @@ CREATE TABLE public.projects (
     slug public.slug NOT NULL,
     description text NOT NULL,
     version bigint DEFAULT 1 NOT NULL,
+    require_if_match boolean DEFAULT false NOT NULL,
     CONSTRAINT projects_name_check CHECK ((name <> ''::text))
 );
 

@@ -41,6 +41,29 @@ def add_common_answers(document) -> None:
             operation["responses"] = dict(sorted(operation["responses"].items()))
 
 
+# Reads whose answers have no ETag: what is told once or as it happens, what must not be kept, and what has the version of a record for If-Match but tells more.
+WITHOUT_ANSWER_ETAG = ("/login", "/live", "/events", "/me/models/{model}/view", "/layers/{layer}/records/{key}", "/attachments")
+
+
+def add_validators(document) -> None:
+    """Reads tell an ETag and know 304, and changes of what has a version know 428, without its being written at each of them."""
+    for path, item in document["paths"].items():
+        for method, operation in item.items():
+            if method == "parameters" or not path.startswith("/api/"):
+                continue
+            parameters, answers = operation.setdefault("parameters", []), operation["responses"]
+            if method == "get" and "304" not in answers and "200" in answers and not path.endswith(WITHOUT_ANSWER_ETAG):
+                parameters.append({"$ref": "#/components/parameters/if_none_match"})
+                answers["200"].setdefault("headers", {})["ETag"] = {"$ref": "#/components/headers/AnswerETag"}
+                answers["304"] = {"$ref": "#/components/responses/UnchangedAnswer"}
+            is_versioned = {"$ref": "#/components/parameters/if_match"} in parameters and method in ("patch", "delete")
+            if is_versioned and not path.startswith("/api/v1/tools"):
+                answers["428"] = {"$ref": "#/components/responses/VersionMissing"}
+            if not parameters:
+                del operation["parameters"]
+            operation["responses"] = dict(sorted(answers.items()))
+
+
 def references(node) -> set[str]:
     if isinstance(node, dict):
         found = {node["$ref"]} if isinstance(node.get("$ref"), str) else set()
@@ -51,6 +74,7 @@ def references(node) -> set[str]:
 def write(protocol: Protocol, source: pathlib.Path) -> str:
     document = point_to_components(yaml.safe_load(source.read_text()))
     add_common_answers(document)
+    add_validators(document)
     schemas = document.setdefault("components", {}).setdefault("schemas", {})
     prefix = "#/components/schemas/"
     wanted = [ref for ref in references(document) if ref.startswith(prefix)]

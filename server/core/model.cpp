@@ -72,7 +72,11 @@ std::optional<ScaleProposal> scale_proposal_from_json(const nlohmann::json& json
 }
 
 nlohmann::json to_json(const Project& project) {
-  return {{"id", project.id}, {"name", project.name}, {"slug", project.slug}, {"description", project.description}};
+  return {{"id", project.id},
+          {"name", project.name},
+          {"slug", project.slug},
+          {"description", project.description},
+          {"require_if_match", project.require_if_match}};
 }
 
 nlohmann::json to_json(const AtlasReport& atlas, double metres_per_unit) {

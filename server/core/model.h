@@ -18,6 +18,7 @@ struct Project {
   std::string slug;
   std::string description;
   std::int64_t version = 1;
+  bool require_if_match = false;  // what has a version is changed only by who names the one that they read
 };
 
 enum class Unit { mm, cm, m };

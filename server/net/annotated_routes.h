@@ -16,9 +16,12 @@ class AnnotatedRoutes {
   AnnotatedRoutes(Router& router, const RouteContext& context, Role least = Role::annotator)
       : router_(router), context_(context), least_(least) {}
 
-  void read(std::string pattern, Answer answer, std::vector<std::string> query = {}) {
-    router_.add(
-        {.method = Method::get, .pattern = std::move(pattern), .handler = handler(answer), .query = std::move(query)});
+  void read(std::string pattern, Answer answer, std::vector<std::string> query = {}, StateOf state = {}) {
+    router_.add({.method = Method::get,
+                 .pattern = std::move(pattern),
+                 .handler = handler(answer),
+                 .query = std::move(query),
+                 .state = std::move(state)});
   }
   void change(Method method, std::string pattern, Answer answer) {
     const bool has_body = method != Method::remove;
@@ -28,7 +31,8 @@ class AnnotatedRoutes {
                  .role = least_,
                  .body = has_body ? BodyKind::memory : BodyKind::none,
                  .max_body = has_body ? context_.options.max_json_bytes : 0,
-                 .keeps_answer = true});
+                 .keeps_answer = true,
+                 .needs_version = method == Method::patch || method == Method::remove});
   }
 
  private:

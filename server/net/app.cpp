@@ -5,10 +5,12 @@
 #include "core/log.h"
 #include "net/accept.h"
 #include "net/compression.h"
+#include "net/entity_tags.h"
 #include "net/kiosk_gate.h"
 #include "net/origin.h"
 #include "net/people_wire.h"
 #include "net/personal_view.h"
+#include "net/precondition.h"
 #include "net/project_gate.h"
 #include "net/still_welcome.h"
 
@@ -203,6 +205,7 @@ std::optional<Response> App::admit(Request& request, const Route& route) {
   if (changes(request.method))
     if (auto own = check_same_origin(request, options_.allowed_origins); !own) return problem_response(own.error());
   if (auto known = check_query(route, request); !known) return problem_response(known.error());
+  if (auto named = check_precondition(context_, request, route); !named) return problem_response(named.error());
   if (route.check)
     if (auto good = route.check(request); !good) return problem_response(good.error());
   if (request.header("idempotency-key").size() > kMaxKey)
@@ -220,7 +223,7 @@ std::optional<Response> App::admit_again(Request& request, const Route& route) {
 
 void App::handle(const Request& request, const Route& route, const Respond& send) {
   const bool reads = request.method == Method::get || request.method == Method::head;
-  const Respond respond([send, coding = std::string(request.header("accept-encoding")),
+  const Respond respond([send, coding = std::string(request.header("accept-encoding")), known = request.known_tags,
                          accept = reads ? std::string(request.header("accept")) : std::string()](Response response) {
     // What was changed is told in any case; what was only read can be asked for in another way.
     if (response.status == 200 && !response.events && !accepts_type(accept, response.header("Content-Type")))
@@ -228,9 +231,10 @@ void App::handle(const Request& request, const Route& route, const Respond& send
                                    "This address answers with " + std::string(response.header("Content-Type")) +
                                        ", which `Accept` does not take.",
                                    "Accept"});
-    compress(response, coding);
+    compress(response, coding, known);
     send(std::move(response));
   });
+  if (reads) return answer_failures(request, respond, [&] { answer_read(request, route, respond); });
   const bool remembered = route.keeps_answer && !request.header("idempotency-key").empty();
   if (remembered) {
     auto kept = answers_.begin(request);
@@ -247,8 +251,12 @@ void App::handle(const Request& request, const Route& route, const Respond& send
     respond(std::move(response));
   })
                                     : respond;
+  answer_failures(request, answer, [&] { route.handler(request, answer); });
+}
+
+void App::answer_failures(const Request& request, const Respond& answer, const std::function<void()>& work) {
   try {
-    route.handler(request, answer);
+    work();
   } catch (const QuestionEnded& ended) {
     answer(ended.problem());
   } catch (const std::exception& error) {
@@ -258,6 +266,33 @@ void App::handle(const Request& request, const Route& route, const Respond& send
                " failed: " + error.what());
     answer(Problem{500, "Internal error", "The server made a mistake; its log says more.", {}});
   }
+}
+
+// What is open to everyone is the page, which has tags of its own, and health, which nobody should keep.
+void App::answer_read(const Request& request, const Route& route, const Respond& respond) {
+  if (!route.role) return route.handler(request, respond);
+  const auto known = request.header("if-none-match");
+  const auto state_now = [&]() -> std::optional<std::string> {
+    const auto state = route.state ? route.state(request) : std::nullopt;
+    return state ? std::optional(tag_of_state(request, *state)) : std::nullopt;
+  };
+  // Before the work, which is what it saves. `Accept` is part of such tags.
+  const auto before = state_now();
+  if (before && names_tag(known, *before))
+    return respond(std::move(empty_response(304).with("ETag", *before).with("Vary", "Accept")));
+  const Respond with_tag([respond, known_tags = std::string(known), before, state_now](Response response) {
+    if (response.status != 200) return respond(std::move(response));
+    // Nothing changed while the answer was made: it shows that state and no other.
+    if (before && response.header("ETag").empty() && state_now() == before) {
+      if (response.header("Vary").empty()) response.with("Vary", "Accept");
+      return respond(std::move(response.with("ETag", *before)));
+    }
+    const auto tag = tag_of_body(response);
+    if (!tag) return respond(std::move(response));
+    response.with("ETag", *tag);
+    respond(names_tag(known_tags, *tag) ? not_modified(std::move(response)) : std::move(response));
+  });
+  route.handler(request, with_tag);
 }
 
 bool App::is_live_address(const Request& request) {

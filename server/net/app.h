@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -63,6 +64,8 @@ class App {
   void stop_workers();
 
  private:
+  void answer_read(const Request& request, const Route& route, const Respond& respond);
+  static void answer_failures(const Request& request, const Respond& answer, const std::function<void()>& work);
   // Who asks, and that they may do there what takes the role.
   Result<void> identify(Request& request, const Route& route);
 

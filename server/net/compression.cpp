@@ -102,6 +102,16 @@ void set(Response& response, std::string_view header_name, std::string value) {
   response.with(std::string(header_name), std::move(value));
 }
 
+// A client that has the answer in a coding is told so: its tag is that of this one representation.
+void name_known_tag(Response& response, std::string_view known_tags) {
+  response.with("Vary", "Accept-Encoding");
+  const std::string etag(response.header("ETag"));
+  if (etag.empty() || known_tags.find(etag) != std::string_view::npos) return;
+  for (const Coding coding : {Coding::gzip, Coding::brotli})
+    if (const std::string coded = with_coding(etag, coding); known_tags.find(coded) != std::string_view::npos)
+      return set(response, "ETag", coded);
+}
+
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
@@ -143,7 +153,8 @@ std::vector<std::uint8_t> Compressor::add(std::span<const std::uint8_t> bytes, b
   return out;
 }
 
-void compress(Response& response, std::string_view accept_encoding) {
+void compress(Response& response, std::string_view accept_encoding, std::string_view known_tags) {
+  if (response.status == 304) return name_known_tag(response, known_tags);
   if (!is_text(response.header("Content-Type")) || response.events || !response.file.empty()) return;
   for (const char* of_its_own : {"Content-Encoding", "Content-Range", "Accept-Ranges"})
     if (!response.header(of_its_own).empty()) return;
@@ -175,6 +186,7 @@ void compress(Response& response, std::string_view accept_encoding) {
 void forget_codings(Request& request) {
   for (auto& [key, value] : request.headers) {
     if (key != "if-match" && key != "if-none-match") continue;
+    if (key == "if-none-match") request.known_tags = value;
     for (const Coding coding : {Coding::gzip, Coding::brotli}) {
       const std::string end = "-" + std::string(name(coding)) + "\"";
       for (auto at = value.find(end); at != std::string::npos; at = value.find(end, at))

@@ -36,9 +36,11 @@ class Compressor {
 
 // Texts of at least a kilobyte (JSON, CSV, HTML, …) leave in a coding that the client's Accept-Encoding takes. Passed over: what has a coding or ranges of its own, and what is
 // `no-store` because a secret stands in it. A streamed answer loses its length. The ETag gets the coding's name: it names one representation.
-void compress(Response& response, std::string_view accept_encoding);
+// One that says that nothing changed names the tag that the client knows, which is one of `known_tags`.
+void compress(Response& response, std::string_view accept_encoding, std::string_view known_tags = {});
 
-// Drops from If-Match and If-None-Match what `compress` added, so that handlers compare the ETags that they gave.
+// Drops from If-Match and If-None-Match what `compress` added, so that handlers compare the ETags that they gave;
+// Request::known_tags keeps what was sent.
 void forget_codings(Request& request);
 
 }  // namespace strata::net

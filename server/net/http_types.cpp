@@ -108,6 +108,7 @@ std::string_view reason_phrase(int status) {
     case 421: return "Misdirected Request";
     case 422: return "Unprocessable Content";
     case 426: return "Upgrade Required";
+    case 428: return "Precondition Required";
     case 429: return "Too Many Requests";
     case 431: return "Request Header Fields Too Large";
     case 499: return "Cancelled";
@@ -241,37 +242,6 @@ Result<std::string> asked_language(const Request& request) {
     return fail(422, "Not a language", "`lang` is a language such as `es` or `de-AT`, of 35 characters at most.",
                 "lang");
   return language;
-}
-
-Result<Page> page_of(const Request& request) {
-  Page page;
-  if (auto found = request.query.find("limit"); found != request.query.end()) {
-    auto limit = parse_integer(found->second, 1, kMaxPage, "limit");
-    if (!limit) return tl::unexpected(limit.error());
-    page.limit = static_cast<int>(*limit);
-  }
-  if (auto found = request.query.find("offset"); found != request.query.end()) {
-    auto offset = parse_integer(found->second, 0, 1'000'000'000, "offset");
-    if (!offset) return tl::unexpected(offset.error());
-    page.offset = static_cast<int>(*offset);
-  }
-  return page;
-}
-
-void add_page_links(Response& response, const Request& request, const Page& page, std::int64_t total) {
-  std::string path;  // encoded anew: as sent it may hold bytes that a header may not
-  for (const auto& segment : request.segments) path += "/" + percent_encode(segment);
-  auto link = [&](int offset, const char* relation) {
-    std::string target = path + "?";
-    for (const auto& [key, value] : request.query)
-      if (key != "limit" && key != "offset") target += percent_encode(key) + "=" + percent_encode(value) + "&";
-    return "<" + target + "limit=" + std::to_string(page.limit) + "&offset=" + std::to_string(offset) + ">; rel=\"" +
-           relation + "\"";
-  };
-  std::string links;
-  if (std::int64_t{page.offset} + page.limit < total) links = link(page.offset + page.limit, "next");
-  if (page.offset > 0) links += (links.empty() ? "" : ", ") + link(std::max(0, page.offset - page.limit), "prev");
-  if (!links.empty()) response.with("Link", links);
 }
 
 }  // namespace strata::net

@@ -56,8 +56,9 @@ struct Request {
   std::filesystem::path body_file;            // …in a file that is removed after the answer unless a handler moves it
   std::uint64_t body_bytes = 0;
   std::optional<Principal> principal;
-  std::string peer;       // address at the other end of the connection
-  bool by_tls = false;    // the connection speaks TLS
+  std::string peer;          // address at the other end of the connection
+  bool by_tls = false;       // the connection speaks TLS
+  std::string known_tags{};  // If-None-Match as sent, where `headers` has it without codings (net/compression.h)
   bool as_kiosk = false;  // the query had `as=kiosk`: of all cookies that of the kiosk counts, which otherwise does not
 
   std::string_view header(std::string_view lower_case_name) const;  // empty when absent
@@ -121,15 +122,6 @@ Result<void> parse_target(std::string_view target, Request& request);
 std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space);
 std::string percent_encode(std::string_view text);
 std::string to_lower(std::string_view text);
-
-// `limit` and `offset` of a list; `Link` header values (next, prev) for it.
-struct Page {
-  int limit = 100;
-  int offset = 0;
-};
-constexpr int kMaxPage = 1000;
-Result<Page> page_of(const Request& request);
-void add_page_links(Response& response, const Request& request, const Page& page, std::int64_t total);
 
 // `lang`, a language tag in lower case; empty: any. Refused (422, `lang`): one that is too long.
 Result<std::string> asked_language(const Request& request);

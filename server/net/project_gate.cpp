@@ -87,6 +87,18 @@ bool depends_on_project(const Roles& roles) {
 
 }  // namespace
 
+Result<std::optional<std::int64_t>> addressed_project(const RouteContext& context, const Request& request) {
+  for (const Place& place : kPlaces) {
+    const auto param = request.params.find(place.param);
+    if (param == request.params.end()) continue;
+    const auto project = place.project(context, param->second);
+    if (!project && project.error().status == 404) return std::nullopt;
+    if (!project) return tl::unexpected(project.error());
+    return *project;
+  }
+  return std::nullopt;
+}
+
 Result<std::int64_t> id_of(const Request& request, const std::string& param) {
   const auto id = parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), {});
   return id ? id : not_there(param, request.param(param));

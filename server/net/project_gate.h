@@ -9,6 +9,9 @@ namespace strata::net {
 // 404, as if it was not there: they have none in it.
 Result<void> enter_project(const RouteContext& context, Request& request, bool in_query);
 
+// That project, whatever who asks may do; nothing: the address leads into none, or what it names is not there.
+Result<std::optional<std::int64_t>> addressed_project(const RouteContext& context, const Request& request);
+
 // The answer for what is not there, or not for who asks.
 tl::unexpected<Problem> not_there(const std::string& kind, const std::string& ref, const std::string& field = {});
 

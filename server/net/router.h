@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "net/entity_tags.h"
 #include "net/http_types.h"
 
 namespace strata::net {
@@ -37,6 +38,10 @@ struct Route {
   bool is_long_edit = false;
   bool is_question =
       false;  // may take long: answered by the question desk (net/question_desk.h), in turns, within limits
+  // Changes what has a version: a project may demand If-Match (net/precondition.h).
+  bool needs_version = false;
+  // Of reads that cost: what the answer depends on (net/entity_tags.h). Their handlers answer before they return.
+  StateOf state{};
 };
 
 // Finds the route of a request. Filled before the server starts, read-only (so thread-safe) afterwards.

@@ -41,7 +41,7 @@ std::string etag_of(std::int64_t version) { return "\"v" + std::to_string(versio
 Response with_etag(Response response, const Request& request, std::int64_t version) {
   const std::string etag = etag_of(version);
   if (request.method != Method::get && request.method != Method::head) return response.with("ETag", etag);
-  if (request.header("if-none-match") == etag) return empty_response(304).with("ETag", etag);
+  if (names_tag(request.header("if-none-match"), etag)) return empty_response(304).with("ETag", etag);
   return response.with("ETag", etag);
 }
 

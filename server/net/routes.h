@@ -10,6 +10,7 @@
 #include "net/edit_book.h"
 #include "net/live_sockets.h"
 #include "net/metrics.h"
+#include "net/page.h"
 #include "net/question_desk.h"
 #include "net/router.h"
 #include "net/server_options.h"

@@ -247,7 +247,7 @@ Result<Response> read_attachment(const RouteContext& context, const Request& req
     side = *asked;
   }
   const std::string etag = "\"" + attachment->sha256 + (small ? "-" + std::to_string(side) : "") + "\"";
-  if (request.header("if-none-match") == etag) return empty_response(304).with("ETag", etag);
+  if (names_tag(request.header("if-none-match"), etag)) return empty_response(304).with("ETag", etag);
   Result<Response> response;
   if (small) {
     response = thumbnail(context, *attachment, side);

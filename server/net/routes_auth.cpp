@@ -137,12 +137,17 @@ nlohmann::json token_json(const store::Token& token) {
 template <class Write>
 Result<Response> list_of(const RouteContext& context, const Request& request, TokenKind kind, const char* member,
                          Write write) {
+  const auto page = page_of(request, kMaxPage);
+  if (!page) return tl::unexpected(page.error());
   const auto tokens = context.store.tokens(request.user(), kind);
   if (!tokens) return tl::unexpected(tokens.error());
+  const auto part = slice_by(*page, *tokens, [](const store::Token& token) { return NumberKey{-token.id}; });
+  if (!part) return tl::unexpected(part.error());
   nlohmann::json list = nlohmann::json::array();
-  for (const store::Token& token : *tokens)
-    if (list.size() < kMaxPage) list.push_back(write(token));
-  return json_response({{member, std::move(list)}, {"total", tokens->size()}});
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(write((*tokens)[i]));
+  Response response = json_response({{member, std::move(list)}, {"total", tokens->size()}});
+  add_page_links(response, request, *page, part->last);
+  return response;
 }
 
 Result<Response> end_one(const RouteContext& context, const Request& request, TokenKind kind,
@@ -199,12 +204,13 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
 void add_auth_routes(Router& router, const RouteContext& context) {
   auto gate = std::make_shared<SignInGate>();
   // What people change of themselves.
-  const auto add = [&](Method method, std::string pattern, auto answer) {
+  const auto add = [&](Method method, std::string pattern, auto answer, std::vector<std::string> query = {}) {
     const bool has_body = method == Method::post || method == Method::patch;
     router.add({.method = method,
                 .pattern = std::move(pattern),
                 .handler = answering(answer),
                 .role = Role::guest,
+                .query = std::move(query),
                 .check = check_no_script,
                 .body = has_body ? BodyKind::memory : BodyKind::none,
                 .max_body = has_body ? context.options.max_json_bytes : 0});
@@ -244,17 +250,20 @@ void add_auth_routes(Router& router, const RouteContext& context) {
   add(Method::patch, "/api/v1/me", [&context](const Request& request) { return change_me(context, request); });
   add(Method::post, "/api/v1/me/password",
       [&context, gate](const Request& request) { return change_password(context, *gate, request); });
-  add(Method::get, "/api/v1/me/sessions", [&context](const Request& request) {
+  const std::vector<std::string> paged{"limit", "offset", "after"};
+  const auto list_sessions = [&context](const Request& request) {
     return list_of(context, request, TokenKind::session, "sessions",
                    [&](const store::Token& token) { return session_json(token, request.principal->secret); });
-  });
+  };
+  add(Method::get, "/api/v1/me/sessions", list_sessions, paged);
   add(Method::remove, "/api/v1/me/sessions",
       [&context](const Request& request) { return end_others(context, request); });
   add(Method::remove, "/api/v1/me/sessions/{session}",
       [&context](const Request& request) { return end_one(context, request, TokenKind::session, "session"); });
-  add(Method::get, "/api/v1/me/tokens", [&context](const Request& request) {
+  const auto list_tokens = [&context](const Request& request) {
     return list_of(context, request, TokenKind::script, "tokens", token_json);
-  });
+  };
+  add(Method::get, "/api/v1/me/tokens", list_tokens, paged);
   add(Method::post, "/api/v1/me/tokens", [&context](const Request& request) { return create_token(context, request); });
   add(Method::remove, "/api/v1/me/tokens/{token}",
       [&context](const Request& request) { return end_one(context, request, TokenKind::script, "token"); });

@@ -53,20 +53,38 @@ Response to_response(const BinRestored& restored) {
   return json_response(std::move(json));
 }
 
+Result<std::optional<store::Bin::Place>> bin_place(const Page& page) {
+  if (!page.after) return std::nullopt;
+  const ListPlace& place = *page.after;
+  if (place.size() != 4 || !std::ranges::all_of(place, [](const auto& value) { return value.is_number_integer(); }))
+    return wrong_place();
+  const auto kind = place[1].get<std::int64_t>();
+  if (kind < 0 || kind > static_cast<int>(BinEntry::Kind::record)) return wrong_place();
+  return store::Bin::Place{place[0].get<std::int64_t>(), static_cast<BinEntry::Kind>(kind),
+                           place[2].get<std::int64_t>(), place[3].get<std::int64_t>()};
+}
+
 Result<Response> list_bin(const RouteContext& context, const Request& request) {
   const auto page = page_of(request);
   if (!page) return tl::unexpected(page.error());
   const auto project = context.store.project(request.param("project"));
   if (!project) return tl::unexpected(project.error());
-  const auto found = context.store.bin().of_project(project->id, sight_of(context, request), page->limit, page->offset);
+  const auto after = bin_place(*page);
+  if (!after) return tl::unexpected(after.error());
+  auto found =
+      context.store.bin().of_project(project->id, sight_of(context, request), page->limit + 1, page->offset, *after);
   if (!found) return tl::unexpected(found.error());
+  const auto last = end_page(found->entries, *page, [](const BinEntry& entry) {
+    const auto deleted = std::chrono::duration_cast<std::chrono::microseconds>(entry.deleted.time_since_epoch());
+    return ListPlace::array({deleted.count(), static_cast<int>(entry.kind), entry.table_id, entry.id});
+  });
   const std::chrono::days keep(context.options.bin_days);
   nlohmann::json entries = nlohmann::json::array();
   for (const BinEntry& entry : found->entries) entries.push_back(to_json(entry, keep));
   if (auto named = People::add_to(context.store, entries); !named) return tl::unexpected(named.error());
   Response response =
       json_response({{"entries", std::move(entries)}, {"total", found->total}, {"days", context.options.bin_days}});
-  add_page_links(response, request, *page, found->total);
+  add_page_links(response, request, *page, last);
   return response;
 }
 
@@ -142,7 +160,7 @@ void add_bin_routes(Router& router, const RouteContext& context) {
               .pattern = bin,
               .handler = answering([&context](const Request& request) { return list_bin(context, request); }),
               .role = Role::annotator,
-              .query = {"limit", "offset"}});
+              .query = {"limit", "offset", "after"}});
   router.add({.method = Method::post,
               .pattern = entry + "/restore",
               .handler = answering([&context](const Request& request) { return restore(context, request); }),

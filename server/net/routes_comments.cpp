@@ -57,12 +57,14 @@ nlohmann::json to_json(const Comment& comment, const People& people) {
 }
 
 Result<Response> page_response(const RouteContext& context, const Request& request, const char* list,
-                               const Comments::Page& found, const Page& page) {
+                               Comments::Page found, const Page& page) {
+  const auto last =
+      end_page(found.comments, page, [](const Comment& comment) { return ListPlace::array({comment.id}); });
   nlohmann::json comments = nlohmann::json::array();
   for (const Comment& comment : found.comments) comments.push_back(to_json(comment));
   if (auto named = People::add_to(context.store, comments); !named) return tl::unexpected(named.error());
   Response response = json_response({{list, std::move(comments)}, {"total", found.total}});
-  add_page_links(response, request, page, found.total);
+  add_page_links(response, request, page, last);
   return response;
 }
 
@@ -86,8 +88,11 @@ Result<Response> list_comments(const RouteContext& context, const Request& reque
   const auto page = page_of(request);
   if (!page) return tl::unexpected(page.error());
   Comments::Query query;
-  query.limit = page->limit;
+  const auto after = number_after(*page);
+  if (!after) return tl::unexpected(after.error());
+  query.limit = page->limit + 1;
   query.offset = page->offset;
+  query.after = *after;
   if (const auto state = request.query.find("state"); state != request.query.end()) {
     if (state->second != "open" && state->second != "resolved")
       return fail(422, "No such state", "`state` is open or resolved.", "state");
@@ -110,7 +115,9 @@ Result<Response> list_replies(const RouteContext& context, const Request& reques
   if (!page) return tl::unexpected(page.error());
   const auto thread = stored_comment(context, request);
   if (!thread) return tl::unexpected(thread.error());
-  const auto found = context.store.comments().replies(thread->id, request.role(), page->limit, page->offset);
+  const auto after = number_after(*page);
+  if (!after) return tl::unexpected(after.error());
+  auto found = context.store.comments().replies(thread->id, request.role(), page->limit + 1, page->offset, *after);
   if (!found) return tl::unexpected(found.error());
   return page_response(context, request, "replies", *found, *page);
 }
@@ -286,7 +293,7 @@ void tell_threads(const RouteContext& context, const Layer& layer, Visibility be
 void add_comment_routes(Router& router, const RouteContext& context) {
   AnnotatedRoutes routes(router, context);
   const std::string of_model = "/api/v1/models/{model}/comments", comment = "/api/v1/comments/{comment}";
-  routes.read(of_model, list_comments, {"state", "since", "limit", "offset"});
+  routes.read(of_model, list_comments, {"state", "since", "limit", "offset", "after"});
   routes.change(Method::post, of_model, create_comment);
   routes.read(comment, [](const RouteContext& of, const Request& request) -> Result<Response> {
     const auto found = stored_comment(of, request);
@@ -297,7 +304,7 @@ void add_comment_routes(Router& router, const RouteContext& context) {
   });
   routes.change(Method::patch, comment, change_comment);
   routes.change(Method::remove, comment, delete_comment);
-  routes.read(comment + "/replies", list_replies, {"limit", "offset"});
+  routes.read(comment + "/replies", list_replies, {"limit", "offset", "after"});
   routes.change(Method::post, comment + "/replies", create_reply);
 }
 

@@ -11,8 +11,11 @@ Result<Response> history(const RouteContext& context, const Request& request) {
   if (!page) return tl::unexpected(page.error());
   auto layer = stored_layer(context, request);
   if (!layer) return tl::unexpected(layer.error());
-  auto rows = context.store.history(layer->id, page->limit, page->offset);
+  const auto before = number_after(*page, INT64_MAX);
+  if (!before) return tl::unexpected(before.error());
+  auto rows = context.store.history(layer->id, page->limit + 1, page->offset, *before);
   if (!rows) return tl::unexpected(rows.error());
+  const auto last = end_page(rows->rows, *page, [](const auto& row) { return ListPlace::array({row.sequence}); });
   nlohmann::json list = nlohmann::json::array();
   for (const auto& row : rows->rows) {
     nlohmann::json told = to_json(row);
@@ -25,7 +28,7 @@ Result<Response> history(const RouteContext& context, const Request& request) {
     list.push_back(std::move(told));
   }
   Response response = json_response({{"edits", list}, {"total", rows->total}});
-  add_page_links(response, request, *page, rows->total);
+  add_page_links(response, request, *page, last);
   return response;
 }
 
@@ -38,12 +41,16 @@ Result<Response> list_review(const RouteContext& context, const Request& request
   if (const auto asked = request.query.find("user"); asked != request.query.end()) user = asked->second;
   if (user && (user->empty() || user->size() > 200))
     return fail(422, "Bad name", "`user` is the name of a person.", "user");
-  auto queue = context.store.review_queue(layer->id, user, page->limit, page->offset);
+  const auto after = number_after(*page);
+  if (!after) return tl::unexpected(after.error());
+  auto queue = context.store.review_queue(layer->id, user, page->limit + 1, page->offset, *after);
   if (!queue) return tl::unexpected(queue.error());
+  const auto last =
+      end_page(queue->strokes, *page, [](const auto& stroke) { return ListPlace::array({stroke.sequence}); });
   nlohmann::json answer = to_json(*queue);
   if (auto named = People::add_to(context.store, answer); !named) return tl::unexpected(named.error());
   Response response = json_response(std::move(answer));
-  add_page_links(response, request, *page, queue->total);
+  add_page_links(response, request, *page, last);
   return response;
 }
 
@@ -118,7 +125,7 @@ void add_edit_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = layer + "/edits",
               .handler = answering([&context](const Request& request) { return history(context, request); }),
-              .query = {"limit", "offset"}});
+              .query = {"limit", "offset", "after"}});
   change(layer + "/edits",
          editing(context, [&context](const Request& request, const Target& target) -> Result<room::EditRequest> {
            auto asked = body_of<protocol::Edit>(request);
@@ -129,7 +136,7 @@ void add_edit_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = layer + "/review",
               .handler = answering([&context](const Request& request) { return list_review(context, request); }),
-              .query = {"user", "limit", "offset"}});
+              .query = {"user", "limit", "offset", "after"}});
   change(layer + "/review", editing(context, review_edit), Role::curator);
   change(layer + "/undo",
          editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {

@@ -53,7 +53,8 @@ void add_feature_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/models/{model}/layers/{layer}/features",
               .handler = answering([&context](const Request& request) { return read_features(context, request); }),
               .query = {"f", "along", "at", "lang"},
-              .is_question = true});
+              .is_question = true,
+              .state = state_of_model(context)});
 }
 
 }  // namespace strata::net

@@ -28,12 +28,16 @@ Result<Response> list_groups(const RouteContext& context, const Request& request
   if (!groups) return tl::unexpected(groups.error());
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(groups->size());
-  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) {
+  const auto part = slice_by_name(*page, *groups, context.store, [](const store::Group& group) {
+    return store::Store::NamedId{group.name, group.id};
+  });
+  if (!part) return tl::unexpected(part.error());
+  for (std::size_t i = part->begin; i < part->end; ++i) {
     const auto& [id, group, people, projects] = (*groups)[i];
     list.push_back({{"id", id}, {"name", group}, {"people", people}, {"projects", projects}});
   }
   Response response = json_response({{"groups", std::move(list)}, {"total", total}});
-  add_page_links(response, request, *page, total);
+  add_page_links(response, request, *page, part->last);
   return response;
 }
 
@@ -125,7 +129,7 @@ void add_group_routes(Router& router, const RouteContext& context) {
   };
   const std::string groups = "/api/v1/groups", group = groups + "/{group}",
                     in_project = "/api/v1/projects/{project}/groups/{group}";
-  add(Method::get, groups, list_groups, {"limit", "offset"});
+  add(Method::get, groups, list_groups, {"limit", "offset", "after"});
   add(Method::post, groups, create_group);
   add(Method::get, group, show_group);
   add(Method::patch, group, change_group);

@@ -41,14 +41,16 @@ void add_job_routes(Router& router, const RouteContext& context) {
                 std::erase_if(all, [&](const auto& job) { return !request.principal->sees(job.project); });
                 nlohmann::json list = nlohmann::json::array();
                 const int total = static_cast<int>(all.size());
-                for (int i = page->offset; i < total && i < page->offset + page->limit; ++i)
+                const auto part = slice_by(*page, all, [](const auto& job) { return NumberKey{-job.id}; });
+                if (!part) return tl::unexpected(part.error());
+                for (std::size_t i = part->begin; i < part->end; ++i)
                   list.push_back(job_json(all[i], *request.principal));
                 Response response = json_response({{"jobs", list}, {"total", total}});
-                add_page_links(response, request, *page, total);
+                add_page_links(response, request, *page, part->last);
                 return response;
               }),
               .role = Role::guest,
-              .query = {"limit", "offset"}});
+              .query = {"limit", "offset", "after"}});
   router.add({.method = Method::get,
               .pattern = "/api/v1/jobs/{job}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
@@ -78,7 +80,9 @@ void add_job_routes(Router& router, const RouteContext& context) {
                 if (!is_own(*job, *request.principal) || !job->result || !job->result->file)
                   return fail(404, "No such file", "This job made no file for you, or it is kept no longer.", "job");
                 return file_response(job->result->file);
-              })});
+              }),
+              // A job makes one file, and its number is never given again.
+              .state = [](const Request& request) { return std::optional(request.param("job")); }});
 }
 
 }  // namespace strata::net

@@ -47,12 +47,15 @@ Result<Response> list_kiosks(const RouteContext& context, const Request& request
     for (const auto& [project, role] : roles.in_projects)
       if (role >= Role::curator) projects->push_back(project);
   }
-  const auto found = context.store.kiosks().all(projects, page->limit, page->offset);
+  const auto after = number_after(*page);
+  if (!after) return tl::unexpected(after.error());
+  auto found = context.store.kiosks().all(projects, page->limit + 1, page->offset, *after);
   if (!found) return tl::unexpected(found.error());
+  const auto last = end_page(found->kiosks, *page, [](const Kiosk& kiosk) { return ListPlace::array({kiosk.id}); });
   nlohmann::json kiosks = nlohmann::json::array();
   for (const Kiosk& kiosk : found->kiosks) kiosks.push_back(to_json(kiosk));
   Response response = json_response({{"kiosks", std::move(kiosks)}, {"total", found->total}});
-  add_page_links(response, request, *page, found->total);
+  add_page_links(response, request, *page, last);
   return response;
 }
 
@@ -147,7 +150,7 @@ void add_kiosk_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/kiosks",
               .handler = answer_by(list_kiosks),
               .role = Role::guest,
-              .query = {"limit", "offset"}});
+              .query = {"limit", "offset", "after"}});
   router.add({.method = Method::remove,
               .pattern = "/api/v1/kiosks/{kiosk}",
               .handler = answer_by(revoke_kiosk),

@@ -22,9 +22,11 @@ Result<Response> list_layers(const RouteContext& context, const Request& request
   if (!layers) return tl::unexpected(layers.error());
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(layers->size());
-  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*layers)[i]));
+  const auto part = slice_by(*page, *layers, [](const Layer& layer) { return NumberKey{layer.order, layer.id}; });
+  if (!part) return tl::unexpected(part.error());
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*layers)[i]));
   Response response = json_response({{"layers", list}, {"total", total}});
-  add_page_links(response, request, *page, total);
+  add_page_links(response, request, *page, part->last);
   return response;
 }
 
@@ -269,7 +271,7 @@ void add_layer_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = layers,
               .handler = answering([&context](const Request& request) { return list_layers(context, request); }),
-              .query = {"limit", "offset"}});
+              .query = {"limit", "offset", "after"}});
   router.add(
       {.method = Method::post,
        .pattern = layers,
@@ -294,12 +296,14 @@ void add_layer_routes(Router& router, const RouteContext& context) {
               .role = Role::curator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
-              .keeps_answer = true});
+              .keeps_answer = true,
+              .needs_version = true});
   router.add({.method = Method::remove,
               .pattern = layers + "/{layer}",
               .handler = answering([&context](const Request& request) { return delete_layer(context, request); }),
               .role = Role::curator,
-              .keeps_answer = true});
+              .keeps_answer = true,
+              .needs_version = true});
   router.add({.method = Method::post,
               .pattern = layers + "/{layer}/compute",
               .handler = answering([&context](const Request& request) { return compute(context, request); }),

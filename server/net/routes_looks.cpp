@@ -20,13 +20,19 @@ Result<Look> stored_look(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> list_looks(const RouteContext& context, const Request& request) {
+  const auto page = page_of(request, kMaxPage);
+  if (!page) return tl::unexpected(page.error());
   auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
   auto looks = context.store.looks(model->id);
   if (!looks) return tl::unexpected(looks.error());
+  const auto part = slice_by(*page, *looks, [](const Look& look) { return NumberKey{look.order, look.id}; });
+  if (!part) return tl::unexpected(part.error());
   nlohmann::json list = nlohmann::json::array();
-  for (const Look& look : *looks) list.push_back(to_json(look));
-  return json_response({{"looks", list}, {"total", looks->size()}});
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*looks)[i]));
+  Response response = json_response({{"looks", list}, {"total", looks->size()}});
+  add_page_links(response, request, *page, part->last);
+  return response;
 }
 
 // All but the picture, from the query.
@@ -141,9 +147,10 @@ Result<Response> look_picture(const RouteContext& context, const Request& reques
 
 void add_look_routes(Router& router, const RouteContext& context) {
   const std::string looks = "/api/v1/models/{model}/looks";
-  router.add({.method = Method::get, .pattern = looks, .handler = answering([&context](const Request& request) {
-                                                         return list_looks(context, request);
-                                                       })});
+  router.add({.method = Method::get,
+              .pattern = looks,
+              .handler = answering([&context](const Request& request) { return list_looks(context, request); }),
+              .query = {"limit", "offset", "after"}});
   router.add({.method = Method::post,
               .pattern = looks,
               .handler = answering([&context](const Request& request) { return create_look(context, request); }),
@@ -169,16 +176,19 @@ void add_look_routes(Router& router, const RouteContext& context) {
               .role = Role::curator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
-              .keeps_answer = true});
+              .keeps_answer = true,
+              .needs_version = true});
   router.add({.method = Method::remove,
               .pattern = looks + "/{look}",
               .handler = answering([&context](const Request& request) { return delete_look(context, request); }),
               .role = Role::curator,
-              .keeps_answer = true});
+              .keeps_answer = true,
+              .needs_version = true});
   router.add({.method = Method::get,
               .pattern = looks + "/{look}/picture",
               .handler = answering([&context](const Request& request) { return look_picture(context, request); }),
-              .query = {"thumbnail"}});
+              .query = {"thumbnail"},
+              .state = state_of_look(context)});
 }
 
 }  // namespace strata::net

@@ -32,9 +32,13 @@ Result<Response> list_members(const RouteContext& context, const Request& reques
   nlohmann::json list = nlohmann::json::array(), groups = nlohmann::json::array();
   for (const store::ProjectGroup& group : *with_role) groups.push_back(net::to_json(group));
   const int total = static_cast<int>(members->size());
-  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*members)[i]));
+  const auto part = slice_by_name(*page, *members, context.store, [](const store::Membership& member) {
+    return store::Store::NamedId{member.person.name, member.person.id};
+  });
+  if (!part) return tl::unexpected(part.error());
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*members)[i]));
   Response response = json_response({{"members", std::move(list)}, {"groups", std::move(groups)}, {"total", total}});
-  add_page_links(response, request, *page, total);
+  add_page_links(response, request, *page, part->last);
   return response;
 }
 
@@ -46,21 +50,24 @@ Result<Response> list_people(const RouteContext& context, const Request& request
   if (!project) return tl::unexpected(project.error());
   const auto roles = context.store.groups().people_with_role(project->id);
   if (!roles) return tl::unexpected(roles.error());
-  const auto people = context.store.people();
+  auto people = context.store.people();
   if (!people) return tl::unexpected(people.error());
   const std::set<std::int64_t> with_role(roles->begin(), roles->end());
+  std::erase_if(*people, [&](const store::Person& person) {
+    return person.disabled || (person.role < Role::viewer && !with_role.contains(person.id));
+  });
+  const auto part = slice_by_name(*page, *people, context.store, [](const store::Person& person) {
+    return store::Store::NamedId{person.name, person.id};
+  });
+  if (!part) return tl::unexpected(part.error());
   nlohmann::json list = nlohmann::json::array();
-  int total = 0;
-  for (const store::Person& person : *people) {
-    if (person.disabled || (person.role < Role::viewer && !with_role.contains(person.id))) continue;
-    if (total >= page->offset && total < page->offset + page->limit) {
-      list.push_back({{"user", person.name}, {"full_name", person.full_name}});
-      add_color(list.back(), person);
-    }
-    ++total;
+  for (std::size_t i = part->begin; i < part->end; ++i) {
+    const store::Person& person = (*people)[i];
+    list.push_back({{"user", person.name}, {"full_name", person.full_name}});
+    add_color(list.back(), person);
   }
-  Response response = json_response({{"people", std::move(list)}, {"total", total}});
-  add_page_links(response, request, *page, total);
+  Response response = json_response({{"people", std::move(list)}, {"total", people->size()}});
+  add_page_links(response, request, *page, part->last);
   return response;
 }
 
@@ -100,12 +107,12 @@ void add_member_routes(Router& router, const RouteContext& context) {
               .pattern = members,
               .handler = answering([&context](const Request& request) { return list_members(context, request); }),
               .role = Role::curator,
-              .query = {"limit", "offset"}});
+              .query = {"limit", "offset", "after"}});
   router.add({.method = Method::get,
               .pattern = "/api/v1/projects/{project}/people",
               .handler = answering([&context](const Request& request) { return list_people(context, request); }),
               .role = Role::annotator,
-              .query = {"limit", "offset"}});
+              .query = {"limit", "offset", "after"}});
   router.add({.method = Method::put,
               .pattern = members + "/{user}",
               .handler = answering([&context](const Request& request) { return put_member(context, request); }),

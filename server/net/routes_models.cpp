@@ -37,10 +37,12 @@ Result<Response> list_models(const RouteContext& context, const Request& request
   std::erase_if(*models, [&](const Model& model) { return !request.principal->sees(model.project_id); });
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(models->size());
-  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i)
+  const auto part = slice_by(*page, *models, [](const Model& model) { return NumberKey{model.id}; });
+  if (!part) return tl::unexpected(part.error());
+  for (std::size_t i = part->begin; i < part->end; ++i)
     list.push_back(to_json((*models)[i], slugs[(*models)[i].project_id]));
   Response response = json_response({{"models", list}, {"total", total}});
-  add_page_links(response, request, *page, total);
+  add_page_links(response, request, *page, part->last);
   return response;
 }
 
@@ -105,7 +107,7 @@ Result<Response> source(const RouteContext& context, const Request& request) {
   for (const auto& file : model->source_files) {
     if (file.name != wanted) continue;
     const std::string etag = "\"" + file.sha256 + "\"";
-    if (request.header("if-none-match") == etag) return empty_response(304).with("ETag", etag);
+    if (names_tag(request.header("if-none-match"), etag)) return empty_response(304).with("ETag", etag);
     Response response;
     response.with("Content-Type", "application/octet-stream").with("ETag", etag);
     name_download(response, file.name);
@@ -125,7 +127,7 @@ void add_model_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/models",
               .handler = answering([&context](const Request& request) { return list_models(context, request); }),
               .role = Role::guest,
-              .query = {"project", "limit", "offset"}});
+              .query = {"project", "limit", "offset", "after"}});
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
@@ -139,7 +141,8 @@ void add_model_routes(Router& router, const RouteContext& context) {
               .role = Role::curator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
-              .keeps_answer = true});
+              .keeps_answer = true,
+              .needs_version = true});
   router.add({.method = Method::remove,
               .pattern = "/api/v1/models/{model}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
@@ -154,7 +157,8 @@ void add_model_routes(Router& router, const RouteContext& context) {
                 return empty_response(204);
               }),
               .role = Role::curator,
-              .keeps_answer = true});
+              .keeps_answer = true,
+              .needs_version = true});
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/source/{name}",
               .handler = answering([&context](const Request& request) { return source(context, request); })});

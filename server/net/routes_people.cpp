@@ -33,9 +33,13 @@ Result<Response> list_people(const RouteContext& context, const Request& request
   if (!people) return tl::unexpected(people.error());
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(people->size());
-  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*people)[i]));
+  const auto part = slice_by_name(*page, *people, context.store, [](const Person& person) {
+    return store::Store::NamedId{person.name, person.id};
+  });
+  if (!part) return tl::unexpected(part.error());
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*people)[i]));
   Response response = json_response({{"users", std::move(list)}, {"total", total}});
-  add_page_links(response, request, *page, total);
+  add_page_links(response, request, *page, part->last);
   return response;
 }
 
@@ -167,7 +171,7 @@ void add_people_routes(Router& router, const RouteContext& context) {
                 .body = has_body ? BodyKind::memory : BodyKind::none,
                 .max_body = has_body ? context.options.max_json_bytes : 0});
   };
-  add(Method::get, "/api/v1/users", list_people, Role::administrator, {"limit", "offset"});
+  add(Method::get, "/api/v1/users", list_people, Role::administrator, {"limit", "offset", "after"});
   add(Method::post, "/api/v1/users", invite, Role::administrator);
   add(
       Method::get, "/api/v1/users/{user}",

@@ -27,14 +27,16 @@ Result<Response> list_projects(const RouteContext& context, const Request& reque
   if (!groups) return tl::unexpected(groups.error());
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(projects->size());
-  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) {
+  const auto part = slice_by(*page, *projects, [](const Project& project) { return NumberKey{project.id}; });
+  if (!part) return tl::unexpected(part.error());
+  for (std::size_t i = part->begin; i < part->end; ++i) {
     const Project& project = (*projects)[i];
     list.push_back(to_json(project));
     list.back()["role"] = std::string(name(request.principal->roles.in(project.id)));
     if (const auto by = groups->find(project.id); by != groups->end()) list.back()["groups"] = by->second;
   }
   Response response = json_response({{"projects", list}, {"total", total}});
-  add_page_links(response, request, *page, total);
+  add_page_links(response, request, *page, part->last);
   return response;
 }
 
@@ -63,6 +65,10 @@ Result<Response> change_project(const RouteContext& context, const Request& requ
   if (auto fresh = check_if_match(request, project->version); !fresh) return tl::unexpected(fresh.error());
   auto asked = body_of<protocol::ProjectPatch>(request);
   if (!asked) return tl::unexpected(asked.error());
+  // Curators say how work goes on in their project, not what it is called.
+  if ((asked->name || asked->description) && request.role() < Role::administrator)
+    return fail(403, "Not allowed", "Administrators name and describe projects.", asked->name ? "name" : "description");
+  if (asked->require_if_match) project->require_if_match = *asked->require_if_match;
   if (asked->name) project->name = *asked->name;
   if (asked->description) project->description = *asked->description;
   const auto answer = [](const Project& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
@@ -78,7 +84,7 @@ void add_project_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/projects",
               .handler = answering([&context](const Request& request) { return list_projects(context, request); }),
               .role = Role::guest,
-              .query = {"limit", "offset"}});
+              .query = {"limit", "offset", "after"}});
   router.add({.method = Method::post,
               .pattern = "/api/v1/projects",
               .handler = answering([&context](const Request& request) { return create_project(context, request); }),
@@ -96,10 +102,11 @@ void add_project_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::patch,
               .pattern = "/api/v1/projects/{project}",
               .handler = answering([&context](const Request& request) { return change_project(context, request); }),
-              .role = Role::administrator,
+              .role = Role::curator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
-              .keeps_answer = true});
+              .keeps_answer = true,
+              .needs_version = true});
   router.add({.method = Method::remove,
               .pattern = "/api/v1/projects/{project}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
@@ -113,7 +120,8 @@ void add_project_routes(Router& router, const RouteContext& context) {
                 return empty_response(204);
               }),
               .role = Role::administrator,
-              .keeps_answer = true});
+              .keeps_answer = true,
+              .needs_version = true});
 }
 
 }  // namespace strata::net

@@ -321,12 +321,14 @@ void add_quantity_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/models/{model}/layers/{layer}/quantities",
               .handler = answering([&context](const Request& request) { return layer_quantities(context, request); }),
               .query = {"at", "lang", "f", "separator"},
-              .is_question = true});
+              .is_question = true,
+              .state = state_of_model(context)});
   router.add({.method = Method::get,
               .pattern = "/api/v1/tables/{table}/quantities",
               .handler = answering([&context](const Request& request) { return table_quantities(context, request); }),
               .query = {"lang", "f", "separator"},
-              .is_question = true});
+              .is_question = true,
+              .state = state_of_painted_table(context)});
 }
 
 }  // namespace strata::net

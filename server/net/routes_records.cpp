@@ -40,7 +40,8 @@ Result<store::Store::RecordPage> page_by_measure(const RouteContext& context, co
                                                  const RecordMeasures& measures, std::size_t measure, Role seen_by,
                                                  store::Store::RecordQuery query) {
   const bool descending = query.order.front().second;
-  const auto limit = query.limit, offset = query.offset;
+  const auto limit = static_cast<std::size_t>(query.limit), offset = static_cast<std::size_t>(query.offset);
+  const auto after = std::exchange(query.after, std::nullopt);
   query.order.erase(query.order.begin());
   query.limit = store::kMostRecords;
   query.offset = 0;
@@ -52,14 +53,25 @@ Result<store::Store::RecordPage> page_by_measure(const RouteContext& context, co
     const double value = measures.of(record)[measure];
     by_value.emplace_back(value, std::move(record));
   }
-  std::ranges::stable_sort(
-      by_value, [&](const auto& a, const auto& b) { return descending ? a.first > b.first : a.first < b.first; });
+  const auto comes_before = [descending](double a, double b) { return descending ? a > b : a < b; };
+  std::ranges::stable_sort(by_value, comes_before, &std::pair<double, Record>::first);
+  auto begin = by_value.begin() + static_cast<std::ptrdiff_t>(std::min(offset, by_value.size()));
+  if (after) {
+    if (after->size() != 2 || !after->at(0).is_number() || !after->at(1).is_number_integer()) return wrong_place();
+    const auto value = after->at(0).get<double>();
+    const auto key = after->at(1).get<std::int64_t>();
+    const auto [low, high] = std::ranges::equal_range(by_value, value, comes_before, &std::pair<double, Record>::first);
+    const auto same = std::find_if(low, high, [key](const auto& each) { return each.second.key == key; });
+    // Where it is gone, of those with its value the ones with higher keys follow: that is how they stand, unless more was sorted by.
+    begin =
+        same != high ? same + 1 : std::find_if(low, high, [key](const auto& each) { return each.second.key > key; });
+  }
+  const auto end = begin + static_cast<std::ptrdiff_t>(std::min<std::size_t>(limit, by_value.end() - begin));
   auto& records = page->records;
   records.clear();
-  for (auto& each : by_value) records.push_back(std::move(each.second));
-  const auto count = static_cast<std::int64_t>(records.size());
-  records.erase(records.begin(), records.begin() + std::min(offset, count));
-  if (static_cast<std::int64_t>(records.size()) > limit) records.resize(static_cast<std::size_t>(limit));
+  page->last.reset();
+  if (end != by_value.end() && end != begin) page->last = ListPlace::array({(end - 1)->first, (end - 1)->second.key});
+  for (; begin != end; ++begin) records.push_back(std::move(begin->second));
   return page;
 }
 
@@ -119,6 +131,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   const bool whole = *format != SheetFormat::json && !request.query.contains("limit");
   query.limit = whole ? store::kMostRecords : page->limit;
   query.offset = page->offset;
+  query.after = page->after;
   if (auto at = request.query.find("at"); at != request.query.end()) {
     auto sequence = sequence_at(context.store, place->table, at->second);
     if (!sequence) return tl::unexpected(sequence.error());
@@ -140,6 +153,9 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     if (!known) return tl::unexpected(known.error());
     words = std::move(*known);
   }
+  if (page->after && records->last && !cursor_of(request, *records->last))
+    return fail(422, "Sorted by too much",
+                "The values by which this page ends are too long for an address; sort by fewer columns.", "sortby");
   Response response;
   if (*format == SheetFormat::xlsx) {
     auto book = records_book(context, *records, *measures, words);
@@ -161,7 +177,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     }
     response = json_response({{"records", std::move(list)}, {"total", records->total}});
   }
-  if (!whole) add_page_links(response, request, *page, records->total);
+  if (!whole) add_page_links(response, request, *page, records->last);
   response.with("Strata-Sequence", std::to_string(records->table.sequence)).with("Vary", "Accept");
   return response;
 }
@@ -405,7 +421,7 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
 void add_record_routes(Router& router, const RouteContext& context) {
   using Answer = Result<Response> (*)(const RouteContext&, const Request&);
   const auto add = [&](Method method, const std::string& pattern, Answer answer, std::vector<std::string> query,
-                       BodyKind body = BodyKind::none, std::uint64_t max_body = 0) {
+                       BodyKind body = BodyKind::none, std::uint64_t max_body = 0, StateOf state = {}) {
     const bool changes = method != Method::get;
     router.add({.method = method,
                 .pattern = pattern,
@@ -414,12 +430,15 @@ void add_record_routes(Router& router, const RouteContext& context) {
                 .query = std::move(query),
                 .body = body,
                 .max_body = max_body,
-                .keeps_answer = changes});
+                .keeps_answer = changes,
+                .needs_version = method == Method::patch || method == Method::remove,
+                .state = std::move(state)});
   };
   for (const std::string parent : {"/api/v1/tables/{table}", "/api/v1/models/{model}/layers/{layer}"}) {
     const std::string records = parent + "/records", record = records + "/{key}";
     add(Method::get, records, list_records,
-        {"f", "separator", "filter", "sortby", "lang", "terms", "limit", "offset", "at"});
+        {"f", "separator", "filter", "sortby", "lang", "terms", "limit", "offset", "after", "at"}, BodyKind::none, 0,
+        state_of_records(context));
     add(Method::post, records, create_records, {"dry_run"}, BodyKind::memory, kMaxRecordsBytes);
     add(Method::get, record, read_record, {"at"});
     add(Method::patch, record, change_record, {}, BodyKind::memory, context.options.max_json_bytes);

@@ -226,7 +226,8 @@ void add_statistics_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/models/{model}/layers/{layer}/statistics",
               .handler = answering([&context](const Request& request) { return statistics(context, request); }),
               .query = {"include", "at", "where"},
-              .is_question = true});
+              .is_question = true,
+              .state = state_of_model(context)});
   router.add(
       {.method = Method::post,
        .pattern = "/api/v1/models/{model}/select",

@@ -15,12 +15,15 @@ Response readiness(const RouteContext& context) {
   return json_response({{"ready", ready}, {"reasons", reasons}}, ready ? 200 : 503);
 }
 
-Result<Response> contract(const RouteContext& context) {
+Result<Response> contract(const RouteContext& context, const Request& request) {
   std::ifstream file(context.options.protocol_dir / "openapi.json", std::ios::binary);
   if (!file) return fail(503, "Contract missing", "openapi.json is not part of this installation.");
   std::ostringstream text;
   text << file.rdbuf();
-  return text_response(std::move(text).str(), "application/json").with("Cache-Control", "no-cache");
+  Response response = text_response(std::move(text).str(), "application/json");
+  const auto tag = tag_of_body(response);
+  response.with("ETag", tag.value_or("")).with("Cache-Control", "no-cache");
+  return names_tag(request.header("if-none-match"), tag.value_or("")) ? not_modified(std::move(response)) : response;
 }
 
 }  // namespace
@@ -41,7 +44,7 @@ void add_system_routes(Router& router, const RouteContext& context) {
                                                         context.questions.steps()}),
                          "text/plain; version=0.0.4; charset=utf-8");
   });
-  open("/api/v1/openapi.json", [&context](const Request&) { return contract(context); });
+  open("/api/v1/openapi.json", [&context](const Request& request) { return contract(context, request); });
   for (const char* pattern : {"/docs", "/api/v1/docs"})
     open(pattern, [&context](const Request&) { return docs_page(context.options.protocol_dir / "openapi.json"); });
   open("/api/v1/docs.css", [](const Request&) -> Result<Response> {

@@ -26,9 +26,13 @@ Result<Response> list_tables(const RouteContext& context, const Request& request
   if (!tables) return tl::unexpected(tables.error());
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(tables->size());
-  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json((*tables)[i]));
+  const auto part = slice_by_name(*page, *tables, context.store, [](const Table& table) {
+    return store::Store::NamedId{table.name, table.id};
+  });
+  if (!part) return tl::unexpected(part.error());
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*tables)[i]));
   Response response = json_response({{"tables", list}, {"total", total}});
-  add_page_links(response, request, *page, total);
+  add_page_links(response, request, *page, part->last);
   return response;
 }
 
@@ -117,12 +121,19 @@ nlohmann::json column_json(const TableChange& change, std::int64_t id) {
 }
 
 Result<Response> list_columns(const RouteContext& context, const Request& request) {
+  const auto page = page_of(request, kMaxPage);
+  if (!page) return tl::unexpected(page.error());
   auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
+  const auto part = slice_by(*page, table->columns, [](const Column& column) {
+    return NumberKey{column.order, column.id};
+  });
+  if (!part) return tl::unexpected(part.error());
   nlohmann::json list = nlohmann::json::array();
-  for (const Column& column : table->columns) list.push_back(to_json(column));
-  return with_etag(json_response({{"columns", std::move(list)}, {"total", table->columns.size()}}), request,
-                   table->version);
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json(table->columns[i]));
+  Response response = json_response({{"columns", std::move(list)}, {"total", table->columns.size()}});
+  add_page_links(response, request, *page, part->last);
+  return with_etag(std::move(response), request, table->version);
 }
 
 Result<Response> create_column(const RouteContext& context, const Request& request) {
@@ -331,12 +342,15 @@ Result<Response> history(const RouteContext& context, const Request& request) {
     if (!number) return tl::unexpected(number.error());
     key = *number;
   }
-  auto rows = context.store.table_history(table->id, request.role(), key, page->limit, page->offset);
+  const auto before = number_after(*page, INT64_MAX);
+  if (!before) return tl::unexpected(before.error());
+  auto rows = context.store.table_history(table->id, request.role(), key, page->limit + 1, page->offset, *before);
   if (!rows) return tl::unexpected(rows.error());
+  const auto last = end_page(rows->rows, *page, [](const auto& row) { return ListPlace::array({row.sequence}); });
   nlohmann::json list = nlohmann::json::array();
   for (const auto& row : rows->rows) list.push_back(to_json(row));
   Response response = json_response({{"edits", std::move(list)}, {"total", rows->total}});
-  add_page_links(response, request, *page, rows->total);
+  add_page_links(response, request, *page, last);
   return response;
 }
 
@@ -412,11 +426,13 @@ Result<Response> areas(const RouteContext& context, const Request& request) {
 void add_table_routes(Router& router, const RouteContext& context) {
   const std::string tables = "/api/v1/projects/{project}/tables", table = "/api/v1/tables/{table}";
   using Answer = Result<Response> (*)(const RouteContext&, const Request&);
-  const auto read = [&](const std::string& pattern, Answer answer, std::vector<std::string> query = {}) {
+  const auto read = [&](const std::string& pattern, Answer answer, std::vector<std::string> query = {},
+                        StateOf state = {}) {
     router.add({.method = Method::get,
                 .pattern = pattern,
                 .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
-                .query = std::move(query)});
+                .query = std::move(query),
+                .state = std::move(state)});
   };
   const auto write = [&](Method method, const std::string& pattern, Answer answer, BodyKind body = BodyKind::memory) {
     router.add({.method = method,
@@ -425,9 +441,10 @@ void add_table_routes(Router& router, const RouteContext& context) {
                 .role = Role::curator,
                 .body = body,
                 .max_body = body == BodyKind::none ? 0 : context.options.max_json_bytes,
-                .keeps_answer = true});
+                .keeps_answer = true,
+                .needs_version = method != Method::post});
   };
-  read(tables, list_tables, {"limit", "offset"});
+  read(tables, list_tables, {"limit", "offset", "after"});
   write(Method::post, tables, create_table);
   read(table, [](const RouteContext& c, const Request& request) -> Result<Response> {
     auto found = c.store.table(request.param("table"), request.role());
@@ -436,14 +453,14 @@ void add_table_routes(Router& router, const RouteContext& context) {
   });
   write(Method::patch, table, change_table);
   write(Method::remove, table, delete_table, BodyKind::none);
-  read(table + "/columns", list_columns);
+  read(table + "/columns", list_columns, {"limit", "offset", "after"});
   write(Method::post, table + "/columns", create_column);
   write(Method::patch, table + "/columns/{column}", change_column);
   write(Method::remove, table + "/columns/{column}", drop_column, BodyKind::none);
-  read(table + "/columns/{column}/cycles", cycles);
-  read(table + "/columns/{column}/classes", classes, {"method", "count"});
-  read(table + "/edits", history, {"key", "limit", "offset"});
-  read(table + "/areas", areas);
+  read(table + "/columns/{column}/cycles", cycles, {}, state_of_records(context));
+  read(table + "/columns/{column}/classes", classes, {"method", "count"}, state_of_records(context));
+  read(table + "/edits", history, {"key", "limit", "offset", "after"});
+  read(table + "/areas", areas, {}, state_of_painted_table(context));
   for (const bool redo : {false, true})
     router.add({.method = Method::post,
                 .pattern = table + (redo ? "/redo" : "/undo"),

@@ -19,9 +19,13 @@ Result<Response> list_templates(const RouteContext& context, const Request& requ
   const auto& templates = context.templates.all();
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(templates.size());
-  for (int i = page->offset; i < total && i < page->offset + page->limit; ++i) list.push_back(to_json(templates[i]));
+  // They are those that the server began with, in the order of then.
+  std::int64_t place = 0;
+  const auto part = slice_by(*page, templates, [&place](const auto&) { return NumberKey{place++}; });
+  if (!part) return tl::unexpected(part.error());
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json(templates[i]));
   Response response = json_response({{"templates", std::move(list)}, {"total", total}});
-  add_page_links(response, request, *page, total);
+  add_page_links(response, request, *page, part->last);
   return response;
 }
 
@@ -167,7 +171,7 @@ void add_template_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/templates",
               .handler = answering([&context](const Request& request) { return list_templates(context, request); }),
               .role = Role::guest,
-              .query = {"limit", "offset"}});
+              .query = {"limit", "offset", "after"}});
   router.add({.method = Method::post,
               .pattern = "/api/v1/projects/{project}/templates/{template}",
               .handler = answering([&context](const Request& request) { return use_template(context, request); }),

@@ -245,7 +245,8 @@ void add_term_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/tables/{table}/terms",
               .handler = answering([&context](const Request& request) { return list_terms_of(context, request); }),
-              .query = {"limit", "offset", "q", "lang", "f", "separator"}});
+              .query = {"limit", "offset", "q", "lang", "f", "separator"},
+              .state = state_of_records(context)});
 }
 
 }  // namespace strata::net

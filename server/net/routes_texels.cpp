@@ -222,13 +222,15 @@ void add_texel_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/models/{model}/layers/{layer}/texels.csv",
               .handler = answering([&context](const Request& request) { return read_texel_lines(context, request); }),
               .query = {"where", "cell", "columns", "separator", "at"},
-              .is_question = true});
+              .is_question = true,
+              .state = state_of_model(context)});
   router.add({.method = Method::get,
               .pattern = pattern,
               .handler = answering(
                   [&context, budget](const Request& request) { return read_texels(context, *budget, request); }),
               .query = {"at"},
-              .is_question = true});
+              .is_question = true,
+              .state = state_of_model(context)});
   router.add(
       {.method = Method::put,
        .pattern = pattern,

@@ -21,12 +21,20 @@ void tell_everyone(const RouteContext& context, Event event, const Tool& tool) {
   context.live_sockets.tell_all(message);
 }
 
-Result<Response> list_tools(const RouteContext& context) {
+Result<Response> list_tools(const RouteContext& context, const Request& request) {
+  const auto page = page_of(request, kMaxPage);
+  if (!page) return tl::unexpected(page.error());
   auto tools = context.store.tools();
   if (!tools) return tl::unexpected(tools.error());
+  const auto part = slice_by_name(*page, *tools, context.store, [](const Tool& tool) {
+    return store::Store::NamedId{tool.name, tool.id};
+  });
+  if (!part) return tl::unexpected(part.error());
   nlohmann::json list = nlohmann::json::array();
-  for (const Tool& tool : *tools) list.push_back(to_json(tool));
-  return json_response({{"tools", list}, {"total", tools->size()}});
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*tools)[i]));
+  Response response = json_response({{"tools", list}, {"total", tools->size()}});
+  add_page_links(response, request, *page, part->last);
+  return response;
 }
 
 Result<std::string> name_of(const Request& request) {
@@ -120,8 +128,9 @@ void add_tool_routes(Router& router, const RouteContext& context) {
   const std::string tools = "/api/v1/tools";
   router.add({.method = Method::get,
               .pattern = tools,
-              .handler = answering([&context](const Request&) { return list_tools(context); }),
-              .role = Role::guest});
+              .handler = answering([&context](const Request& request) { return list_tools(context, request); }),
+              .role = Role::guest,
+              .query = {"limit", "offset", "after"}});
   router.add({.method = Method::post,
               .pattern = tools,
               .handler = answering([&context](const Request& request) { return create_tool(context, request); }),

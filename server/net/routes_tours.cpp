@@ -39,12 +39,15 @@ Result<Response> list_tours(const RouteContext& context, const Request& request)
   if (!page) return tl::unexpected(page.error());
   const auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
-  const auto found = context.store.tours().of_model(model->id, page->limit, page->offset);
+  const auto after = number_after(*page);
+  if (!after) return tl::unexpected(after.error());
+  auto found = context.store.tours().of_model(model->id, page->limit + 1, page->offset, *after);
   if (!found) return tl::unexpected(found.error());
+  const auto last = end_page(found->parts, *page, [](const NamedPart& tour) { return ListPlace::array({tour.id}); });
   nlohmann::json tours = nlohmann::json::array();
   for (const NamedPart& tour : found->parts) tours.push_back(tour_entry(tour, tour.user));
   Response response = json_response({{"tours", std::move(tours)}, {"total", found->total}});
-  add_page_links(response, request, *page, found->total);
+  add_page_links(response, request, *page, last);
   return response;
 }
 
@@ -121,7 +124,7 @@ Result<Response> delete_tour(const RouteContext& context, const Request& request
 void add_tour_routes(Router& router, const RouteContext& context) {
   AnnotatedRoutes routes(router, context, Role::curator);
   const std::string tours = "/api/v1/models/{model}/tours", tour = tours + "/{tour}";
-  routes.read(tours, list_tours, {"limit", "offset"});
+  routes.read(tours, list_tours, {"limit", "offset", "after"});
   routes.change(Method::post, tours, create_tour);
   routes.read(tour, get_tour);
   routes.change(Method::patch, tour, change_tour);

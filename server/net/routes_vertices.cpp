@@ -88,7 +88,8 @@ void add_vertex_routes(Router& router, const RouteContext& context) {
               .pattern = "/api/v1/models/{model}/vertices.ply",
               .handler = answering([&context](const Request& request) { return read_vertices(context, request); }),
               .query = {"layers", "colors", "at"},
-              .is_question = true});
+              .is_question = true,
+              .state = state_of_model(context)});
 }
 
 }  // namespace strata::net

@@ -70,12 +70,15 @@ Result<Response> list_views(const RouteContext& context, const Request& request)
   if (!page) return tl::unexpected(page.error());
   const auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  const auto found = context.store.views().of_model((*room)->model().id, page->limit, page->offset);
+  const auto after = number_after(*page);
+  if (!after) return tl::unexpected(after.error());
+  auto found = context.store.views().of_model((*room)->model().id, page->limit + 1, page->offset, *after);
   if (!found) return tl::unexpected(found.error());
+  const auto last = end_page(found->parts, *page, [](const NamedPart& view) { return ListPlace::array({view.id}); });
   nlohmann::json views = nlohmann::json::array();
   for (const NamedPart& view : found->parts) views.push_back(to_json(context, request, view, **room));
   Response response = json_response({{"views", std::move(views)}, {"total", found->total}});
-  add_page_links(response, request, *page, found->total);
+  add_page_links(response, request, *page, last);
   return response;
 }
 
@@ -178,10 +181,10 @@ Result<Response> delete_view(const RouteContext& context, const Request& request
 void add_view_routes(Router& router, const RouteContext& context) {
   AnnotatedRoutes routes(router, context);
   const std::string views = "/api/v1/models/{model}/views", view = views + "/{view}";
-  routes.read(views, list_views, {"limit", "offset"});
+  routes.read(views, list_views, {"limit", "offset", "after"});
   routes.change(Method::post, views, create_view);
   routes.read(view, get_view);
-  routes.read(view + "/picture", view_picture, {"thumbnail", "format"});
+  routes.read(view + "/picture", view_picture, {"thumbnail", "format"}, state_of_model(context));
   routes.change(Method::patch, view, change_view);
   routes.change(Method::remove, view, delete_view);
 }

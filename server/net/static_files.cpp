@@ -4,6 +4,7 @@
 #include <map>
 
 #include "net/compression.h"
+#include "net/entity_tags.h"
 
 namespace strata::net {
 namespace {
@@ -97,7 +98,7 @@ Response StaticFiles::serve(const Request& request) const {
   std::string etag = etag_of(file);
   const bool unchanging = request.segments.size() > 1 && request.segments.front() == "assets";
   Response response;
-  if (request.header("if-none-match") == etag) {
+  if (names_tag(request.header("if-none-match"), etag)) {
     response = empty_response(304);
   } else {
     response.with("Content-Type", std::string(media_type(file)));

@@ -98,13 +98,25 @@ Result<void> erase_model(PgConnection& connection, std::int64_t id) {
   return drop_unused(connection, hashes);
 }
 
-Result<Bin::Page> Bin::of_project(std::int64_t project_id, const Sight& sight, int limit, int offset) {
+Result<Bin::Page> Bin::of_project(std::int64_t project_id, const Sight& sight, int limit, int offset,
+                                  const std::optional<Place>& after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     auto total = connection.query("SELECT count(*) FROM " STRATA_BIN, seen_in(project_id, sight));
     if (!total) return tl::unexpected(total.error());
-    auto rows =
-        connection.query("SELECT * FROM " STRATA_BIN "ORDER BY binned DESC, kind, table_id, id LIMIT $5 OFFSET $6",
-                         seen_in(project_id, sight).integer(limit).integer(offset));
+    const Place place = after.value_or(Place{});
+    auto rows = connection.query(
+        "SELECT * FROM " STRATA_BIN
+        "CROSS JOIN (SELECT timestamptz 'epoch' + $7::bigint * interval '1 microsecond' AS time) place "
+        "WHERE NOT $8 OR binned < place.time OR (binned = place.time AND (kind, table_id, id) > ($9, $10::bigint, $11::bigint)) "
+        "ORDER BY binned DESC, kind, table_id, id LIMIT $5 OFFSET $6",
+        seen_in(project_id, sight)
+            .integer(limit)
+            .integer(offset)
+            .integer(place.deleted_us)
+            .boolean(after.has_value())
+            .text(name_of(place.kind))
+            .integer(place.table_id)
+            .integer(place.id));
     if (!rows) return tl::unexpected(rows.error());
     Page page;
     page.total = total->integer(0, 0);

@@ -51,8 +51,15 @@ class Bin {
     Role role = Role::viewer;      // layers and models are for curators, records for annotators
     std::chrono::days records{0};  // for how long they are told
   };
-  // Layers that lie on a model in the Bin come back with it, and are no entries.
-  Result<Page> of_project(std::int64_t project_id, const Sight& sight, int limit, int offset);
+  // Where a page ends: at this entry.
+  struct Place {
+    std::int64_t deleted_us = 0;  // since 1970
+    BinEntry::Kind kind = BinEntry::Kind::layer;
+    std::int64_t table_id = 0, id = 0;
+  };
+  // Layers that lie on a model in the Bin come back with it, and are no entries. `after`: only those that follow it.
+  Result<Page> of_project(std::int64_t project_id, const Sight& sight, int limit, int offset,
+                          const std::optional<Place>& after = {});
   // `table_id` is of a record.
   Result<BinEntry> entry(std::int64_t project_id, BinEntry::Kind kind, std::int64_t id, std::int64_t table_id,
                          const Sight& sight);

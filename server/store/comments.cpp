@@ -119,28 +119,29 @@ Result<Comments::Page> Comments::of_model(std::int64_t model_id, Role seen_by, c
                                                                                .optional_text(state)
                                                                                .optional_text(query.since)
                                                                                .array(visibilities_seen_by(seen_by)));
-    auto rows =
-        connection.query("SELECT " STRATA_COMMENT_COLUMNS STRATA_ASKED_COMMENTS " ORDER BY c.id LIMIT $5 OFFSET $6",
-                         Params()
-                             .integer(model_id)
-                             .optional_text(state)
-                             .optional_text(query.since)
-                             .array(visibilities_seen_by(seen_by))
-                             .integer(query.limit)
-                             .integer(query.offset));
+    auto rows = connection.query("SELECT " STRATA_COMMENT_COLUMNS STRATA_ASKED_COMMENTS
+                                 " AND c.id > $7 ORDER BY c.id LIMIT $5 OFFSET $6",
+                                 Params()
+                                     .integer(model_id)
+                                     .optional_text(state)
+                                     .optional_text(query.since)
+                                     .array(visibilities_seen_by(seen_by))
+                                     .integer(query.limit)
+                                     .integer(query.offset)
+                                     .integer(query.after));
     return page_of(std::move(total), std::move(rows));
   });
 }
 
-Result<Comments::Page> Comments::replies(std::int64_t thread, Role seen_by, int limit, int offset) {
+Result<Comments::Page> Comments::replies(std::int64_t thread, Role seen_by, int limit, int offset, std::int64_t after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     auto first = load_thread(connection, thread, Lock::none);
     if (first && !sees(seen_by, first->visibility)) return not_found("comment", std::to_string(thread));
     if (!first) return tl::unexpected(first.error());
     auto total = connection.query("SELECT count(*) FROM comments WHERE thread_id = $1", Params().integer(thread));
     auto rows = connection.query("SELECT " STRATA_COMMENT_COLUMNS
-                                 " FROM comments c WHERE thread_id = $1 ORDER BY c.id LIMIT $2 OFFSET $3",
-                                 Params().integer(thread).integer(limit).integer(offset));
+                                 " FROM comments c WHERE thread_id = $1 AND c.id > $4 ORDER BY c.id LIMIT $2 OFFSET $3",
+                                 Params().integer(thread).integer(limit).integer(offset).integer(after));
     return page_of(std::move(total), std::move(rows));
   });
 }

@@ -51,6 +51,7 @@ class Comments {
     std::optional<bool> resolved;      // only of threads that are, or are not
     std::optional<std::string> since;  // only what was changed then or later (core/timestamp.h's text)
     int limit = 100, offset = 0;
+    std::int64_t after = 0;  // only those with higher ids
   };
   struct Page {
     std::vector<Comment> comments;  // by id
@@ -59,7 +60,7 @@ class Comments {
   // Those that the role sees; one that it does not see is not found.
   Result<Page> of_model(std::int64_t model_id, Role seen_by, const Query& query);
   // 422: the comment is a reply itself.
-  Result<Page> replies(std::int64_t thread, Role seen_by, int limit, int offset);
+  Result<Page> replies(std::int64_t thread, Role seen_by, int limit, int offset, std::int64_t after = 0);
   Result<Comment> comment(std::int64_t id, Role seen_by);
 
   // Id, times and version are given here; of a reply the model is that of its thread. Refused: text that is blank or too long (422), a

@@ -26,16 +26,22 @@ Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char
 
 }  // namespace
 
-Result<Store::HistoryPage> Store::history(std::int64_t layer_id, int limit, int offset) {
+Result<Store::HistoryPage> Store::history(std::int64_t layer_id, int limit, int offset,
+                                          std::optional<std::int64_t> before) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<HistoryPage> {
     auto total =
         connection.query("SELECT (SELECT count(*) FROM edits WHERE layer_id = l.id) FROM layers l WHERE id = $1",
                          Params().integer(layer_id));
     if (!total) return tl::unexpected(total.error());
     if (total->rows() == 0) return not_found("layer", std::to_string(layer_id));
-    auto rows = connection.query("SELECT " STRATA_EDIT_COLUMNS
-                                 "WHERE e.layer_id = $1 ORDER BY e.sequence DESC LIMIT $2 OFFSET $3",
-                                 Params().integer(layer_id).integer(std::max(limit, 0)).integer(std::max(offset, 0)));
+    auto rows =
+        connection.query("SELECT " STRATA_EDIT_COLUMNS
+                         "WHERE e.layer_id = $1 AND e.sequence < $4 ORDER BY e.sequence DESC LIMIT $2 OFFSET $3",
+                         Params()
+                             .integer(layer_id)
+                             .integer(std::max(limit, 0))
+                             .integer(std::max(offset, 0))
+                             .integer(before.value_or(INT64_MAX)));
     if (!rows) return tl::unexpected(rows.error());
     HistoryPage page;
     page.total = total->integer(0, 0);

@@ -45,7 +45,8 @@ Result<Kiosk> load(PgConnection& connection, std::int64_t id) {
 
 }  // namespace
 
-Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<std::int64_t>>& projects, int limit, int offset) {
+Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<std::int64_t>>& projects, int limit, int offset,
+                                 std::int64_t after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     PgArray ids(oid::kInt8);
     if (projects)
@@ -56,8 +57,8 @@ Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<std::int64_t>>&
         Params().boolean(!projects).array(ids));
     if (!total) return tl::unexpected(total.error());
     auto rows = connection.query(STRATA_KIOSKS "WHERE ($1 OR p.id = any($2)) AND " STRATA_LISTED_KIOSK
-                                               " ORDER BY k.id LIMIT $3 OFFSET $4",
-                                 Params().boolean(!projects).array(ids).integer(limit).integer(offset));
+                                               " AND k.id > $5 ORDER BY k.id LIMIT $3 OFFSET $4",
+                                 Params().boolean(!projects).array(ids).integer(limit).integer(offset).integer(after));
     if (!rows) return tl::unexpected(rows.error());
     Page page;
     page.total = total->integer(0, 0);

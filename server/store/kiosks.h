@@ -40,8 +40,9 @@ class Kiosks {
     std::vector<Kiosk> kiosks;  // in the order in which they were made; bad ones for 30 days
     std::int64_t total = 0;
   };
-  // Of these projects, or of all.
-  Result<Page> all(const std::optional<std::vector<std::int64_t>>& projects, int limit, int offset);
+  // Of these projects, or of all. `after`: only those with higher ids.
+  Result<Page> all(const std::optional<std::vector<std::int64_t>>& projects, int limit, int offset,
+                   std::int64_t after = 0);
   Result<Kiosk> kiosk(std::int64_t id);
   Result<std::vector<std::int64_t>> of_tour(std::int64_t tour_id);  // ids, good or not
 

@@ -29,14 +29,14 @@ std::string NamedParts::sql(std::string text) const {
   return text;
 }
 
-Result<NamedParts::Page> NamedParts::of_model(std::int64_t model_id, int limit, int offset) {
+Result<NamedParts::Page> NamedParts::of_model(std::int64_t model_id, int limit, int offset, std::int64_t after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     auto total =
         connection.query(sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(), Params().integer(model_id));
     if (!total) return tl::unexpected(total.error());
-    auto rows =
-        connection.query(sql("SELECT PART FROM TABLE WHERE model_id = $1 ORDER BY id LIMIT $2 OFFSET $3").c_str(),
-                         Params().integer(model_id).integer(limit).integer(offset));
+    auto rows = connection.query(
+        sql("SELECT PART FROM TABLE WHERE model_id = $1 AND id > $4 ORDER BY id LIMIT $2 OFFSET $3").c_str(),
+        Params().integer(model_id).integer(limit).integer(offset).integer(after));
     if (!rows) return tl::unexpected(rows.error());
     Page page;
     page.total = total->integer(0, 0);

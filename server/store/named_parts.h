@@ -43,7 +43,8 @@ class NamedParts {
     std::vector<NamedPart> parts;  // in the order in which they were made
     std::int64_t total = 0;
   };
-  Result<Page> of_model(std::int64_t model_id, int limit, int offset);
+  // `after`: only those with higher ids.
+  Result<Page> of_model(std::int64_t model_id, int limit, int offset, std::int64_t after = 0);
   Result<std::map<std::int64_t, std::string>> slugs(std::int64_t model_id);  // of all, by id
   Result<NamedPart> find(std::int64_t model_id, const std::string& ref);
 

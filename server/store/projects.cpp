@@ -4,7 +4,8 @@ namespace strata::store {
 namespace {
 
 Project read_project(const PgResult& rows, int i) {
-  return {rows.integer(i, 0), rows.text(i, 1), rows.text(i, 2), rows.text(i, 3), rows.integer(i, 4)};
+  return {rows.integer(i, 0), rows.text(i, 1),    rows.text(i, 2),
+          rows.text(i, 3),    rows.integer(i, 4), rows.boolean(i, 5)};
 }
 
 Result<void> check(const Project& project) {
@@ -26,7 +27,8 @@ Result<void> erase_models_of(PgConnection& connection, std::int64_t project_id) 
 
 Result<std::vector<Project>> Store::projects() {
   return impl_->pool.read([](PgConnection& connection) -> Result<std::vector<Project>> {
-    auto rows = connection.query("SELECT id, name, slug::text, description, version FROM projects ORDER BY id");
+    auto rows = connection.query(
+        "SELECT id, name, slug::text, description, version, require_if_match FROM projects ORDER BY id");
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Project> projects;
     for (int i = 0; i < rows->rows(); ++i) projects.push_back(read_project(*rows, i));
@@ -38,27 +40,64 @@ Result<Project> Store::project(const std::string& ref) {
   if (!check_text(ref, "project")) return not_found("project", ref);
   return impl_->pool.read([&](PgConnection& connection) -> Result<Project> {
     const auto id = id_of(ref);
-    auto rows = id ? connection.query("SELECT id, name, slug::text, description, version FROM projects WHERE id = $1",
-                                      Params().integer(*id))
-                   : connection.query("SELECT id, name, slug::text, description, version FROM projects WHERE slug = $1",
-                                      Params().text(ref));
+    auto rows =
+        id ? connection.query(
+                 "SELECT id, name, slug::text, description, version, require_if_match FROM projects WHERE id = $1",
+                 Params().integer(*id))
+           : connection.query(
+                 "SELECT id, name, slug::text, description, version, require_if_match FROM projects WHERE slug = $1",
+                 Params().text(ref));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return not_found("project", ref);
     return read_project(*rows, 0);
   });
 }
 
+Result<std::size_t> Store::names_until(const NamedId& place, std::span<const NamedId> sorted) {
+  if (auto good = check_text(place.name, "after"); !good) return tl::unexpected(good.error());
+  PgArray names(oid::kText), ids(oid::kInt8);
+  for (const NamedId& each : sorted) {
+    names.add(std::string_view(each.name));
+    ids.add(each.id);
+  }
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::size_t> {
+    auto row = connection.query(
+        "SELECT count(*) FROM unnest($3::text[], $4::bigint[]) AS e (name, id) "
+        "WHERE (lower(e.name), e.id) <= (lower($1), $2)",
+        Params().text(place.name).integer(place.id).array(names).array(ids));
+    if (!row) return tl::unexpected(row.error());
+    return static_cast<std::size_t>(row->integer(0, 0));
+  });
+}
+
+Result<std::string> Store::project_state(std::int64_t id) {
+  return impl_->pool.read([&](PgConnection& connection) -> Result<std::string> {
+    auto row = connection.query(
+#define STRATA_VERSIONS(parts) \
+  "coalesce((SELECT string_agg(concat_ws('.', p.id, p.version), ',' ORDER BY p.id) FROM " parts "), '')"
+        "SELECT concat_ws(';', " STRATA_VERSIONS("models p WHERE p.project_id = $1") ", "
+        STRATA_VERSIONS("layers p JOIN models m ON m.id = p.model_id WHERE m.project_id = $1") ", "
+        STRATA_VERSIONS("looks p JOIN models m ON m.id = p.model_id WHERE m.project_id = $1") ", "
+        STRATA_VERSIONS("views p JOIN models m ON m.id = p.model_id WHERE m.project_id = $1") ", "
+        "(SELECT string_agg(concat_ws('.', id, version, sequence), ',' ORDER BY id) FROM record_tables WHERE project_id = $1))",
+#undef STRATA_VERSIONS
+        Params().integer(id));
+    if (!row) return tl::unexpected(row.error());
+    return row->text(0, 0);
+  });
+}
+
 Result<Project> Store::create_project(Project project, const FirstAnswer<Project>& answer) {
   if (auto good = check(project); !good) return tl::unexpected(good.error());
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Project> {
-    auto row =
-        insert_with_slug(connection, "SELECT slug::text FROM projects WHERE slug LIKE $1", {},
-                         project.slug.empty() ? project.name : project.slug, [&](const std::string& slug) {
-                           return connection.query(
-                               "INSERT INTO projects (name, slug, description) VALUES ($1, $2, $3) "
-                               "ON CONFLICT (slug) DO NOTHING RETURNING id, name, slug::text, description, version",
-                               Params().text(project.name).text(slug).text(project.description));
-                         });
+    auto row = insert_with_slug(
+        connection, "SELECT slug::text FROM projects WHERE slug LIKE $1", {},
+        project.slug.empty() ? project.name : project.slug, [&](const std::string& slug) {
+          return connection.query(
+              "INSERT INTO projects (name, slug, description) VALUES ($1, $2, $3) "
+              "ON CONFLICT (slug) DO NOTHING RETURNING id, name, slug::text, description, version, require_if_match",
+              Params().text(project.name).text(slug).text(project.description));
+        });
     if (!row) return tl::unexpected(row.error());
     return read_project(*row, 0);
   });
@@ -68,14 +107,15 @@ Result<Project> Store::update_project(Project project, const FirstAnswer<Project
   if (auto good = check(project); !good) return tl::unexpected(good.error());
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Project> {
     auto row = connection.query(
-        "UPDATE projects SET name = $3, slug = $4, description = $5, version = version + 1 "
-        "WHERE id = $1 AND version = $2 RETURNING id, name, slug::text, description, version",
+        "UPDATE projects SET name = $3, slug = $4, description = $5, require_if_match = $6, version = version + 1 "
+        "WHERE id = $1 AND version = $2 RETURNING id, name, slug::text, description, version, require_if_match",
         Params()
             .integer(project.id)
             .integer(project.version)
             .text(project.name)
             .text(project.slug)
-            .text(project.description));
+            .text(project.description)
+            .boolean(project.require_if_match));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) return read_project(*row, 0);
     auto known = connection.query("SELECT 1 FROM projects WHERE id = $1", Params().integer(project.id));

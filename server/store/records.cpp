@@ -330,10 +330,12 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by, co
         where = std::move(*sql);
       }
       auto rows = load_page(connection, table_id, open->table.columns, *past, where, std::move(params), order,
-                            query.limit, query.offset);
+                            {query.limit, query.offset, query.after});
+      if (!rows && rows.error().field == "after") return tl::unexpected(rows.error());
       if (!rows) return tl::unexpected(unanswerable(connection, rows.error(), "filter"));
       page.records = std::move(rows->rows);
       page.total = rows->total;
+      page.last = std::move(rows->last);
     }
     if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
     return page;
@@ -368,9 +370,10 @@ Result<std::int64_t> Store::table_sequence_when(std::int64_t table_id, std::int6
 }
 
 Result<Store::TableHistory> Store::table_history(std::int64_t table_id, Role seen_by, std::optional<std::int64_t> key,
-                                                 int limit, int offset) {
-  return impl_->pool.read(
-      [&](PgConnection& connection) { return read_history(connection, table_id, seen_by, key, limit, offset); });
+                                                 int limit, int offset, std::optional<std::int64_t> before) {
+  return impl_->pool.read([&](PgConnection& connection) {
+    return read_history(connection, table_id, seen_by, key, limit, offset, before);
+  });
 }
 
 Result<UndoPlan> Store::plan_table_undo(std::int64_t table_id, const std::string& user, bool redo) {

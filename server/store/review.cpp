@@ -3,7 +3,7 @@
 namespace strata::store {
 
 Result<ReviewQueue> Store::review_queue(std::int64_t layer_id, const std::optional<std::string>& user, int limit,
-                                        int offset) {
+                                        int offset, std::int64_t after) {
   if (user)
     if (auto good = check_text(*user, "user"); !good) return tl::unexpected(good.error());
   return impl_->pool.read([&](PgConnection& connection) -> Result<ReviewQueue> {
@@ -24,9 +24,14 @@ Result<ReviewQueue> Store::review_queue(std::int64_t layer_id, const std::option
         "max(time) AS time, sum((answer ->> 'texels_changed')::bigint)::bigint AS texels, "
         "sum((answer ->> 'area_m2')::double precision) AS area FROM edits WHERE layer_id = $1 AND review = 'pending' "
         "AND in_force AND ($2::text IS NULL OR user_name = $2) GROUP BY model_id, stroke, user_name "
-        "ORDER BY min(sequence) LIMIT $3 OFFSET $4) w "
+        "HAVING min(sequence) > $5 ORDER BY min(sequence) LIMIT $3 OFFSET $4) w "
         "JOIN edits e ON e.model_id = w.model_id AND e.sequence = w.first ORDER BY w.first",
-        Params().integer(layer_id).optional_text(user).integer(std::max(limit, 0)).integer(std::max(offset, 0)));
+        Params()
+            .integer(layer_id)
+            .optional_text(user)
+            .integer(std::max(limit, 0))
+            .integer(std::max(offset, 0))
+            .integer(after));
     if (!rows) return tl::unexpected(rows.error());
     for (int i = 0; i < rows->rows(); ++i)
       queue.strokes.push_back({rows->uuid(i, 0), rows->integer(i, 1), rows->integer(i, 2), rows->text(i, 3),

@@ -72,6 +72,15 @@ class Store {
   Result<Project> update_project(Project project, const FirstAnswer<Project>& answer = {});
   Result<void> delete_project(
       std::int64_t id, const FirstAnswer<>& answer = {});  // refused (409) while it has models, and for `default`
+  // How many of the things, which are sorted by their names without regard to case and then by ids, do not come after that place.
+  struct NamedId {
+    std::string name;
+    std::int64_t id = 0;
+  };
+  Result<std::size_t> names_until(const NamedId& place, std::span<const NamedId> sorted);
+  // Of all that is stored of it but edits, comments and people: another text whenever one of its models, layers, looks, views or tables was changed,
+  // made or deleted, or a record of its tables. For comparison alone.
+  Result<std::string> project_state(std::int64_t id);
   // What was done in it, but for what is about layers that the role does not see; a page costs the same however long its history is. An
   // unknown project or model has none.
   Result<ActivityPage> activity(std::int64_t project_id, Role seen_by, const ActivityQuery& query);
@@ -198,11 +207,15 @@ class Store {
     std::int64_t limit = 100, offset = 0;
     std::optional<Expression> filter{};  // only those where this condition over columns holds
     std::string language{};              // in whose alphabet texts are sorted ("de-at"); empty: in none in particular
+    // Only records that follow this place in the order: what RecordPage::last was. Refused (422, `after`): one of another order.
+    std::optional<nlohmann::json> after{};
   };
   struct RecordPage {
     Table table;  // with the columns of then
     std::vector<Record> records;
     std::int64_t total = 0;
+    std::optional<nlohmann::json>
+        last{};  // where the page ends, while records follow it: an array of texts, nulls and whole numbers
   };
   Result<RecordPage> records(std::int64_t table_id, Role seen_by, const RecordQuery& query);
   // What a number or a condition over columns is for each record, where it is known; after sequence `at` of the table, or now.
@@ -232,8 +245,9 @@ class Store {
     std::int64_t total = 0;
   };
   // What was done to cells that the role does not see is left out, and what the entries say of themselves with it.
+  // The newest first; `before`: only those with lower sequences.
   Result<TableHistory> table_history(std::int64_t table_id, Role seen_by, std::optional<std::int64_t> key, int limit,
-                                     int offset);
+                                     int offset, std::optional<std::int64_t> before = {});
   // The person's newest entry in force, or the one that was undone last; 409 where there is none. Done where the table is as it was
   // when it was planned (412).
   Result<UndoPlan> plan_table_undo(std::int64_t table_id, const std::string& user, bool redo);
@@ -291,7 +305,8 @@ class Store {
     std::vector<JournalRow> rows;
     std::int64_t total = 0;
   };
-  Result<HistoryPage> history(std::int64_t layer_id, int limit, int offset);
+  // The newest first; `before`: only those with lower sequences.
+  Result<HistoryPage> history(std::int64_t layer_id, int limit, int offset, std::optional<std::int64_t> before = {});
   // The model's last sequence, and those of the messages that were in the journal after it was read.
   struct JournalState {
     std::int64_t last_sequence = 0;
@@ -303,8 +318,9 @@ class Store {
   Result<std::vector<std::int64_t>> undoable(std::int64_t layer_id, const std::string& user, bool pending_only = false);
   Result<std::vector<std::int64_t>> redoable(std::int64_t layer_id, const std::string& user, bool pending_only = false);
   // review.cpp: strokes and other edits in force on a layer that wait for review, the oldest first.
-  Result<ReviewQueue> review_queue(std::int64_t layer_id, const std::optional<std::string>& user, int limit,
-                                   int offset);
+  // `after`: only those that begin with a higher sequence.
+  Result<ReviewQueue> review_queue(std::int64_t layer_id, const std::optional<std::string>& user, int limit, int offset,
+                                   std::int64_t after = 0);
   // The edits that a decision is about: those that wait, in force, and with `reopen` those that were accepted or rejected. Batches of a
   // stroke belong together: one of them stands for all.
   Result<std::vector<UnderReview>> under_review(std::int64_t layer_id, Decision decision, const Reviewees& which);

@@ -141,7 +141,8 @@ Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open, s
 }
 
 Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t table_id, Role seen_by,
-                                         std::optional<std::int64_t> key, int limit, int offset) {
+                                         std::optional<std::int64_t> key, int limit, int offset,
+                                         std::optional<std::int64_t> before) {
   auto total = connection.query(
       "SELECT count(*) FROM table_edits e WHERE table_id = $1 AND ($2::bigint IS NULL OR EXISTS (SELECT 1 FROM table_changes c "
       "WHERE c.table_id = $1 AND c.subject = 'record' AND c.subject_id = $2 AND c.sequence = e.sequence))",
@@ -152,8 +153,9 @@ Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t 
       "AND c.sequence = e.sequence AND ($2::bigint IS NULL OR (c.subject = 'record' AND c.subject_id = $2))) "
       "FROM table_edits e WHERE table_id = $1 AND ($2::bigint IS NULL OR EXISTS (SELECT 1 FROM table_changes c "
       "WHERE c.table_id = $1 AND c.subject = 'record' AND c.subject_id = $2 AND c.sequence = e.sequence)) "
-      "ORDER BY sequence DESC LIMIT $3 OFFSET $4",
-      Params().integer(table_id).optional_integer(key).integer(limit).integer(offset));
+      "AND sequence < $5 ORDER BY sequence DESC LIMIT $3 OFFSET $4",
+      Params().integer(table_id).optional_integer(key).integer(limit).integer(offset).integer(
+          before.value_or(INT64_MAX)));
   if (!rows) return tl::unexpected(rows.error());
   auto unseen = unseen_columns(connection, table_id, seen_by);
   if (!unseen) return tl::unexpected(unseen.error());

@@ -1,6 +1,7 @@
 #include "store/table_rows.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "core/column_value.h"
 #include "core/edtf.h"
@@ -79,47 +80,117 @@ nlohmann::json rows_json(const std::vector<Column>& columns, std::span<const Rec
   return list;
 }
 
-// Where the records that a term names stand in their order, for `order_by`.
-std::string places_of(std::span<const RecordOrder> order, Params& params) {
-  std::string sql;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (!order[i].keys) continue;
-    PgArray keys(oid::kInt8);
-    for (const std::int64_t key : *order[i].keys) keys.add(key);
-    params.array(keys);
-    const std::string alias = "p" + std::to_string(i);
-    sql += " LEFT JOIN unnest($" + std::to_string(params.count()) + "::bigint[]) WITH ORDINALITY AS " + alias +
-           " (named, place) ON " + alias + ".named = t.c" + std::to_string(order[i].column);
+PgArray array_of(std::span<const std::int64_t> keys) {
+  PgArray array(oid::kInt8);
+  for (const auto key : keys) array.add(key);
+  return array;
+}
+
+// One of the things by which rows are sorted, as SQL: of a row `t`, and of a value that the end of a page keeps as text.
+struct SortKey {
+  std::string value;                                               // that is kept
+  std::string here;                                                // what is compared, of a row
+  std::function<std::string(const std::string& parameter)> there;  // and of a kept value
+  bool descending = false;
+};
+struct SortKeys {
+  std::vector<SortKey> keys;  // the last one tells all rows apart
+  std::string joins;          // behind FROM
+};
+
+// Texts are compared by as many characters, so that the end of a page stays short enough for an address.
+constexpr int kSortedCharacters = 120;
+
+SortKey plain_key(const std::string& value, const std::string& type, bool descending) {
+  return {value, value, [type](const std::string& parameter) { return parameter + "::" + type; }, descending};
+}
+
+SortKey text_key(const std::string& column, const std::string& before, const std::string& behind, bool descending) {
+  const std::string value = "left(" + column + ", " + std::to_string(kSortedCharacters) + ")";
+  const auto compared = [before, behind](const std::string& text) { return before + text + behind; };
+  return {value, compared(value), compared, descending};
+}
+
+// By the place among what terms name.
+void add_term_key(SortKeys& sort, const std::string& column, const RecordOrder& by, Params& params) {
+  params.array(array_of(*by.keys));
+  const std::string places = "unnest($" + std::to_string(params.count()) + "::bigint[]) WITH ORDINALITY AS ",
+                    alias = "p" + std::to_string(params.count());
+  sort.joins += " LEFT JOIN " + places + alias + " (named, place) ON " + alias + ".named = " + column;
+  const auto there = [places](const std::string& parameter) {
+    return "(SELECT place FROM " + places + "n (named, place) WHERE named = " + parameter + "::bigint)";
+  };
+  sort.keys.push_back({column, alias + ".place", there, by.descending});
+}
+
+SortKeys sort_keys(const std::vector<Column>& columns, std::span<const RecordOrder> order, Params& params) {
+  SortKeys sort;
+  for (const RecordOrder& by : order) {
+    if (by.column == 0) {
+      sort.keys.push_back(plain_key("t.key", "bigint", by.descending));
+      return sort;  // nothing is left to decide
+    }
+    const auto column = std::ranges::find(columns, by.column, &Column::id);
+    if (column == columns.end()) continue;
+    const std::string name = "t." + column_name(*column), type(sql_type(column->kind));
+    if (by.keys) add_term_key(sort, name, by, params);
+    if (column->kind == ColumnKind::period) {
+      for (const char* day : {"_first", "_last"}) sort.keys.push_back(plain_key(name + day, "bigint", by.descending));
+    } else if (type == "text") {
+      const bool in_language = !by.collation.empty();
+      sort.keys.push_back(text_key(name, in_language ? "(" : "lower(",
+                                   in_language ? " COLLATE \"" + by.collation + "\")" : ")", by.descending));
+      sort.keys.push_back(text_key(name, "(", " COLLATE \"C\")", by.descending));
+    } else {
+      sort.keys.push_back(plain_key(name, type, by.descending));
+    }
   }
+  sort.keys.push_back(plain_key("t.key", "bigint", false));
+  return sort;
+}
+
+std::string order_by(const std::vector<SortKey>& keys) {
+  std::string sql;
+  for (const SortKey& key : keys)
+    sql += (sql.empty() ? " ORDER BY " : ", ") + key.here + (key.descending ? " DESC" : " ASC") + " NULLS LAST";
   return sql;
 }
 
-std::string order_by(const std::vector<Column>& columns, std::span<const RecordOrder> order) {
-  std::string sql = " ORDER BY ";
-  bool by_key = false;
-  for (const RecordOrder& by : order) {
-    const std::string way = by.descending ? " DESC NULLS LAST, " : " ASC NULLS LAST, ";
-    if (by.column == 0) {
-      sql += "key" + way;
-      by_key = true;
-      break;  // nothing is left to decide
+// What tells where a row stands: the values of the keys as texts, each once.
+std::string place_of_row(const std::vector<SortKey>& keys) {
+  std::string sql;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (i == 0 || keys[i].value != keys[i - 1].value)
+      sql += (sql.empty() ? "" : ", ") + ("(" + keys[i].value + ")::text");
+  return "to_jsonb(ARRAY[" + sql + "])";
+}
+
+tl::unexpected<Problem> wrong_place() {
+  return fail(422, "Not a place in this list",
+              "`after` is taken from the `next` of a page of this list, in the same order. Begin without it.", "after");
+}
+
+// Whether a row stands behind a place, by the keys in turn; what has no value stands behind all that has one.
+Result<std::string> stands_behind(const std::vector<SortKey>& keys, const nlohmann::json& place, Params& params) {
+  std::string sql, equal_so_far = "true";
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const SortKey& key = keys[i];
+    if (i == 0 || key.value != keys[i - 1].value) {
+      if (!place.is_array() || next == place.size()) return wrong_place();
+      const auto& value = place[next++];
+      if (!value.is_string() && !value.is_null()) return wrong_place();
+      if (value.is_string())
+        if (auto good = check_text(value.get_ref<const std::string&>(), "after"); !good) return wrong_place();
+      params.optional_text(value.is_null() ? std::nullopt : std::optional(value.get<std::string>()));
     }
-    for (const Column& column : columns) {
-      if (column.id != by.column) continue;
-      const std::string name = column_name(column);
-      if (by.keys)
-        sql += "p" + std::to_string(&by - order.data()) + ".place" + way + name + way;
-      else if (column.kind == ColumnKind::period)
-        sql += name + "_first" + way + name + "_last" + way;
-      else if (std::string_view(sql_type(column.kind)) == "text")
-        sql += (by.collation.empty() ? "lower(" + name + ")" : name + " COLLATE \"" + by.collation + "\"") + way +
-               name + " COLLATE \"C\"" + way;
-      else
-        sql += name + way;
-    }
+    const std::string there = key.there("$" + std::to_string(params.count())), &here = key.here;
+    sql += (sql.empty() ? "" : " OR ") + ("(" + equal_so_far) + " AND " + there + " IS NOT NULL AND (" + here +
+           " IS NULL OR " + here + (key.descending ? " < " : " > ") + there + "))";
+    equal_so_far += " AND " + here + " IS NOT DISTINCT FROM " + there;
   }
-  if (!by_key) sql += "key, ";
-  return sql.substr(0, sql.size() - 2);
+  if (next != place.size()) return wrong_place();
+  return "(" + sql + ")";
 }
 
 // The rows as `t`: of the table, or those of the past, which become a parameter.
@@ -129,12 +200,6 @@ std::string from_rows(std::int64_t table_id, const std::vector<Column>& columns,
   params.json(rows_json(columns, *past));
   return " FROM jsonb_populate_recordset(NULL::" + table_name(table_id) + ", $" + std::to_string(params.count()) +
          ") t";
-}
-
-PgArray array_of(std::span<const std::int64_t> keys) {
-  PgArray array(oid::kInt8);
-  for (const auto key : keys) array.add(key);
-  return array;
 }
 
 Result<void> run(PgConnection& connection, const std::string& sql) {
@@ -196,20 +261,33 @@ Result<std::vector<Record>> load_all_rows(PgConnection& connection, std::int64_t
 
 Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id, const std::vector<Column>& columns,
                            const std::optional<std::vector<Record>>& past, const std::string& where, Params params,
-                           std::span<const RecordOrder> order, std::int64_t limit, std::int64_t offset) {
-  const std::string rows_of = from_rows(table_id, columns, past, params), only = where.empty() ? "" : " WHERE " + where;
+                           std::span<const RecordOrder> order, const RowsPart& part) {
+  const std::string from = from_rows(table_id, columns, past, params);
+  std::string only = where.empty() ? "" : " WHERE (" + where + ")";
   RowsPage page;
-  auto total = connection.query_once("SELECT count(*)" + rows_of + only, params);
+  auto total = connection.query_once("SELECT count(*)" + from + only, params);
   if (!total) return tl::unexpected(total.error());
   page.total = total->integer(0, 0);
-  const std::string from = rows_of + places_of(order, params) + only;
-  params.integer(limit).integer(offset);
+  const auto [keys, joins] = sort_keys(columns, order, params);
+  if (part.after) {
+    auto behind = stands_behind(keys, *part.after, params);
+    if (!behind) return tl::unexpected(behind.error());
+    only += (only.empty() ? " WHERE " : " AND ") + *behind;
+  }
+  params.integer(part.limit + 1).integer(part.offset);  // one more tells whether there is a next page
   const int count = params.count();
-  auto rows = connection.query_once("SELECT key, version, to_jsonb(t)" + from + order_by(columns, order) + " LIMIT $" +
-                                        std::to_string(count - 1) + " OFFSET $" + std::to_string(count),
+  auto rows = connection.query_once("SELECT key, version, to_jsonb(t), " + place_of_row(keys) + from + joins + only +
+                                        order_by(keys) + " LIMIT $" + std::to_string(count - 1) + " OFFSET $" +
+                                        std::to_string(count),
                                     params);
+  // Of the values only those in the place are from outside and no texts of a condition.
+  if (!rows && part.after && connection.sqlstate().starts_with("22")) return wrong_place();
   if (!rows) return tl::unexpected(rows.error());
   page.rows = read_rows(*rows, columns);
+  if (rows->rows() > part.limit) {
+    page.rows.pop_back();
+    if (part.limit > 0) page.last = rows->json(static_cast<int>(part.limit) - 1, 3);
+  }
   return page;
 }
 
@@ -248,7 +326,7 @@ Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::i
       order.back().keys = std::move(*keys);
     }
   }
-  auto page = load_page(connection, table_id, open->table.columns, {}, {}, Params(), order, kMostRecords, 0);
+  auto page = load_page(connection, table_id, open->table.columns, {}, {}, Params(), order, {kMostRecords});
   if (!page) return tl::unexpected(page.error());
   std::vector<std::int64_t> keys;
   if (terms)

@@ -46,11 +46,16 @@ Result<std::vector<Record>> load_all_rows(PgConnection& connection, std::int64_t
 // of `params`. `past`: rows that are read in place of the table's, those of another time.
 struct RowsPage {
   std::vector<Record> rows;
-  std::int64_t total = 0;  // of the rows where the condition holds
+  std::int64_t total = 0;                // of the rows where the condition holds
+  std::optional<nlohmann::json> last{};  // Store::RecordPage::last
+};
+struct RowsPart {
+  std::int64_t limit = 100, offset = 0;
+  std::optional<nlohmann::json> after{};  // Store::RecordQuery::after
 };
 Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id, const std::vector<Column>& columns,
                            const std::optional<std::vector<Record>>& past, const std::string& where, Params params,
-                           std::span<const RecordOrder> order, std::int64_t limit, std::int64_t offset);
+                           std::span<const RecordOrder> order, const RowsPart& part);
 // The numbers of an expression (record_sql) by key, where they are known; truths are 1 or 0.
 Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, std::int64_t table_id,
                                             const std::vector<Column>& columns,

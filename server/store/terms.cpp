@@ -291,7 +291,7 @@ Result<std::optional<Palette>> term_palette_of(PgConnection& connection, std::in
   if (!columns) return std::optional<Palette>();
   const RecordOrder by_key[] = {{0, false}};
   auto page = load_page(connection, table_id, open->table.columns, {}, {}, Params(), by_key,
-                        static_cast<std::int64_t>(kMostTermColors), 0);
+                        {static_cast<std::int64_t>(kMostTermColors)});
   if (!page) return tl::unexpected(page.error());
   return std::optional(terms_palette(list_terms(*columns, page->rows)));
 }

@@ -84,26 +84,6 @@ TEST(Target, a_query_parameter_given_twice_is_refused) {
   EXPECT_EQ(result.error().field, "limit");
 }
 
-TEST(Page, limits_out_of_range_are_refused_and_links_lead_on) {
-  EXPECT_FALSE(page_of(parsed("/a?limit=0")));
-  EXPECT_FALSE(page_of(parsed("/a?limit=1001")));
-  EXPECT_FALSE(page_of(parsed("/a?offset=-1")));
-  EXPECT_FALSE(page_of(parsed("/a?limit=ten")));
-  const Request request = parsed("/a?limit=10&offset=20&project=x");
-  const auto page = page_of(request);
-  ASSERT_TRUE(page);
-  Response response;
-  add_page_links(response, request, *page, 35);
-  EXPECT_EQ(response.header("Link"),
-            "</a?project=x&limit=10&offset=30>; rel=\"next\", </a?project=x&limit=10&offset=10>; rel=\"prev\"");
-  Response last;
-  add_page_links(last, request, *page, 30);
-  EXPECT_EQ(last.header("Link"), "</a?project=x&limit=10&offset=10>; rel=\"prev\"");
-  Response named;
-  add_page_links(named, parsed("/b%20c/%E2%98\x83/?offset=10"), {10, 10}, 20);
-  EXPECT_EQ(named.header("Link"), "</b%20c/%E2%98%83/?limit=10&offset=0>; rel=\"prev\"") << "whatever was sent, ASCII";
-}
-
 // --- answers
 
 TEST(Respond, only_the_first_answer_counts) {

@@ -1978,12 +1978,14 @@ nlohmann::json to_json(const ProjectCreate& value) {
 void read(const nlohmann::json& json, ProjectPatch& value) {
   read_optional_member(json, "name", value.name);
   read_optional_member(json, "description", value.description);
+  read_optional_member(json, "require_if_match", value.require_if_match);
 }
 
 nlohmann::json to_json(const ProjectPatch& value) {
   nlohmann::json json = nlohmann::json::object();
   write_optional_member(json, "name", value.name);
   write_optional_member(json, "description", value.description);
+  write_optional_member(json, "require_if_match", value.require_if_match);
   return json;
 }
 

@@ -1430,6 +1430,7 @@ inline constexpr Schema kSchemaOf<ProjectCreate> = Schema::ProjectCreate;
 struct ProjectPatch {
   std::optional<std::string> name;
   std::optional<std::string> description;
+  std::optional<bool> require_if_match;  // As in Project. Curators change it, too.
   bool operator==(const ProjectPatch&) const = default;
 };
 void read(const nlohmann::json& json, ProjectPatch& value);

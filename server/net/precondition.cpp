@@ -1,0 +1,22 @@
+#include "net/precondition.h"
+
+#include "net/project_gate.h"
+
+namespace strata::net {
+
+Result<void> check_precondition(const RouteContext& context, const Request& request, const Route& route) {
+  if (!route.needs_version || !request.header("if-match").empty()) return {};
+  const auto id = addressed_project(context, request);
+  if (!id) return tl::unexpected(id.error());
+  if (!*id) return {};
+  const auto project = context.store.project(std::to_string(**id));
+  if (!project) return tl::unexpected(project.error());
+  if (!project->require_if_match) return {};
+  return fail(428, "Version missing",
+              "The project " + project->name +
+                  " takes changes only with the version that they were made for: read the thing, and send the ETag of "
+                  "that answer as `If-Match`.",
+              "If-Match");
+}
+
+}  // namespace strata::net

@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""A project may demand that changes name the version that they were made for (If-Match, 428)."""
+import os
+import sys
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.cameras import camera_from
+from support.meshes import folded_grid
+from support.pictures import png
+from support.strata_server import StrataServer
+
+M, T, P = "/models/sheet", "/tables/finds", "/projects/default"
+OF_PATH = {"project": "default", "model": "sheet", "layer": "finds", "table": "finds", "column": "name", "key": "1", "view": "west", "tour": "round", "look": "plain"}
+
+
+def make_site(server):
+    model = server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048)
+    camera = camera_from(model, (0, 0, 1), up=(0, 1, 0))
+    server.ok("POST", M + "/layers", {"name": "Finds", "kind": "database", "type": "u16", "columns": [{"name": "Name"}]})
+    server.ok("POST", T + "/records", {"values": {"name": "One"}})
+    server.ok("POST", M + "/looks?name=Plain", png(8, 8, lambda x, y: (9, 9, 9)), headers={"Content-Type": "image/png"})
+    server.ok("POST", M + "/views", {"name": "West", "camera": camera})
+    server.ok("POST", M + "/tours", {"name": "Round", "languages": ["en"], "stops": [{"view": "west", "title": {"en": "West"}}]})
+    OF_PATH["comment"] = str(server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()["id"])
+
+
+def versioned_changes(server):
+    """Changes that the contract lists with 428, below /api/v1, with a body of the contract's own where it has one."""
+    found = []
+    for path, item in server.contract.document["paths"].items():
+        for method in ("patch", "put", "delete"):
+            operation = item.get(method)
+            if not operation or "428" not in operation["responses"]:
+                continue
+            asked = path.removeprefix("/api/v1")
+            for name, value in OF_PATH.items():
+                asked = asked.replace("{" + name + "}", value)
+            assert "{" not in asked, asked
+            found.append((method.upper(), asked))
+    assert len(found) == 22, found
+    return found
+
+
+# Where the version of a thing is read, of those that have none of an address of their own.
+def address_of_version(asked):
+    return asked.rpartition("/columns/")[0] or asked
+
+
+BODIES = {P: {"description": "x"}, M: {"name": "Sheet"}, M + "/looks/plain": {"opacity": 0.5}, M + "/layers/finds": {"opacity": 0.5}, T: {"description": "x"}, T + "/columns/name": {"name": "Name"},
+          T + "/records/1": {"values": {"name": "Two"}}, M + "/layers/finds/records/1": {"values": {"name": "Three"}}, M + "/views/west": {"name": "West"}, M + "/tours/round": {"name": "Round"}}
+
+
+def check_demanded(server, changes):
+    for method, asked in changes:
+        body = BODIES.get(asked, {"text": "Look!"}) if method == "PATCH" else None
+        answer = server.request(method, asked, body)
+        problem = answer.json()
+        assert answer.status == 428 and problem["field"] == "If-Match" and "ETag" in problem["detail"], (method, asked, answer)
+        assert answer.headers["Content-Type"] == "application/problem+json"
+        empty = server.request(method, asked, body, headers={"If-Match": ""})
+        assert empty.status == 428, (method, asked, empty)
+        stale = server.request(method, asked, body, headers={"If-Match": '"v999"'})
+        assert stale.status == 412, (method, asked, stale)
+        if method == "PATCH":
+            etag = server.get(address_of_version(asked)).headers["ETag"]
+            server.ok(method, asked, body, headers={"If-Match": etag})
+            server.ok(method, asked, body, headers={"If-Match": "*"})
+
+
+def check_elsewhere(server):
+    """Only what has versions, and only there."""
+    server.ok("POST", T + "/records", {"values": {"name": "More"}})
+    server.ok("POST", M + "/layers/finds/edits", {"op": "fill", "mode": "where", "where": "true", "value": 1})
+    server.ok("PUT", "/me/models/sheet/view", {"layers": []})
+    server.ok("POST", "/projects", {"name": "Villa"})
+    server.ok("PATCH", "/projects/villa", {"description": "Frescoes"})
+    for asked in ("/models/none", "/comments/999999", "/tables/none/records/1", "/projects/none", "/comments/x"):
+        assert server.request("DELETE", asked).status == 404, asked
+    assert server.request("DELETE", M + "/layers/none").status == 428, "what the address leads into demands it, before anything is looked up there"
+
+
+def check_roles(server):
+    """Curators of the project decide, not what it is called; others neither."""
+    server.ok("PATCH", P, {"require_if_match": False}, headers={"If-Match": "*"})
+    ann, cleo = server.add_person("ann", "annotator"), server.add_person("cleo", "curator")
+    assert server.request("PATCH", P, {"require_if_match": True}, token=ann).status == 403
+    changed = server.ok("PATCH", P, {"require_if_match": True}, token=cleo)
+    assert changed.json()["require_if_match"] is True and changed.headers["ETag"], changed
+    for body, field in (({"name": "Mine"}, "name"), ({"description": "Mine", "require_if_match": False}, "description")):
+        answer = server.request("PATCH", P, body, token=cleo, headers={"If-Match": "*"})
+        assert answer.status == 403 and answer.json()["field"] == field, answer
+    assert server.get(P).json()["require_if_match"] is True
+    for wrong in ({"require_if_match": "yes"}, {"require_if_match": None}, {"require_if_match": 1}):
+        answer = server.request("PATCH", P, wrong, headers={"If-Match": "*"})
+        assert answer.status == 422 and answer.json()["field"] == "require_if_match", answer
+    # Who may not change a thing hears that, and not that a version is missing.
+    assert server.request("PATCH", M, {"name": "x"}, token=ann).status == 403
+
+
+def main():
+    with StrataServer() as server:
+        make_site(server)
+        changes = versioned_changes(server)
+        assert server.get(P).json()["require_if_match"] is False
+        for method, asked in changes:
+            if method == "PATCH":
+                server.ok(method, asked, BODIES.get(asked, {"text": "Look!"}))
+        server.ok("PATCH", P, {"require_if_match": True})
+        listed = [each for each in server.get("/projects").json()["projects"] if each["slug"] == "default"]
+        assert listed[0]["require_if_match"] is True, listed
+        check_demanded(server, changes)
+        check_elsewhere(server)
+        check_roles(server)
+        assert server.stop() == 0
+        server.start()
+        assert server.request("DELETE", M).status == 428, "it is kept"
+        gone = server.ok("DELETE", M, headers={"If-Match": server.get(M).headers["ETag"]})
+        assert gone.status == 204
+        assert server.stop() == 0
+        server.assert_clean_log()
+
+
+main()
