@@ -55,12 +55,18 @@ bool is_value(const nlohmann::json& value) {
   return value.is_string() || value.is_number_integer() || value.is_number_float() || value.is_null();
 }
 
+std::string text_of(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+// As `cursor_of` writes it, to the character.
 Result<ListPlace> place_in(const Request& request, const std::string& cursor) {
   if (cursor.empty() || cursor.size() > kLongestCursor) return wrong_place();
   const auto text = bytes_of_base64url(cursor);
   if (!text) return wrong_place();
   auto read = nlohmann::json::parse(*text, nullptr, false);
-  if (!read.is_array() || read.size() < 2 || read.front() != list_mark(request) || !std::ranges::all_of(read, is_value))
+  if (!read.is_array() || read.size() < 2 || read.front() != list_mark(request) ||
+      !std::ranges::all_of(read, is_value) || text_of(read) != *text)
     return wrong_place();
   read.erase(read.begin());
   return read;
@@ -129,7 +135,7 @@ Result<Page> page_of(const Request& request, int default_limit) {
 std::optional<std::string> cursor_of(const Request& request, const ListPlace& place) {
   nlohmann::json marked = nlohmann::json::array({list_mark(request)});
   for (const auto& value : place) marked.push_back(value);
-  std::string cursor = base64url(marked.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  std::string cursor = base64url(text_of(marked));
   return cursor.size() <= kLongestCursor ? std::optional(std::move(cursor)) : std::nullopt;
 }
 
