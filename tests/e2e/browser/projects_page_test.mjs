@@ -119,6 +119,19 @@ try {
   assert.deepEqual([renamed.name, renamed.description], ["Villa Giulia, Rome", "Frescoes of the east wing, campaign of 2026."]);
   await shoot(ada, "gallery_desk");
 
+  say("a project may demand that programs name versions; the page does");
+  const demand = () => inside(ada).getByRole("checkbox", { name: "Programs must name the version that they change" });
+  for (const is_demanded of [true, false]) {
+    await from_menu(ada, "Villa Giulia, Rome", "Rename and describe…");
+    await ada.page.getByText("Nothing changes for work on this page.").waitFor();
+    assert.equal(await demand().isChecked(), !is_demanded);
+    await demand().setChecked(is_demanded);
+    if (is_demanded) await shoot(ada, "demands_versions");
+    await button(ada, "Save").click();
+    await is_closed(ada);
+    assert.equal((await server.json("GET", "/projects/villa-giulia")).require_if_match, is_demanded);
+  }
+
   say("with models it stays, and it is said what to do");
   const started = await fetch(`${server.url}/api/v1/models?filename=square.ply&name=Threshold&unit=mm&project=villa-giulia`, {
     method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: kSquare,
