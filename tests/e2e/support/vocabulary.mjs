@@ -110,6 +110,7 @@ export const words = {
     property: mostly("quality"),
     rays: one(16),
     order: one(-1, 0, 7),
+    require_if_match: one(false), // all other changes would be refused (428); versions_test.py demands it
     language: mostly("es", "en"),
   },
 };
