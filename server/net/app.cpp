@@ -276,20 +276,22 @@ void App::answer_read(const Request& request, const Route& route, const Respond&
     const auto state = route.state ? route.state(request) : std::nullopt;
     return state ? std::optional(tag_of_state(request, *state)) : std::nullopt;
   };
-  // Before the work, which is what it saves. `Accept` is part of such tags.
+  // Before the work, which is what it saves. `Accept` is part of such tags. Whether there is anything that `*` could stand for shows afterwards.
   const auto before = state_now();
-  if (before && names_tag(known, *before))
+  if (before && known != "*" && names_tag(known, *before))
     return respond(std::move(empty_response(304).with("ETag", *before).with("Vary", "Accept")));
   const Respond with_tag([respond, known_tags = std::string(known), before, state_now](Response response) {
     if (response.status != 200) return respond(std::move(response));
     // Nothing changed while the answer was made: it shows that state and no other.
     if (before && response.header("ETag").empty() && state_now() == before) {
       if (response.header("Vary").empty()) response.with("Vary", "Accept");
-      return respond(std::move(response.with("ETag", *before)));
+      response.with("ETag", *before);
+      return respond(names_tag(known_tags, *before) ? not_modified(std::move(response)) : std::move(response));
     }
     const auto tag = tag_of_body(response);
     if (!tag) return respond(std::move(response));
-    response.with("ETag", *tag);
+    // For programs; a browser that several people use keeps no lists of people and sessions.
+    response.with("ETag", *tag).with("Cache-Control", "private, no-store");
     respond(names_tag(known_tags, *tag) ? not_modified(std::move(response)) : std::move(response));
   });
   route.handler(request, with_tag);

@@ -149,8 +149,11 @@ StateOf state_of_painted_table(const RouteContext& context) {
     const auto layers = context.store.layers_of_table(table->id, request.role());
     if (!layers) return std::nullopt;
     std::set<std::int64_t> models;
-    for (const Layer& layer : *layers) models.insert(layer.model_id);
     std::string text;
+    for (const Layer& layer : *layers) {
+      add(text, layer.id);
+      if (layer.sequence > 0) models.insert(layer.model_id);  // the others hold nothing yet
+    }
     for (const std::int64_t model : models) {
       const auto room = context.rooms.open(std::to_string(model), request.role());
       if (!room || !add_room(text, **room)) return std::nullopt;

@@ -124,7 +124,7 @@ Result<Page> page_of(const Request& request, int default_limit) {
   }
   if (auto found = request.query.find("after"); found != request.query.end()) {
     if (request.query.contains("offset"))
-      return fail(422, "Two beginnings", "Give `after` or `offset`, not both.", "after");
+      return fail(422, "after and offset together", "Give one of `after` and `offset`.", "after");
     auto place = place_in(request, found->second);
     if (!place) return tl::unexpected(place.error());
     page.after = std::move(*place);

@@ -14,8 +14,8 @@ Result<void> check_precondition(const RouteContext& context, const Request& requ
   if (!project->require_if_match) return {};
   return fail(428, "Version missing",
               "The project " + project->name +
-                  " takes changes only with the version that they were made for: read the thing, and send the ETag of "
-                  "that answer as `If-Match`.",
+                  " takes changes only with the version that they were made for. Read the resource again and send its "
+                  "ETag in `If-Match`.",
               "If-Match");
 }
 

@@ -9,14 +9,16 @@
 namespace strata::net {
 namespace {
 constexpr int kMostTries = 50;  // more than ever change one thing at once
-}
+constexpr std::size_t kDigitsOfBody = 16;
+}  // namespace
 
 Handler answering(std::function<Result<Response>(const Request&)> answer) {
   return [answer = std::move(answer)](const Request& request, const Respond& respond) {
     auto response = answer(request);
     // Who names no version means the newest, also where others change the same thing at once: one of them gets on each time.
+    const auto wanted = request.header("if-match");
     const bool means_any =
-        (request.method == Method::patch || request.method == Method::remove) && request.header("if-match").empty();
+        (request.method == Method::patch || request.method == Method::remove) && (wanted.empty() || wanted == "*");
     for (int tries = 1; means_any && tries < kMostTries && !response && response.error().status == 412; ++tries)
       response = answer(request);
     if (response)
@@ -39,15 +41,25 @@ Result<void> check_json_type(const Request& request) {
 std::string etag_of(std::int64_t version) { return "\"v" + std::to_string(version) + "\""; }
 
 Response with_etag(Response response, const Request& request, std::int64_t version) {
-  const std::string etag = etag_of(version);
+  std::string etag = etag_of(version);
   if (request.method != Method::get && request.method != Method::head) return response.with("ETag", etag);
+  // The same version is told otherwise to another role, and once something was painted.
+  etag.insert(etag.size() - 1, "." + sha256_hex(response.body).substr(0, kDigitsOfBody));
   if (names_tag(request.header("if-none-match"), etag)) return empty_response(304).with("ETag", etag);
   return response.with("ETag", etag);
 }
 
+namespace {
+// Also as `with_etag` writes it, with what stands behind the version.
+bool names_version(std::string_view etag, std::int64_t version) {
+  const std::string own = etag_of(version), beginning = own.substr(0, own.size() - 1) + ".";
+  return etag == own || (etag.starts_with(beginning) && etag.ends_with('"'));
+}
+}  // namespace
+
 Result<void> check_if_match(const Request& request, std::int64_t version) {
   const auto wanted = request.header("if-match");
-  if (wanted.empty() || wanted == "*" || wanted == etag_of(version)) return {};
+  if (wanted.empty() || wanted == "*" || names_version(wanted, version)) return {};
   return fail(412, "Changed meanwhile",
               "Somebody changed this since you read it; read it again and repeat your change.", "If-Match");
 }

@@ -131,8 +131,7 @@ void add_query_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/position",
               .handler = answering([&context](const Request& request) { return position(context, request); }),
-              .query = {"coords", "parameter-name", "f", "at"},
-              .state = state_of_model(context)});
+              .query = {"coords", "parameter-name", "f", "at"}});
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/positions",
               .handler = answering([&context](const Request& request) { return positions(context, request); }),

@@ -21,15 +21,21 @@ using TableChange = store::TableChange;
 
 constexpr std::uint64_t kMaxRecordsBytes = 64u << 20;
 
-// "name,-depth": descending after a minus.
-std::vector<std::pair<std::string, bool>> order_of(const std::string& text) {
+constexpr std::size_t kMostSortColumns = 16;
+
+// "name,-depth": descending after a minus. A column that is there already says nothing more.
+Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& text) {
   std::vector<std::pair<std::string, bool>> order;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     std::string word = text.substr(begin, end - begin);
     const bool descending = word.starts_with('-');
     if (descending || word.starts_with('+') || word.starts_with(' ')) word.erase(0, 1);  // a plus in a query is a space
-    if (!word.empty()) order.emplace_back(std::move(word), descending);
+    if (!word.empty() && std::ranges::find(order, word, &std::pair<std::string, bool>::first) == order.end())
+      order.emplace_back(std::move(word), descending);
+    if (order.size() > kMostSortColumns)
+      return fail(422, "Too many columns to sort by",
+                  "Records are sorted by at most " + std::to_string(kMostSortColumns) + " columns.", "sortby");
     begin = end + 1;
   }
   return order;
@@ -116,7 +122,9 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   auto place = record_place(context, request);
   if (!place) return tl::unexpected(place.error());
   store::Store::RecordQuery query;
-  query.order = order_of(request.query_or("sortby", {}));
+  auto order = order_of(request.query_or("sortby", {}));
+  if (!order) return tl::unexpected(order.error());
+  query.order = std::move(*order);
   const auto language = asked_language(request);
   if (!language) return tl::unexpected(language.error());
   query.language = *language;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <unordered_map>
 
+#include "core/log.h"
 #include "core/question.h"
 #include "mesh/chart_rims.h"
 #include "mesh/slot_bits.h"
@@ -141,16 +142,17 @@ void drop_slivers(std::vector<FlatPolygon>& polygons, double least_area) {
 Result<PlaneOutlines> outlines_of(const Labels& labels, const std::vector<TexelRegion>& regions,
                                   const mesh::Geometry& geometry, const mesh::SurfaceMap& map,
                                   const OutlinePlane& plane) {
+  const QuestionTurn turn;
   std::vector<FlatArea> charts;
   for (const mesh::ChartRims& chart : mesh::find_chart_rims(geometry)) {
-    check_question();
+    turn.check();
     charts.push_back(chart_area(geometry, chart, map.resolution));
   }
   const FlatAreaTree tree(charts);
   const Laying laying(geometry, map.resolution, plane);
   std::vector<std::vector<FlatArea>> laid(labels.classes().size());
   for (const TexelRegion& region : regions) {
-    check_question();
+    turn.check();
     const FlatArea area = region_area(region);
     tree.find(area, [&](const FlatArea& chart) {
       laying.lay(area.cut_with(chart), laid[Labels::class_number(region.label)]);
@@ -160,7 +162,7 @@ Result<PlaneOutlines> outlines_of(const Labels& labels, const std::vector<TexelR
   const glm::dvec3 origin(geometry.origin[plane.right], geometry.origin[plane.up], geometry.origin[plane.depth]);
   PlaneOutlines outlines;
   for (std::size_t i = 0; i < laid.size(); ++i) {
-    check_question();
+    turn.check();
     const FlatArea all = FlatArea::joined(std::move(laid[i]), texel * kGridOfTexel);
     auto& polygons = outlines[labels.classes()[i]] = all.simplified(texel * kSimplifiedTexels).polygons();
     drop_slivers(polygons, texel * texel * kSliverTexels);
@@ -192,7 +194,11 @@ Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry
   try {
     return outlines_of(labels, regions, geometry, map, plane);
   } catch (const std::runtime_error& error) {
-    return fail(500, "Outlines not made", error.what());
+    log::error(std::string("outlines of a layer: ") + error.what());
+    return fail(500, "Outlines not made",
+                "The areas could not be laid on the plane. Ask for outlines along another axis, or for texels.tif; the "
+                "server's log says more.",
+                "along");
   }
 }
 

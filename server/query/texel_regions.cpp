@@ -9,6 +9,7 @@ namespace strata::query {
 namespace {
 
 constexpr std::uint32_t kNoRegion = 0xffffffffu;
+constexpr std::size_t kLeastCorners = 4;  // of a region
 constexpr glm::ivec2 kSteps[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
 // Of a corner, the texels to the left and to the right of the edge that goes on in each direction, as their lower left corners.
 constexpr glm::ivec2 kLeftOf[] = {{0, 0}, {-1, 0}, {-1, -1}, {0, -1}};
@@ -26,6 +27,7 @@ class Regions {
       if (labels_[texel] == 0 || region_of_[texel] != kNoRegion) continue;
       fill(texel, static_cast<std::uint32_t>(regions.size()));
       regions.push_back({labels_[texel], {}});
+      if (regions.size() * kLeastCorners > corner_limit) return false;
     }
     std::size_t corners = 0;
     for (std::uint32_t slot = 0; slot < walked_.size(); ++slot) {
@@ -35,8 +37,9 @@ class Regions {
         if (region == kNoRegion || (walked_[slot] >> i & 1u) != 0) continue;
         const glm::ivec2 at = place_of(slot, i);
         if (region_at(at - glm::ivec2(0, 1)) == region) continue;
-        std::vector<glm::ivec2> ring = walk(at, region);
+        std::vector<glm::ivec2> ring = walk(at, region, corner_limit - corners);
         corners += ring.size();
+        turn.check(ring.size());
         if (corners > corner_limit) return false;
         put(std::move(ring), regions[region]);
       }
@@ -81,8 +84,8 @@ class Regions {
     }
   }
 
-  // From the lower left corner of a texel along its lower edge, the region always on the left.
-  std::vector<glm::ivec2> walk(glm::ivec2 start, std::uint32_t region) {
+  // From the lower left corner of a texel along its lower edge, the region always on the left; given up once it has more than `most` corners.
+  std::vector<glm::ivec2> walk(glm::ivec2 start, std::uint32_t region, std::size_t most) {
     std::vector<glm::ivec2> ring;
     glm::ivec2 at = start;
     int way = 0;
@@ -97,7 +100,7 @@ class Regions {
         way = (way + 1) % 4;
       else if (region_at(at + kRightOf[way]) == region)
         way = (way + 3) % 4;
-    } while (at != start || way != 0);
+    } while ((at != start || way != 0) && ring.size() <= most);
     return ring;
   }
 

@@ -141,6 +141,9 @@ SortKeys sort_keys(const std::vector<Column>& columns, std::span<const RecordOrd
       sort.keys.push_back(text_key(name, in_language ? "(" : "lower(",
                                    in_language ? " COLLATE \"" + by.collation + "\")" : ")", by.descending));
       sort.keys.push_back(text_key(name, "(", " COLLATE \"C\")", by.descending));
+    } else if (holds_lists(column->kind) || type == "jsonb") {
+      sort.keys.push_back(
+          text_key(name + "::text", "(", " COLLATE \"C\")", by.descending));  // in any order, but always the same
     } else {
       sort.keys.push_back(plain_key(name, type, by.descending));
     }

@@ -250,6 +250,10 @@ def nonsense(server):
     cursor = next_of(server.ok("GET", T + "/records?limit=1")).partition("after=")[2]
     values = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
     mark = values[0]
+    many = ",".join(f"column-{i}" for i in range(17))
+    refused = server.get(f"{T}/records?sortby={many}")
+    assert refused.status == 422 and refused.json()["field"] == "sortby", refused
+    assert next_of(server.ok("GET", f"{T}/records?limit=1&sortby=" + ",".join(["depth"] * 1000))), "a column that is repeated"
     sorted_cursor = next_of(server.ok("GET", T + "/records?limit=1&sortby=depth")).partition("after=")[2]
     depth_mark = json.loads(base64.urlsafe_b64decode(sorted_cursor + "=" * (-len(sorted_cursor) % 4)))[0]
     for path, after in ([(T + "/records", each) for each in (

@@ -219,13 +219,20 @@ describe("the interface", () => {
   });
   it("names the version in every change of what has one", async () => {
     const seen: [number, unknown, Record<string, string>] = [200, { palette: {} }, { ETag: '"v7"' }];
-    const changes: ((api: Api) => Promise<unknown>)[] = [
+    const of_whatever_is_there: ((api: Api) => Promise<unknown>)[] = [
       (api) => api.set_title_column("units", 3),
       (api) => api.change_column("units", "depth", { name: "Depth" }),
       (api) => api.drop_column("units", "depth"),
       (api) => api.change_record("units", 1, { values: {} }),
       (api) => api.delete_record("units", 1, { what: "clear" }),
       (api) => api.delete_look(1, 2),
+    ];
+    for (const change of of_whatever_is_there) {
+      const { api, asked } = api_of([200, {}]);
+      await change(api);
+      expect(asked.map(({ headers }) => headers["If-Match"])).toEqual(["*"]);
+    }
+    const changes: ((api: Api) => Promise<unknown>)[] = [
       (api) => api.change_look(1, 2, { name: "x" }),
       (api) => api.change_layer(1, 2, { name: "x" } as never),
       (api) => api.delete_layer(1, 2),

@@ -313,7 +313,7 @@ export class Api {
     return (await this.versioned<wire.Look>("PATCH", path, change, etag)).value;
   }
   async delete_look(model: Id, look: Id): Promise<void> {
-    await this.delete_as_read(look_path(model, look));
+    await this.delete_as_is(look_path(model, look));
   }
   /** What was done in a project, newest first; `before`: `next` of the page before. */
   async activity(project: Id, { model, before, limit }: { model: Id | undefined; before: string | undefined; limit: number }): Promise<wire.ActivityList> {
@@ -443,16 +443,16 @@ export class Api {
   }
   /** The column that says what a record is called, by its id; null: the best one by rule. */
   async set_title_column(table: Id, column: number | null): Promise<wire.Table> {
-    return this.change_as_read(table_path(table), table_path(table), { title_column: column === null ? "" : `${column}` });
+    return this.change_as_is(table_path(table), { title_column: column === null ? "" : `${column}` });
   }
   async create_column(table: Id, column: wire.ColumnCreate): Promise<wire.ColumnChanged> {
     return this.json("POST", `${table_path(table)}/columns`, column);
   }
   async change_column(table: Id, column: Id, change: wire.ColumnPatch): Promise<wire.ColumnChanged> {
-    return this.change_as_read(table_path(table), column_path(table, column), change);
+    return this.change_as_is(column_path(table, column), change);
   }
   async drop_column(table: Id, column: Id): Promise<void> {
-    await this.delete_as_read(column_path(table, column), table_path(table));
+    await this.delete_as_is(column_path(table, column));
   }
   /** Of the caller's changes of columns and records, the newest. */
   async undo_table(table: Id): Promise<wire.TableChanged> {
@@ -487,14 +487,14 @@ export class Api {
   /** With the version that was read: another's change in between is an ApiError of status 412. */
   async change_record(table: Id, key: number, change: wire.RecordPatch): Promise<wire.TableRecord> {
     const path = `${records_path({ table })}/${key}`;
-    if (change.version === undefined) return this.change_as_read(path, path, change);
+    if (change.version === undefined) return this.change_as_is(path, change);
     return (await this.versioned<wire.TableRecord>("PATCH", path, change, etag_of(change.version))).value;
   }
   /** `texels`: what becomes of the surface that has the record's key. */
   async delete_record(table: Id, key: number, texels: TexelsOfDeleted): Promise<void> {
     const query = new URLSearchParams({ texels: texels.what, ...(texels.what === "reassign" ? { to: `${texels.to}` } : {}) });
     const path = `${records_path({ table })}/${key}`;
-    await this.delete_as_read(`${path}?${query}`, path);
+    await this.delete_as_is(`${path}?${query}`);
   }
   /** Files of a record. */
   async attachments(table: Id, key: number): Promise<wire.Attachment[]> {
@@ -716,14 +716,12 @@ export class Api {
     return found;
   }
 
-  /** A change that stands on its own: of whatever is there now, whose version it names. `versioned`: what has the version. */
-  private async change_as_read<T>(versioned: string, path: string, change: unknown): Promise<T> {
-    const { etag } = await this.versioned("GET", versioned);
-    return (await this.versioned<T>("PATCH", path, change, etag)).value;
+  /** A change that stands on its own, of whatever is there now. */
+  private async change_as_is<T>(path: string, change: unknown): Promise<T> {
+    return (await this.versioned<T>("PATCH", path, change, "*")).value;
   }
-  private async delete_as_read(path: string, versioned = path): Promise<void> {
-    const { etag } = await this.versioned("GET", versioned);
-    await this.request("DELETE", path, undefined, { "If-Match": etag });
+  private async delete_as_is(path: string): Promise<void> {
+    await this.request("DELETE", path, undefined, { "If-Match": "*" });
   }
 
   private async json<T>(method: string, path: string, body?: unknown): Promise<T> {

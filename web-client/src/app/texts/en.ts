@@ -683,7 +683,7 @@ export const texts = {
     world_wrong: "Give the six numbers of the picture's world file: without them its place is not known.",
     crs: {
       question: (crs: string) => `The map lies in ${crs}, and this model has no coordinate system. Are the model's coordinates those of ${crs}?`,
-      hint: "If they are not, the map lies in the wrong place. A curator can give the model its coordinate system; then nobody is asked.",
+      hint: "If they are not, the map lies in the wrong place. A curator can give the model its coordinate system; then the page does not ask again.",
       yes: "Yes, use the map",
       no: "No",
     },
