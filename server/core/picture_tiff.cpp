@@ -9,13 +9,6 @@ namespace {
 
 constexpr int kMostSamples = 8;
 
-template <class T>
-T tag_of(TIFF* tiff, std::uint32_t tag) {
-  T value = 0;
-  TIFFGetFieldDefaulted(tiff, tag, &value);
-  return value;
-}
-
 tl::unexpected<Problem> damaged(const TiffMemory& file) {
   return damaged_picture(PictureFormat::tiff, file.complaint.empty() ? "it is damaged" : file.complaint);
 }
@@ -28,13 +21,13 @@ bool is_read_codec(int compression) {
 
 // Of the first page, as far as libtiff makes colours of it.
 Result<PictureInfo> describe(TIFF* tiff, int largest_side) {
-  auto info = sized_picture(PictureFormat::tiff, tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
-                            tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH), largest_side);
+  auto info = sized_picture(PictureFormat::tiff, tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
+                            tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH), largest_side);
   if (!info) return info;
-  const int samples = tag_of<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL),
-            bits = tag_of<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE),
-            kind = tag_of<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT),
-            compression = tag_of<std::uint16_t>(tiff, TIFFTAG_COMPRESSION);
+  const int samples = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL),
+            bits = tiff_tag<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE),
+            kind = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT),
+            compression = tiff_tag<std::uint16_t>(tiff, TIFFTAG_COMPRESSION);
   const auto unread = [](const std::string& what) {
     return damaged_picture(PictureFormat::tiff,
                            what + "; save it with 8 bits a sample, as RGB, without alpha or with it");
@@ -45,11 +38,11 @@ Result<PictureInfo> describe(TIFF* tiff, int largest_side) {
   if (bits > 16) return unread("its samples have " + std::to_string(bits) + " bits");
   if (!is_read_codec(compression) || !TIFFIsCODECConfigured(static_cast<std::uint16_t>(compression)))
     return unread("its compression " + std::to_string(compression) + " is not read");
-  if (tag_of<std::uint16_t>(tiff, TIFFTAG_ORIENTATION) > ORIENTATION_BOTLEFT)
+  if (tiff_tag<std::uint16_t>(tiff, TIFFTAG_ORIENTATION) > ORIENTATION_BOTLEFT)
     return unread("it is stored lying on its side");
   if (TIFFIsTiled(tiff)) {
-    const auto width = tag_of<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH),
-               height = tag_of<std::uint32_t>(tiff, TIFFTAG_TILELENGTH);
+    const auto width = tiff_tag<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH),
+               height = tiff_tag<std::uint32_t>(tiff, TIFFTAG_TILELENGTH);
     const std::uint64_t pixel_bytes = static_cast<std::uint64_t>(samples) * 2 + 4;
     if (width == 0 || height == 0 || width > kMaxTiffTileBytes / pixel_bytes / height)
       return unread("its tiles have " + std::to_string(width) + " × " + std::to_string(height) + " pixels");

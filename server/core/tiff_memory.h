@@ -32,6 +32,14 @@ using Tiff = std::unique_ptr<TIFF, CloseTiff>;
 // Null: it cannot be opened, see the complaint. `file` outlives the result.
 Tiff open_tiff(TiffMemory& file, const char* mode);
 
+// Of the directory that is open; its default where the file has none, otherwise 0.
+template <class T>
+T tiff_tag(TIFF* tiff, std::uint32_t tag) {
+  T value = 0;
+  TIFFGetFieldDefaulted(tiff, tag, &value);
+  return value;
+}
+
 // Of a compression code: the others change values, and are the larger attack surface.
 bool is_lossless(int compression);
 

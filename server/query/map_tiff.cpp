@@ -17,13 +17,6 @@ tl::unexpected<Problem> damaged(const TiffMemory& file) {
   return refuse("The TIFF cannot be read: " + (file.complaint.empty() ? std::string("damaged") : file.complaint) + ".");
 }
 
-template <class T>
-T tag_of(TIFF* tiff, std::uint32_t tag) {
-  T value = 0;
-  TIFFGetFieldDefaulted(tiff, tag, &value);
-  return value;
-}
-
 std::optional<ValueType> sample_type(int bits, int format) {
   if (format == SAMPLEFORMAT_IEEEFP) {
     if (bits == 16) return ValueType::f16;
@@ -63,8 +56,8 @@ class BandReader {
  public:
   BandReader(const MapTiff& info, int band, TIFF* tiff)
       : info_(info),
-        width_(tag_of<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE) / 8u),
-        is_separate_(tag_of<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE),
+        width_(tiff_tag<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE) / 8u),
+        is_separate_(tiff_tag<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE),
         band_(band - 1) {
     raster_.width = info.width;
     raster_.height = info.height;
@@ -109,8 +102,8 @@ class BandReader {
 };
 
 Result<void> read_tiles(TIFF* tiff, const TiffMemory& file, const MapTiff& info, BandReader& band) {
-  const auto tile_width = tag_of<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH),
-             tile_height = tag_of<std::uint32_t>(tiff, TIFFTAG_TILELENGTH);
+  const auto tile_width = tiff_tag<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH),
+             tile_height = tiff_tag<std::uint32_t>(tiff, TIFFTAG_TILELENGTH);
   const std::uint64_t row_bytes = tile_width * band.pixel_bytes();
   if (tile_width == 0 || tile_height == 0 || row_bytes > kMaxTiffTileBytes / tile_height)
     return refuse("The TIFF's tiles are " + std::to_string(tile_width) + " × " + std::to_string(tile_height) +
@@ -140,21 +133,21 @@ Result<void> read_rows(TIFF* tiff, const TiffMemory& file, const MapTiff& info, 
 
 Result<MapTiff> describe(TIFF* tiff, int largest_side) {
   MapTiff info;
-  const auto width = tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
-             height = tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH);
+  const auto width = tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
+             height = tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH);
   if (width < 1 || height < 1 || std::max(width, height) > static_cast<std::uint32_t>(largest_side))
     return refuse("The TIFF has " + std::to_string(width) + " × " + std::to_string(height) + " pixels; 1 to " +
                   std::to_string(largest_side) + " a side are taken.");
   info.width = static_cast<int>(width);
   info.height = static_cast<int>(height);
-  info.bands = tag_of<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL);
+  info.bands = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL);
   if (info.bands < 1) return refuse("The TIFF has no bands.");
-  const int bits = tag_of<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE),
-            format = tag_of<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT);
-  const int compression = tag_of<std::uint16_t>(tiff, TIFFTAG_COMPRESSION);
+  const int bits = tiff_tag<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE),
+            format = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT);
+  const int compression = tiff_tag<std::uint16_t>(tiff, TIFFTAG_COMPRESSION);
   std::uint16_t photometric = PHOTOMETRIC_MINISBLACK;
   TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
-  const int orientation = tag_of<std::uint16_t>(tiff, TIFFTAG_ORIENTATION);
+  const int orientation = tiff_tag<std::uint16_t>(tiff, TIFFTAG_ORIENTATION);
   if (orientation != ORIENTATION_TOPLEFT)
     return refuse("The TIFF is stored turned or mirrored (orientation " + std::to_string(orientation) +
                   "), so its place is not certain; save it upright.");

@@ -12,13 +12,6 @@ namespace {
 
 constexpr int kMostDirectories = 64;  // in which a mask is looked for
 
-template <class T>
-T tag_of(TIFF* tiff, std::uint32_t tag) {
-  T value = 0;
-  TIFFGetFieldDefaulted(tiff, tag, &value);
-  return value;
-}
-
 tl::unexpected<Problem> damaged(const TiffMemory& file) {
   return refuse_raster(
       "The TIFF cannot be read: " + (file.complaint.empty() ? std::string("damaged") : file.complaint) + ".");
@@ -44,20 +37,20 @@ struct TiffForm {
 };
 
 Result<void> check_compression(TIFF* tiff) {
-  const auto compression = tag_of<std::uint16_t>(tiff, TIFFTAG_COMPRESSION);
+  const auto compression = tiff_tag<std::uint16_t>(tiff, TIFFTAG_COMPRESSION);
   if (is_lossless(compression) && TIFFIsCODECConfigured(compression)) return {};
   return refuse_raster("The TIFF's compression (code " + std::to_string(compression) +
                        ") is not accepted; save it with deflate, LZW, zstd or none.");
 }
 
 Result<TiffForm> form_of(const Layer& layer, TIFF* tiff) {
-  if (auto size = check_raster_size(layer, tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
-                                    tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH));
+  if (auto size = check_raster_size(layer, tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
+                                    tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH));
       !size)
     return tl::unexpected(size.error());
-  const int samples = tag_of<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL),
-            bits = tag_of<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE),
-            format = tag_of<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT);
+  const int samples = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL),
+            bits = tiff_tag<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE),
+            format = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT);
   const auto sample = sample_form(bits, format);
   if (!sample)
     return refuse_raster("The TIFF's samples have " + std::to_string(bits) + " bits and format " +
@@ -69,15 +62,15 @@ Result<TiffForm> form_of(const Layer& layer, TIFF* tiff) {
         " a pixel; a layer takes one (the value), or two (the value, then 0 where nothing is painted).");
   if (auto good = check_compression(tiff); !good) return tl::unexpected(good.error());
   return TiffForm{*sample, samples,
-                  samples > 1 && tag_of<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE};
+                  samples > 1 && tiff_tag<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE};
 }
 
 // visit(x, row, count, samples) for all pixels of one plane of the directory.
 template <class Visit>
 Result<void> visit_tiles(TIFF* tiff, const TiffMemory& file, std::uint32_t side, int pixel_bits, std::uint16_t plane,
                          Visit visit) {
-  const auto tile_width = tag_of<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH),
-             tile_height = tag_of<std::uint32_t>(tiff, TIFFTAG_TILELENGTH);
+  const auto tile_width = tiff_tag<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH),
+             tile_height = tiff_tag<std::uint32_t>(tiff, TIFFTAG_TILELENGTH);
   const std::uint64_t row_bytes = (std::uint64_t{tile_width} * static_cast<unsigned>(pixel_bits) + 7) / 8;
   if (tile_width == 0 || tile_height == 0 || row_bytes > kMaxTiffTileBytes / tile_height)
     return refuse_raster("The TIFF's tiles are " + std::to_string(tile_width) + " × " + std::to_string(tile_height) +
@@ -141,7 +134,7 @@ Result<void> read_valid_plane(TIFF* tiff, const TiffMemory& file, const Layer& l
 Result<bool> find_mask(TIFF* tiff, const TiffMemory& file) {
   for (int i = 1; i < kMostDirectories && !TIFFLastDirectory(tiff); ++i) {
     if (!TIFFSetDirectory(tiff, static_cast<std::uint16_t>(i))) return damaged(file);
-    const auto kind = tag_of<std::uint32_t>(tiff, TIFFTAG_SUBFILETYPE);
+    const auto kind = tiff_tag<std::uint32_t>(tiff, TIFFTAG_SUBFILETYPE);
     if ((kind & FILETYPE_MASK) != 0 && (kind & FILETYPE_REDUCEDIMAGE) == 0) return true;
   }
   return false;
@@ -152,12 +145,12 @@ Result<void> read_mask(TIFF* tiff, TiffMemory& file, const Layer& layer, Painted
   const auto has_mask = find_mask(tiff, file);
   if (!has_mask) return tl::unexpected(has_mask.error());
   if (*has_mask) {
-    if (auto size = check_raster_size(layer, tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
-                                      tag_of<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH));
+    if (auto size = check_raster_size(layer, tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
+                                      tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH));
         !size)
       return size;
-    const int bits = tag_of<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE);
-    if (tag_of<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL) != 1 || (bits != 1 && bits != 8))
+    const int bits = tiff_tag<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE);
+    if (tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL) != 1 || (bits != 1 && bits != 8))
       return refuse_raster("The TIFF's mask is not one of 1 or 8 bits a pixel.");
     if (auto good = check_compression(tiff); !good) return good;
     auto read =
