@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <unordered_map>
 
 #include "core/log.h"
+#include "core/polygon_area.h"
 #include "core/question.h"
 #include "mesh/chart_rims.h"
 #include "mesh/slot_bits.h"
@@ -82,23 +84,27 @@ class Labels {
   std::vector<std::uint32_t> of_texel_;
 };
 
-FlatArea chart_area(const mesh::Geometry& geometry, const mesh::ChartRims& chart, double resolution) {
-  FlatPolygon polygon;
-  double widest = -1;
+// Lobes of a chart that meet in one vertex have an outer ring each. Outer rings run in the direction of the widest ring, holes against it.
+void add_chart_areas(const mesh::Geometry& geometry, const mesh::ChartRims& chart, double resolution,
+                     std::vector<FlatArea>& areas) {
+  std::vector<FlatRing> rings;
   for (const auto& rim : chart.rings) {
-    FlatRing ring;
-    glm::dvec2 low(1e300), high(-1e300);
-    for (const std::uint32_t vertex : rim) {
-      const glm::dvec2 at = glm::dvec2(geometry.vertices[vertex].uv) * resolution;
-      low = glm::min(low, at), high = glm::max(high, at);
-      ring.emplace_back(at, 0.0);
-    }
-    // The outer rim's box holds all others.
-    const double size = (high.x - low.x) * (high.y - low.y);
-    polygon.rings.insert(size > widest ? polygon.rings.begin() : polygon.rings.end(), std::move(ring));
-    widest = std::max(widest, size);
+    FlatRing& ring = rings.emplace_back();
+    for (const std::uint32_t vertex : rim)
+      ring.emplace_back(glm::dvec2(geometry.vertices[vertex].uv) * resolution, 0.0);
   }
-  return FlatArea(polygon);
+  const auto size = [](const FlatRing& ring) { return std::abs(ring_area(ring)); };
+  const double widest = ring_area(*std::ranges::max_element(rings, {}, size));
+  const auto holes = std::ranges::partition(rings, [&](const FlatRing& ring) { return ring_area(ring) * widest > 0; });
+  for (FlatRing& outer : std::span(rings.begin(), holes.begin())) {
+    const std::vector<std::vector<glm::dvec2>> flat{{outer.begin(), outer.end()}};
+    const PolygonArea inside(flat);
+    FlatPolygon polygon{{std::move(outer)}};
+    // Rings may share corners, never an edge.
+    for (const FlatRing& hole : holes)
+      if (inside.contains(glm::dvec2(hole[0] + hole[1]) / 2.0)) polygon.rings.push_back(hole);
+    areas.emplace_back(polygon);
+  }
 }
 
 FlatArea region_area(const TexelRegion& region) {
@@ -146,7 +152,7 @@ Result<PlaneOutlines> outlines_of(const Labels& labels, const std::vector<TexelR
   std::vector<FlatArea> charts;
   for (const mesh::ChartRims& chart : mesh::find_chart_rims(geometry)) {
     turn.check();
-    charts.push_back(chart_area(geometry, chart, map.resolution));
+    add_chart_areas(geometry, chart, map.resolution, charts);
   }
   const FlatAreaTree tree(charts);
   const Laying laying(geometry, map.resolution, plane);

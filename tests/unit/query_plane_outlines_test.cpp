@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -52,6 +54,45 @@ Surface flat_sheet(const glm::dvec3& offset = glm::dvec3(0)) {
 int disc_with_a_core(glm::vec3 p) {
   const float r = std::hypot(p.x, p.y);
   return r < 0.1f ? 2 : r < 0.3f ? 1 : 0;
+}
+
+// The sheet's quarters at its lower left and its upper right alone, each with a hole, joined in the middle vertex, where the first rim begins.
+Surface two_lobes() {
+  Surface surface = flat_sheet();
+  mesh::Geometry& geometry = surface.geometry;
+  const auto place = [&](std::uint32_t vertex) { return glm::vec2(geometry.vertices[vertex].position); };
+  const auto is_on_axis = [&](std::uint32_t vertex) {
+    return std::abs(place(vertex).x) < 1e-5f || std::abs(place(vertex).y) < 1e-5f;
+  };
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (std::size_t i = 0; i < geometry.indices.size(); i += 3) {
+    std::array corners{geometry.indices[i], geometry.indices[i + 1], geometry.indices[i + 2]};
+    const glm::vec2 middle = place(corners[0]) + place(corners[1]) + place(corners[2]);
+    const auto is_hole = [](float sum) { return std::abs(sum) > 0.6f && std::abs(sum) < 0.9f; };  // of three corners
+    if (middle.x * middle.y < 0 || (is_hole(middle.x) && is_hole(middle.y))) continue;
+    for (int turn = 0; turn < 3; ++turn) {
+      std::ranges::rotate(corners, corners.begin() + 1);
+      if (glm::length(place(corners[0])) > 1e-5f || !is_on_axis(corners[1])) continue;
+      triangles.insert(triangles.begin(), corners);
+      break;
+    }
+    if (triangles.empty() || triangles.front() != corners) triangles.push_back(corners);
+  }
+  geometry.indices.clear();
+  for (const auto& corners : triangles) geometry.indices.insert(geometry.indices.end(), corners.begin(), corners.end());
+  EXPECT_LT(glm::length(place(geometry.indices.front())), 1e-5f);
+  Progress progress;
+  surface.map = *mesh::bake_surface_map(geometry, surface.map.resolution, progress);
+  return surface;
+}
+
+TEST(PlaneOutlines, lobes_of_a_chart_that_meet_in_one_vertex_are_both_there) {
+  const Surface surface = two_lobes();
+  const auto everywhere = [](glm::vec3) { return 1; };
+  const auto found = outlines(surface, everywhere);
+  const double painted = painted_area(surface, everywhere, 1);
+  ASSERT_GT(painted, 0);
+  EXPECT_NEAR(area_of(found.at(1)), painted, 0.01 * painted);
 }
 
 TEST(PlaneOutlines, a_flat_area_has_the_area_of_its_texels_and_its_hole) {
