@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Prints the results of `strata-bench atlas --all --json FILE` as the tables of README.md: the scans, then the broken files.
+"""Prints the results of `strata-bench atlas --all --json FILE` as the tables of README.md: the scans, the files of other suites, then the broken files.
 
     tests/bench/atlas_table.py FILE
 """
 import json
 import sys
 
-HEAD = ["mesh", "triangles", "coordinates", "charts", "used", "mean stretch", "largest texel / mean at 2048² · 4096² · 8192²", "texels with two owners", "processor s"]
+HEAD = ["mesh", "triangles", "coordinates", "charts", "used", "mean stretch", "largest texel / mean at 2048² · 4096² · 8192²", "texels with two owners", "s", "processor s"]
 
 
 def spaced(number):
@@ -23,7 +23,7 @@ def cells(row):
     resolutions = row["resolutions"]
     return [f"`{row['mesh']}`", spaced(row["triangles"]), "the file's" if row["source"] == "file" else "made", str(row["charts"]),
             f"{100 * row['coverage']:.1f} %", f"{row['stretch_mean']:.2f}", " · ".join(f"{r['max_over_mean']:.2f}" for r in resolutions),
-            " · ".join(spaced(r["shared_texels"]) for r in resolutions) if any(r["shared_texels"] for r in resolutions) else "0", seconds(row["cpu_seconds"])]
+            " · ".join(spaced(r["shared_texels"]) for r in resolutions) if any(r["shared_texels"] for r in resolutions) else "0", seconds(row["seconds"]), seconds(row["cpu_seconds"])]
 
 
 def print_table(rows):
@@ -38,8 +38,9 @@ def print_table(rows):
 def main():
     with open(sys.argv[1], encoding="utf-8") as file:
         rows = json.load(file)["results"]
-    print_table([row for row in rows if not row["mesh"].startswith("nasty/")])
-    print_table([row for row in rows if row["mesh"].startswith("nasty/")])
+    print_table([row for row in rows if not row["mesh"].startswith(("peers/", "nasty/"))])
+    for folder in ("peers/", "nasty/"):
+        print_table([row for row in rows if row["mesh"].startswith(folder)])
 
 
 main()
