@@ -34,4 +34,15 @@ Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context, c
   return *sequence;
 }
 
+Result<LayerQuery> LayerQuery::from(const RouteContext& context, const Request& request) {
+  auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return tl::unexpected(room.error());
+  auto layer = (*room)->layer(request.param("layer"));
+  if (!layer) return tl::unexpected(layer.error());
+  const auto at = find_sequence(context, **room, as_of(request));
+  if (!at) return tl::unexpected(at.error());
+  const auto sequence = at->value_or((*room)->sequence());
+  return LayerQuery{std::move(*room), std::move(*layer), *at, sequence};
+}
+
 }  // namespace strata::net

@@ -210,21 +210,16 @@ int epsg_of(const Model& model, const query::OutlinePlane& plane) {
 
 Result<FeatureSet> layer_features(const RouteContext& context, const FeatureWish& wish) {
   const Model model = wish.room->model();
-  const auto all = wish.room->quantities(wish.layer.slug, wish.at);
-  if (!all) return tl::unexpected(all.error());
-  const auto perimeters = wish.room->perimeters(wish.layer.slug, wish.at);
-  if (!perimeters) return tl::unexpected(perimeters.error());
-  room::Selection selection;
-  selection.at = wish.at;
-  const auto texels = wish.room->surface_texels(wish.layer.slug, selection);
-  if (!texels) return tl::unexpected(texels.error());
-  auto outlines = query::plane_outlines(texels->view, *wish.room->geometry(), *texels->map,
-                                        query::classes_of(wish.layer), wish.plane);
+  const auto areas = wish.room->layer_areas(wish.layer.slug, wish.at);
+  if (!areas) return tl::unexpected(areas.error());
+  const query::Quantities& all = areas->quantities;
+  auto outlines = query::plane_outlines(areas->view, *wish.room->geometry(), *areas->map, query::classes_of(wish.layer),
+                                        wish.plane);
   if (!outlines) return tl::unexpected(outlines.error());
   Records records;
   if (wish.layer.table) {
     std::vector<std::int64_t> painted;
-    for (const query::Quantity& quantity : all->classes) painted.push_back(static_cast<std::int64_t>(*quantity.value));
+    for (const query::Quantity& quantity : all.classes) painted.push_back(static_cast<std::int64_t>(*quantity.value));
     auto read = read_records(context, wish, std::move(painted));
     if (!read) return tl::unexpected(read.error());
     records = std::move(*read);
@@ -235,7 +230,7 @@ Result<FeatureSet> layer_features(const RouteContext& context, const FeatureWish
   for (const int axis : {wish.plane.right, wish.plane.up, wish.plane.depth}) set.axes += "xyz"[axis];
   set.epsg = epsg_of(model, wish.plane);
   set.description = wish.layer.name + " on " + model.name + ": " + set.axes + " in " + set.unit;
-  set.tables.push_back(areas_of(wish, *all, *perimeters, std::move(*outlines), records));
+  set.tables.push_back(areas_of(wish, all, areas->perimeters, std::move(*outlines), records));
   for (const Column& marks : records.marks) set.tables.push_back(marks_in(wish, records, marks));
   return set;
 }

@@ -102,13 +102,6 @@ Slice slice_from(std::size_t begin, std::size_t count, const Page& page,
 
 }  // namespace
 
-tl::unexpected<Problem> wrong_place() {
-  return fail(
-      422, "Not a place in this list",
-      "`after` is taken from the `next` of a page of this list, with the same filters and order. Begin without it.",
-      "after");
-}
-
 Result<Page> page_of(const Request& request, int default_limit) {
   Page page;
   page.limit = default_limit;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "net/http_types.h"
+#include "store/list_place.h"
 #include "store/store.h"
 
 // Pages of lists: `limit`, and where the page begins: behind the entry at which another page ended (`after`), which stays right while others
@@ -38,7 +39,7 @@ void add_page_links(Response& response, const Request& request, const Page& page
 // The number after which the page begins, of lists that are sorted by one; `first` where it begins at the beginning. Refused (422, `after`):
 // a place of another shape.
 Result<std::int64_t> number_after(const Page& page, std::int64_t first = 0);
-tl::unexpected<Problem> wrong_place();
+using store::wrong_place;
 
 // What was read in excess of the page is dropped: one more entry tells that the list goes on. `place_of` the last one that stays is told.
 template <class Rows, class PlaceOf>

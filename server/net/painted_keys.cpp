@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "net/readable_area.h"
 #include "net/table_events.h"
 #include "room/await.h"
 
@@ -12,12 +13,10 @@ namespace {
 constexpr std::size_t kMostNamed = 5;
 
 std::string area_text(double area_m2) {
-  char text[48];
-  if (area_m2 >= 1)
-    std::snprintf(text, sizeof text, "%.2f m²", area_m2);
-  else
-    std::snprintf(text, sizeof text, "%.2f cm²", area_m2 * 1e4);
-  return text;
+  const AreaUnit unit = readable_area(area_m2);
+  char number[48];
+  std::snprintf(number, sizeof number, "%.2f ", area_m2 * unit.per_m2);
+  return number + unit.name;
 }
 
 }  // namespace

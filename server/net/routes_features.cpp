@@ -28,20 +28,16 @@ Result<Response> read_features(const RouteContext& context, const Request& reque
   if (!axis) return tl::unexpected(axis.error());
   const auto language = asked_language(request);
   if (!language) return tl::unexpected(language.error());
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  const auto layer = (*room)->layer(request.param("layer"));
-  if (!layer) return tl::unexpected(layer.error());
-  const auto at = find_sequence(context, **room, as_of(request));
-  if (!at) return tl::unexpected(at.error());
-  const auto sequence = at->value_or((*room)->sequence());
-  auto set = layer_features(context,
-                            {*room, *layer, *at, {axis->u, axis->v, 3 - axis->u - axis->v}, request.role(), *language});
+  const auto asked = LayerQuery::from(context, request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto set = layer_features(
+      context,
+      {asked->room, asked->layer, asked->at, {axis->u, axis->v, 3 - axis->u - axis->v}, request.role(), *language});
   if (!set) return tl::unexpected(set.error());
   auto response =
       *format == FeatureFormat::geojson ? feature_json(std::move(*set)) : geopackage(*set, context.options.upload_dir);
   if (!response) return response;
-  add_sequences(*response, sequence, (*room)->durable_sequence());
+  add_sequences(*response, asked->sequence, asked->room->durable_sequence());
   response->with("Vary", "Accept");
   return response;
 }

@@ -149,42 +149,38 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   if (!separator) return tl::unexpected(separator.error());
   const auto language = asked_language(request);
   if (!language) return tl::unexpected(language.error());
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  const auto layer = (*room)->layer(request.param("layer"));
-  if (!layer) return tl::unexpected(layer.error());
-  const auto at = find_sequence(context, **room, as_of(request));
-  if (!at) return tl::unexpected(at.error());
-  const auto sequence = at->value_or((*room)->sequence());
-  auto all = (*room)->quantities(layer->slug, *at);
+  const auto asked = LayerQuery::from(context, request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto all = asked->room->quantities(asked->layer.slug, asked->at);
   if (!all) return tl::unexpected(all.error());
   Names names;
   OfMarks marks;
-  if (layer->table) {
+  if (asked->layer.table) {
     std::optional<std::int64_t> records_at;  // as they were when that edit was made
-    if (*at) {
-      auto found = context.store.table_sequence_when(*layer->table, layer->model_id, **at);
+    if (asked->at) {
+      auto found = context.store.table_sequence_when(*asked->layer.table, asked->layer.model_id, *asked->at);
       if (!found) return tl::unexpected(found.error());
       records_at = *found;
     }
-    const auto table = context.store.table(std::to_string(*layer->table), request.role());
+    const auto table = context.store.table(std::to_string(*asked->layer.table), request.role());
     if (!table) return tl::unexpected(table.error());
-    auto marked = marks_of(context, *table, request.role(), (*room)->model(), records_at);
+    auto marked = marks_of(context, *table, request.role(), asked->room->model(), records_at);
     if (!marked) return tl::unexpected(marked.error());
     marks = std::move(*marked);
     add_classes(*all, marks);
     std::vector<std::int64_t> keys;
     for (const query::Quantity& quantity : all->classes) keys.push_back(static_cast<std::int64_t>(*quantity.value));
-    auto found = record_names(context, *layer->table, request.role(), std::move(keys), records_at, *language);
+    auto found = record_names(context, *asked->layer.table, request.role(), std::move(keys), records_at, *language);
     if (!found) return tl::unexpected(found.error());
     names = std::move(*found);
   }
-  auto response = *format == SheetFormat::json
-                      ? json_response(to_json(*all, *layer, names, marks))
-                      : quantity_sheet(context, to_sheet(*all, *layer, names, marks, layer->slug + "-quantities"),
-                                       *format, *separator);
+  auto response =
+      *format == SheetFormat::json
+          ? json_response(to_json(*all, asked->layer, names, marks))
+          : quantity_sheet(context, to_sheet(*all, asked->layer, names, marks, asked->layer.slug + "-quantities"),
+                           *format, *separator);
   if (!response) return response;
-  add_sequences(*response, sequence, (*room)->durable_sequence());
+  add_sequences(*response, asked->sequence, asked->room->durable_sequence());
   response->with("Vary", "Accept");
   return response;
 }

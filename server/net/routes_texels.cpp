@@ -43,22 +43,18 @@ std::uint64_t raster_bytes(const Layer& layer) {
 Result<Response> read_texels(const RouteContext& context, ByteBudget& budget, const Request& request) {
   auto format = format_of(request);
   if (!format) return tl::unexpected(format.error());
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  auto layer = (*room)->layer(request.param("layer"));
-  if (!layer) return tl::unexpected(layer.error());
-  const auto at = find_sequence(context, **room, as_of(request));
-  if (!at) return tl::unexpected(at.error());
-  auto held = budget.take(raster_bytes(*layer));
+  const auto asked = LayerQuery::from(context, request);
+  if (!asked) return tl::unexpected(asked.error());
+  auto held = budget.take(raster_bytes(asked->layer));
   if (!held) return tl::unexpected(held.error());
-  auto snapshot = (*room)->tiles(layer->slug, *at);
+  auto snapshot = asked->room->tiles(asked->layer.slug, asked->at);
   if (!snapshot) return tl::unexpected(snapshot.error());
-  auto bytes = (*format)->encode(*layer, snapshot->tiles);
+  auto bytes = (*format)->encode(asked->layer, snapshot->tiles);
   if (!bytes) return tl::unexpected(bytes.error());
   Response response = bytes_response(std::move(*bytes), (*format)->media_type);
   response.held = std::move(*held);
-  name_download(response, layer->slug + "." + (*format)->extension);
-  add_sequences(response, at->value_or(snapshot->sequence), (*room)->durable_sequence());
+  name_download(response, asked->layer.slug + "." + (*format)->extension);
+  add_sequences(response, asked->at.value_or(snapshot->sequence), asked->room->durable_sequence());
   return response;
 }
 
@@ -163,19 +159,15 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
     if (!condition) return tl::unexpected(condition.error());
     selection.where = std::move(*condition);
   }
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  const auto layer = (*room)->layer(request.param("layer"));
-  if (!layer) return tl::unexpected(layer.error());
-  const auto at = find_sequence(context, **room, as_of(request));
-  if (!at) return tl::unexpected(at.error());
-  selection.at = *at;
-  auto found = (*room)->surface_texels(layer->slug, selection);
+  const auto asked = LayerQuery::from(context, request);
+  if (!asked) return tl::unexpected(asked.error());
+  selection.at = asked->at;
+  auto found = asked->room->surface_texels(asked->layer.slug, selection);
   if (!found) return tl::unexpected(found.error());
   const auto texels = std::make_shared<const query::SurfaceTexels>(std::move(*found));
-  auto csv = std::make_shared<TexelCsv>((*room)->model().unit, *separator);
+  auto csv = std::make_shared<TexelCsv>(asked->room->model().unit, *separator);
   if (const auto wanted = split_list(request.query_or("columns", {})); !wanted.empty())
-    if (auto added = add_columns(context, request.role(), wanted, *texels, *at, *csv); !added)
+    if (auto added = add_columns(context, request.role(), wanted, *texels, asked->at, *csv); !added)
       return tl::unexpected(added.error());
   std::shared_ptr<std::vector<query::TexelSample>> cells;
   if (cell_m) {
@@ -185,8 +177,8 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
   }
   Response response;
   response.with("Content-Type", kCsvType);
-  name_download(response, layer->slug + ".csv");
-  add_sequences(response, at->value_or(texels->view.snapshot.sequence), (*room)->durable_sequence());
+  name_download(response, asked->layer.slug + ".csv");
+  add_sequences(response, asked->at.value_or(texels->view.snapshot.sequence), asked->room->durable_sequence());
   response.stream =
       Response::Stream{{}, [texels, csv, cells](const Response::Sink& sink) {
                          std::string text = csv->head();

@@ -76,7 +76,7 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
                                         const Selection& selection) override;
   Result<query::Quantities> quantities(const std::string& layer, At at) override;
-  Result<query::Perimeters> perimeters(const std::string& layer, At at) override;
+  Result<LayerAreas> layer_areas(const std::string& layer, At at) override;
   Result<query::SurfaceTexels> surface_texels(const std::string& layer, const Selection& selection) override;
   Result<TileMap> dabs(const Layer& layer, const std::vector<PlacedValue>& values, double radius,
                        double tolerance) override;
@@ -177,6 +177,12 @@ class OpenRoom final : public Room, public PipelineHost, public std::enable_shar
   // queries.cpp
   Result<TileMirror::Snapshot> tiles_at(const LayerState& state, At at) const;
   Result<std::vector<query::LayerView>> layer_views(const std::vector<std::string>& refs, At at) const;
+  struct LayerGraph {
+    query::LayerView view;
+    std::shared_ptr<const mesh::SurfaceMap> map;
+    std::shared_ptr<const mesh::TexelGraph> graph;
+  };
+  Result<LayerGraph> layer_graph(const std::string& layer, At at);
   // `request` has all but the camera and the size.
   Result<void> draw_in_bands(render::FrameRequest request, const PicturePart& part, std::size_t number,
                              const SeePicture& see);

@@ -249,27 +249,34 @@ Result<query::CrossTable> OpenRoom::cross_table(const std::string& rows, const s
   return query::cross_tabulate((*views)[0], (*views)[1], **map, *selected ? &**selected : nullptr, model().metres());
 }
 
-Result<query::Quantities> OpenRoom::quantities(const std::string& layer, At at) {
-  touch();
-  const auto views = layer_views({layer}, at);
+Result<OpenRoom::LayerGraph> OpenRoom::layer_graph(const std::string& layer, At at) {
+  auto views = layer_views({layer}, at);
   if (!views) return tl::unexpected(views.error());
-  const auto map = surface_map(views->front().layer.resolution);
+  auto map = surface_map(views->front().layer.resolution);
   if (!map) return tl::unexpected(map.error());
-  const auto graph = surface_->graph(**map);
+  auto graph = surface_->graph(**map);
   if (!graph) return tl::unexpected(graph.error());
-  return query::quantities(views->front(), **map, **graph, query::classes_of(views->front().layer), model().metres());
+  return LayerGraph{std::move(views->front()), std::move(*map), std::move(*graph)};
 }
 
-Result<query::Perimeters> OpenRoom::perimeters(const std::string& layer, At at) {
+Result<query::Quantities> OpenRoom::quantities(const std::string& layer, At at) {
   touch();
-  const auto views = layer_views({layer}, at);
-  if (!views) return tl::unexpected(views.error());
-  const auto map = surface_map(views->front().layer.resolution);
-  if (!map) return tl::unexpected(map.error());
-  const auto graph = surface_->graph(**map);
-  if (!graph) return tl::unexpected(graph.error());
-  return query::measure_perimeters(views->front(), **map, **graph, nullptr, query::classes_of(views->front().layer),
-                                   mesh::background_threads());
+  const auto found = layer_graph(layer, at);
+  if (!found) return tl::unexpected(found.error());
+  return query::quantities(found->view, *found->map, *found->graph, query::classes_of(found->view.layer),
+                           model().metres());
+}
+
+Result<LayerAreas> OpenRoom::layer_areas(const std::string& layer, At at) {
+  touch();
+  auto found = layer_graph(layer, at);
+  if (!found) return tl::unexpected(found.error());
+  const query::ValueClasses classes = query::classes_of(found->view.layer);
+  auto quantities = query::quantities(found->view, *found->map, *found->graph, classes, model().metres());
+  if (!quantities) return tl::unexpected(quantities.error());
+  auto perimeters =
+      query::measure_perimeters(found->view, *found->map, *found->graph, nullptr, classes, mesh::background_threads());
+  return LayerAreas{std::move(found->view), std::move(found->map), std::move(*quantities), std::move(perimeters)};
 }
 
 Result<query::SurfaceTexels> OpenRoom::surface_texels(const std::string& layer, const Selection& selection) {

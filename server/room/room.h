@@ -144,6 +144,14 @@ struct Presence {
   std::optional<Camera> camera{};   // newest of view 0 without its section, for who follows them
 };
 
+// A state of a layer and what was measured of it.
+struct LayerAreas {
+  query::LayerView view;
+  std::shared_ptr<const mesh::SurfaceMap> map;  // of the layer's resolution
+  query::Quantities quantities;
+  query::Perimeters perimeters;
+};
+
 class Room;
 
 // One connection in a room. Methods are thread-safe and return at once. Destroying it leaves the room.
@@ -287,8 +295,8 @@ class Room {
                                                 const Selection& selection = {}) = 0;
   // How much there is of each class of the layer's legend (query::classes_of).
   virtual Result<query::Quantities> quantities(const std::string& layer, At at = {}) = 0;
-  // How long the borders of those classes are, model units (query::measure_perimeters).
-  virtual Result<query::Perimeters> perimeters(const std::string& layer, At at = {}) = 0;
+  // The same with the borders of those classes (query::measure_perimeters; model units) and the texels, all of one state.
+  virtual Result<LayerAreas> layer_areas(const std::string& layer, At at = {}) = 0;
   // A layer with the places of its texels where the selection holds, to be read at leisure.
   virtual Result<query::SurfaceTexels> surface_texels(const std::string& layer, const Selection& selection = {}) = 0;
   // What maps and measurements paint (query/flat_map, query/dabs), for an ImportEdit `over` the layer. Values are bits of its type.

@@ -64,9 +64,9 @@ class SeenRoom final : public Room {
     if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
     return room_->quantities(layer, at);
   }
-  Result<query::Perimeters> perimeters(const std::string& layer, At at) override {
+  Result<LayerAreas> layer_areas(const std::string& layer, At at) override {
     if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
-    return room_->perimeters(layer, at);
+    return room_->layer_areas(layer, at);
   }
   Result<query::SurfaceTexels> surface_texels(const std::string& layer, const Selection& selection) override {
     if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());

@@ -6,6 +6,7 @@
 #include "core/column_value.h"
 #include "core/edtf.h"
 #include "core/term_list.h"
+#include "store/list_place.h"
 #include "store/table_changes.h"
 #include "store/table_writer.h"
 
@@ -166,11 +167,6 @@ std::string place_of_row(const std::vector<SortKey>& keys) {
     if (i == 0 || keys[i].value != keys[i - 1].value)
       sql += (sql.empty() ? "" : ", ") + ("(" + keys[i].value + ")::text");
   return "to_jsonb(ARRAY[" + sql + "])";
-}
-
-tl::unexpected<Problem> wrong_place() {
-  return fail(422, "Not a place in this list",
-              "`after` is taken from the `next` of a page of this list, in the same order. Begin without it.", "after");
 }
 
 // Whether a row stands behind a place, by the keys in turn; what has no value stands behind all that has one.

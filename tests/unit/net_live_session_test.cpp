@@ -150,7 +150,7 @@ class FakeRoom final : public room::Room {
   }
   Result<void> sum_layer(std::int64_t) override { return {}; }
   Result<query::Quantities> quantities(const std::string&, At) override { return query::Quantities{}; }
-  Result<query::Perimeters> perimeters(const std::string&, At) override { return query::Perimeters{}; }
+  Result<room::LayerAreas> layer_areas(const std::string&, At) override { return room::LayerAreas{}; }
   Result<query::SurfaceTexels> surface_texels(const std::string&, const room::Selection&) override {
     return query::SurfaceTexels{};
   }
