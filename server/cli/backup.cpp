@@ -26,12 +26,14 @@ std::string summary(const store::BackupFacts& facts) {
     return std::to_string(rows) + " " + what + (rows == 1 ? "" : "s");
   };
   return count("public.all_models", "model", "public.models") + ", " +
-         count("public.all_layers", "layer", "public.layers") + ", " + count("public.edits", "edit") + ", " +
-         count("public.attachments", "file") + "; " + std::to_string((facts.bytes + (1u << 20) - 1) >> 20) +
-         " MB, schema " + std::to_string(facts.schema_version) + ", of " + facts.made;
+         count("public.all_layers", "layer", "public.layers") + ", " +
+         count("public.edits", "edit") + ", " + count("public.attachments", "file") + "; " +
+         std::to_string((facts.bytes + (1u << 20) - 1) >> 20) + " MB, schema " +
+         std::to_string(facts.schema_version) + ", of " + facts.made;
 }
 
-// Where the data are, without changing them: a server may be using them, of this version or another.
+// Where the data are, without changing them: a server may be using them, of this version or
+// another.
 struct Source {
   std::unique_ptr<store::Cluster> cluster;
   std::string dsn;
@@ -59,17 +61,22 @@ int backup(const BackupOptions& options) {
     return store::write_backup(source->dsn, options.folder, progress);
   }();
   if (!facts) return report(facts.error());
-  std::cout << "backed up " << summary(*facts) << "\nin " << fs::absolute(options.folder).string() << std::endl;
+  std::cout << "backed up " << summary(*facts) << "\nin " << fs::absolute(options.folder).string()
+            << std::endl;
   return 0;
 }
 
-// Beside its place first, so that a restore which is cut short leaves no half database where a server would start on it.
-Result<void> restore_into_folder(const BackupOptions& options, const store::BackupFacts& facts, Progress& progress) {
-  const fs::path data = fs::absolute(options.data.data), place = data / "postgres", beside = data / "restoring";
+// Beside its place first, so that a restore which is cut short leaves no half database where a
+// server would start on it.
+Result<void> restore_into_folder(const BackupOptions& options, const store::BackupFacts& facts,
+                                 Progress& progress) {
+  const fs::path data = fs::absolute(options.data.data), place = data / "postgres",
+                 beside = data / "restoring";
   std::error_code error;
   if (fs::exists(place, error))
     return fail(409, "Data are there",
-                data.string() + " holds a site already, which stays as it is. Name a new folder with --data.",
+                data.string() +
+                    " holds a site already, which stays as it is. Name a new folder with --data.",
                 "--data");
   fs::remove_all(beside, error);  // of one that was killed
   const auto restored = [&]() -> Result<void> {
@@ -80,7 +87,8 @@ Result<void> restore_into_folder(const BackupOptions& options, const store::Back
   if (restored) {
     fs::rename(beside / "postgres", place, error);
     if (error)
-      return fail(500, "Not restored", "Cannot name the folder " + place.string() + ": " + error.message() + ".");
+      return fail(500, "Not restored",
+                  "Cannot name the folder " + place.string() + ": " + error.message() + ".");
   }
   std::error_code ignored;
   fs::remove_all(beside, ignored);
@@ -103,8 +111,9 @@ int restore(const BackupOptions& options) {
   if (facts->schema_version > *known)
     return report({409,
                    "Newer backup",
-                   "The backup has schema " + std::to_string(facts->schema_version) + ", this program knows " +
-                       std::to_string(*known) + ": restore it with the version that wrote it, or a later one.",
+                   "The backup has schema " + std::to_string(facts->schema_version) +
+                       ", this program knows " + std::to_string(*known) +
+                       ": restore it with the version that wrote it, or a later one.",
                    {}});
   const auto done = [&]() -> Result<void> {
     const ProgressLine line(progress);
@@ -112,26 +121,30 @@ int restore(const BackupOptions& options) {
     return store::restore_backup(options.folder, *facts, options.data.database, progress);
   }();
   if (!done) return report(done.error());
-  std::cout << "restored " << summary(*facts) << "\nevery table is what was backed up; the server may be started on it"
-            << std::endl;
+  std::cout << "restored " << summary(*facts)
+            << "\nevery table is what was backed up; the server may be started on it" << std::endl;
   return 0;
 }
 
 }  // namespace
 
 Command add_backup(CLI::App& app) {
-  auto* command = app.add_subcommand("backup", "Write the whole site into a folder, also while its server runs");
+  auto* command = app.add_subcommand(
+      "backup", "Write the whole site into a folder, also while its server runs");
   auto options = std::make_shared<BackupOptions>();
   add_data_options(*command, options->data);
-  command->add_option("folder", options->folder, "Folder to make, e.g. /backups/2026-11-21")->required();
+  command->add_option("folder", options->folder, "Folder to make, e.g. /backups/2026-11-21")
+      ->required();
   return [options] { return backup(*options); };
 }
 
 Command add_restore(CLI::App& app) {
-  auto* command = app.add_subcommand("restore", "Bring a backup back into a new data folder or an empty database");
+  auto* command = app.add_subcommand(
+      "restore", "Bring a backup back into a new data folder or an empty database");
   auto options = std::make_shared<BackupOptions>();
   add_data_options(*command, options->data);
-  command->add_option("folder", options->folder, "Folder that `strata backup` has written")->required();
+  command->add_option("folder", options->folder, "Folder that `strata backup` has written")
+      ->required();
   command->add_flag("--check", options->check_only, "Only tell whether the backup is whole");
   return [options] { return restore(*options); };
 }

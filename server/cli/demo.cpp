@@ -8,7 +8,8 @@
 namespace strata::cli {
 
 Command add_demo(CLI::App& app) {
-  auto* command = app.add_subcommand("demo", "Make the demo project: a generated pot with two painted layers");
+  auto* command =
+      app.add_subcommand("demo", "Make the demo project: a generated pot with two painted layers");
   auto options = std::make_shared<DataOptions>();
   add_data_options(*command, *options);
   auto if_empty = std::make_shared<bool>(false);

@@ -48,14 +48,16 @@ void check_gpu(Report& report) {
   options.shader_dir = install_dirs().shaders.string();
   auto renderer = render::Renderer::start(options);
   if (!renderer)
-    return report.bad("Graphics", renderer.error().detail,
-                      "Install libegl1 and libgl1-mesa-dri (software), or the GPU vendor's driver with EGL support.");
+    return report.bad(
+        "Graphics", renderer.error().detail,
+        "Install libegl1 and libgl1-mesa-dri (software), or the GPU vendor's driver with EGL support.");
   const auto info = (*renderer)->info();
   report.good("OpenGL vendor", info.vendor);
   report.good("OpenGL version", info.version);
   if (info.software)
-    report.warn("Renderer", info.renderer + " (software)",
-                "Works, with the processor doing the drawing. A GPU with an EGL driver makes large models fluent.");
+    report.warn(
+        "Renderer", info.renderer + " (software)",
+        "Works, with the processor doing the drawing. A GPU with an EGL driver makes large models fluent.");
   else
     report.good("Renderer", info.renderer + " (hardware)");
   report.good("Largest texture", std::to_string(info.max_texture_size) + ", array layers " +
@@ -68,10 +70,11 @@ void check_gpu(Report& report) {
 }
 
 void check_schema(Report& report, const store::DatabaseState& state) {
-  const std::string versions =
-      "version " + std::to_string(state.schema_version) + ", this program has " + std::to_string(state.known_version);
+  const std::string versions = "version " + std::to_string(state.schema_version) +
+                               ", this program has " + std::to_string(state.known_version);
   if (state.schema_version > state.known_version)
-    report.bad("Schema", versions, "The database is newer: start the version of Strata that wrote it, or a later one.");
+    report.bad("Schema", versions,
+               "The database is newer: start the version of Strata that wrote it, or a later one.");
   else if (state.schema_version < state.known_version)
     report.good("Schema", versions + ": brought up to date by the next start");
   else
@@ -95,7 +98,8 @@ void check_database(Report& report, const DataOptions& options) {
   const std::string where = "private cluster in " + options.data.string();
   if (state.running) return check_connection(report, state.dsn, where + ", a server is running");
   if (state.trouble) return report.bad("PostgreSQL", state.trouble->title, state.trouble->detail);
-  if (state.version == 0) return report.good("PostgreSQL", "installed; " + where + " is made at the first start");
+  if (state.version == 0)
+    return report.good("PostgreSQL", "installed; " + where + " is made at the first start");
   report.good("PostgreSQL", std::to_string(state.version) + ", " + where + ", not running");
 }
 
@@ -104,13 +108,15 @@ void check_machine(Report& report, const std::filesystem::path& data) {
   if (statvfs(std::filesystem::exists(data) ? data.c_str() : ".", &disk) == 0) {
     const double free = double(disk.f_bavail) * double(disk.f_frsize);
     if (free < 2 * kGiB)
-      report.warn("Disk", gib(free) + " free", "Every edit is kept: make room, or name a larger disk with --data.");
+      report.warn("Disk", gib(free) + " free",
+                  "Every edit is kept: make room, or name a larger disk with --data.");
     else
       report.good("Disk", gib(free) + " free");
   }
   const double memory = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGE_SIZE));
   if (memory < 3.5 * kGiB)
-    report.warn("Memory", gib(memory), "Models of more than a million triangles need 4 GiB or more.");
+    report.warn("Memory", gib(memory),
+                "Models of more than a million triangles need 4 GiB or more.");
   else
     report.good("Memory", gib(memory));
   const unsigned cores = std::thread::hardware_concurrency();
@@ -122,13 +128,15 @@ void check_machine(Report& report, const std::filesystem::path& data) {
   if (std::filesystem::exists(page))
     report.good("Web page", page.parent_path().string());
   else
-    report.warn("Web page", "not built", "Run `npm ci && npm run build` in web-client, or start with ./run.");
+    report.warn("Web page", "not built",
+                "Run `npm ci && npm run build` in web-client, or start with ./run.");
 }
 
 }  // namespace
 
 Command add_doctor(CLI::App& app) {
-  auto* command = app.add_subcommand("doctor", "What graphics, PostgreSQL and the machine can do, with advice");
+  auto* command =
+      app.add_subcommand("doctor", "What graphics, PostgreSQL and the machine can do, with advice");
   auto options = std::make_shared<DataOptions>();
   add_data_options(*command, *options);
   return [options] {

@@ -20,7 +20,8 @@ struct ImportOptions {
   jobs::ImportRequest request;
 };
 
-Result<std::string> import_locally(store::Store& store, const jobs::ImportRequest& request, Progress& progress) {
+Result<std::string> import_locally(store::Store& store, const jobs::ImportRequest& request,
+                                   Progress& progress) {
   auto model = jobs::import_model(store, request, progress);
   if (!model) return tl::unexpected(model.error());
   auto project = store.project(std::to_string(model->project_id));
@@ -28,14 +29,16 @@ Result<std::string> import_locally(store::Store& store, const jobs::ImportReques
   return to_json(*model, project->slug).dump(2);
 }
 
-// One list of files a model. The files that a mesh names come with it by themselves; others that are given belong to the one
-// mesh (or archive) that is given with them.
-Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(const std::vector<std::string>& paths) {
+// One list of files a model. The files that a mesh names come with it by themselves; others that
+// are given belong to the one mesh (or archive) that is given with them.
+Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(
+    const std::vector<std::string>& paths) {
   std::vector<std::vector<jobs::ImportFile>> scans;
   std::vector<std::filesystem::path> others;
   for (const std::filesystem::path path : paths) {
     if (!std::filesystem::is_regular_file(path)) return fail(400, "No such file", path.string());
-    if (mesh::input_kind(path.filename().string()) == mesh::InputKind::companion && paths.size() > 1)
+    if (mesh::input_kind(path.filename().string()) == mesh::InputKind::companion &&
+        paths.size() > 1)
       others.push_back(path);
     else
       scans.push_back(jobs::with_companions(path));
@@ -49,8 +52,10 @@ Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(const std::vector
     };
     if (std::ranges::any_of(scans, has)) continue;
     if (scans.size() != 1)
-      return fail(400, "Whose file is this?",
-                  path.string() + " is named by none of the scans. Import the scan that it belongs to on its own.");
+      return fail(
+          400, "Whose file is this?",
+          path.string() +
+              " is named by none of the scans. Import the scan that it belongs to on its own.");
     scans[0].push_back({path.filename().string(), path});
   }
   return scans;
@@ -92,24 +97,32 @@ Command add_import(CLI::App& app) {
   auto options = std::make_shared<ImportOptions>();
   add_data_options(*command, options->data);
   command
-      ->add_option("files", options->files,
-                   "Scans: PLY, OBJ, STL, glTF, GLB or a zip; material and picture files that they name come with them")
+      ->add_option(
+          "files", options->files,
+          "Scans: PLY, OBJ, STL, glTF, GLB or a zip; material and picture files that they name come with them")
       ->required();
-  command->add_option("--name", options->request.name, "Name of the model (default: the file's name)");
-  command->add_option("--project", options->request.project, "Project it belongs to")->capture_default_str();
-  command->add_option("--unit", options->unit, "Unit of the coordinates")->check(CLI::IsMember({"mm", "cm", "m"}));
+  command->add_option("--name", options->request.name,
+                      "Name of the model (default: the file's name)");
+  command->add_option("--project", options->request.project, "Project it belongs to")
+      ->capture_default_str();
+  command->add_option("--unit", options->unit, "Unit of the coordinates")
+      ->check(CLI::IsMember({"mm", "cm", "m"}));
   command->add_option("--up", options->request.up, "Axis that points up, or its opposite: --up=-y")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}));
   command->add_option("--crs", options->request.crs, "Coordinate system, EPSG:n");
-  command->add_option("--resolution", options->request.resolution, "Default resolution of new layers")
+  command
+      ->add_option("--resolution", options->request.resolution, "Default resolution of new layers")
       ->check(CLI::IsMember({2048, 4096, 8192, 16384}));
   command
-      ->add_option("--weld", options->request.weld_distance,
-                   "Join vertices that lie nearer than this, in the file's units (equal ones always are)")
+      ->add_option(
+          "--weld", options->request.weld_distance,
+          "Join vertices that lie nearer than this, in the file's units (equal ones always are)")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--strict", options->request.strict, "Refuse a file that needs repair");
-  command->add_option("--server", options->server, "A running server: http://host:port")->envname("STRATA_SERVER");
-  command->add_option("--token", options->token, "Token for --server")->envname("STRATA_OWNER_TOKEN");
+  command->add_option("--server", options->server, "A running server: http://host:port")
+      ->envname("STRATA_SERVER");
+  command->add_option("--token", options->token, "Token for --server")
+      ->envname("STRATA_OWNER_TOKEN");
   return [options] { return run(*options); };
 }
 

@@ -1,4 +1,5 @@
-// `strata kiosk`: links for screens that show a tour, from the server's own machine, also while a server runs there.
+// `strata kiosk`: links for screens that show a tour, from the server's own machine, also while a
+// server runs there.
 #include <iomanip>
 #include <iostream>
 
@@ -19,7 +20,8 @@ struct KioskOptions {
 Result<void> create(store::Store& store, const KioskOptions& options) {
   const auto slash = options.tour.find('/');
   if (slash == std::string::npos)
-    return fail(400, "No tour", "A tour is named with its model: MODEL/TOUR, as in its address.", "tour");
+    return fail(400, "No tour", "A tour is named with its model: MODEL/TOUR, as in its address.",
+                "tour");
   const auto model = store.model(options.tour.substr(0, slash));
   if (!model) return tl::unexpected(model.error());
   const auto tour = store.tours().find(model->id, options.tour.substr(slash + 1));
@@ -39,15 +41,17 @@ Result<void> list(store::Store& store, const KioskOptions&) {
     const auto page = store.kiosks().all({}, kPage, offset);
     if (!page) return tl::unexpected(page.error());
     for (const store::Kiosk& kiosk : page->kiosks)
-      std::cout << std::left << std::setw(8) << kiosk.id << std::setw(32) << kiosk.model + "/" + kiosk.tour << " "
-                << (kiosk.revoked ? "revoked " : "until ") << std::setw(12)
-                << day_of(kiosk.revoked ? kiosk.revoked : kiosk.expires) << "last seen " << std::setw(12)
-                << day_of(kiosk.last_seen) << kiosk.name << "\n";
+      std::cout << std::left << std::setw(8) << kiosk.id << std::setw(32)
+                << kiosk.model + "/" + kiosk.tour << " " << (kiosk.revoked ? "revoked " : "until ")
+                << std::setw(12) << day_of(kiosk.revoked ? kiosk.revoked : kiosk.expires)
+                << "last seen " << std::setw(12) << day_of(kiosk.last_seen) << kiosk.name << "\n";
     if (offset + kPage >= page->total) return {};
   }
 }
 
-Result<void> revoke(store::Store& store, const KioskOptions& options) { return store.kiosks().revoke(options.id); }
+Result<void> revoke(store::Store& store, const KioskOptions& options) {
+  return store.kiosks().revoke(options.id);
+}
 
 Result<void> reload(store::Store& store, const KioskOptions& options) {
   const auto asked = store.kiosks().ask_reload(options.id);
@@ -64,15 +68,19 @@ Command add_kiosk(CLI::App& app) {
   made->add_option("tour", options->tour, "MODEL/TOUR, by slug or id")->required();
   made->add_option("--name", options->name, "Where the screen stands")->required();
   made->add_option("--days", options->days, "Until it expires (never)")->check(CLI::Range(1, 3650));
-  made->add_option("--url", options->url, "Address of the server, for the link")->capture_default_str();
+  made->add_option("--url", options->url, "Address of the server, for the link")
+      ->capture_default_str();
   add_subcommand(*parent, options, "list", "All links, and when their screens were seen last");
   const auto add_of_one = [&](const char* name, const char* what) {
-    add_subcommand(*parent, options, name, what)->add_option("id", options->id, "As `list` tells it")->required();
+    add_subcommand(*parent, options, name, what)
+        ->add_option("id", options->id, "As `list` tells it")
+        ->required();
   };
   add_of_one("revoke", "Makes a link worthless");
   add_of_one("reload", "Asks a screen to load its page anew");
-  return choosing<KioskOptions>(parent, options,
-                                {{"create", create}, {"list", list}, {"revoke", revoke}, {"reload", reload}});
+  return choosing<KioskOptions>(
+      parent, options,
+      {{"create", create}, {"list", list}, {"revoke", revoke}, {"reload", reload}});
 }
 
 }  // namespace strata::cli

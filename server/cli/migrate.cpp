@@ -14,7 +14,8 @@ Command add_migrate(CLI::App& app) {
     if (!database) return report(database.error());
     auto info = (*database)->store->info();
     if (!info) return report(info.error());
-    std::cout << "schema " << info->schema_version << ", PostgreSQL " << info->server_version << std::endl;
+    std::cout << "schema " << info->schema_version << ", PostgreSQL " << info->server_version
+              << std::endl;
     return 0;
   };
 }

@@ -9,7 +9,8 @@
 namespace strata::cli {
 
 void add_data_options(CLI::App& command, DataOptions& options) {
-  command.add_option("--data", options.data, "Folder of the private database and of uploads under way")
+  command
+      .add_option("--data", options.data, "Folder of the private database and of uploads under way")
       ->envname("STRATA_DATA")
       ->capture_default_str();
   command
@@ -37,7 +38,8 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
   if (!store) return tl::unexpected(store.error());
   open->store = std::move(*store);
   if (options.sql)
-    if (auto admitted = store::admit_readers(store_options.dsn, options.data / "sql-password"); !admitted)
+    if (auto admitted = store::admit_readers(store_options.dsn, options.data / "sql-password");
+        !admitted)
       return tl::unexpected(admitted.error());
   return open;
 }

@@ -1,4 +1,5 @@
-// `strata user` and `strata token`: accounts from the server's own machine, also while a server runs there.
+// `strata user` and `strata token`: accounts from the server's own machine, also while a server
+// runs there.
 #include <iomanip>
 #include <iostream>
 #include <iterator>
@@ -27,17 +28,22 @@ void add_role(CLI::App& command, const Options& options, const char* what) {
 }
 
 void add_password(CLI::App& command, const Options& options) {
-  command.add_flag("--password-stdin", options->password_stdin,
-                   "Read the password from standard input, instead of printing a link to choose one");
-  command.add_option("--url", options->url, "Address of the server, for the link")->capture_default_str();
+  command.add_flag(
+      "--password-stdin", options->password_stdin,
+      "Read the password from standard input, instead of printing a link to choose one");
+  command.add_option("--url", options->url, "Address of the server, for the link")
+      ->capture_default_str();
 }
 
 // From standard input; nothing where a link is wanted.
-Result<std::optional<std::string>> given_password(const PeopleOptions& options, const std::string& name) {
+Result<std::optional<std::string>> given_password(const PeopleOptions& options,
+                                                  const std::string& name) {
   if (!options.password_stdin) return std::nullopt;
   std::string password{std::istreambuf_iterator<char>(std::cin), {}};
-  while (!password.empty() && (password.back() == '\n' || password.back() == '\r')) password.pop_back();
-  if (auto good = store::check_password(password, name, "--password-stdin"); !good) return tl::unexpected(good.error());
+  while (!password.empty() && (password.back() == '\n' || password.back() == '\r'))
+    password.pop_back();
+  if (auto good = store::check_password(password, name, "--password-stdin"); !good)
+    return tl::unexpected(good.error());
   return password;
 }
 
@@ -48,7 +54,8 @@ Result<void> let_in(store::Store& store, const PeopleOptions& options, const sto
     const auto hash = store::hash_password(*password);
     return hash ? store.set_password(person.name, *hash, {}) : tl::unexpected(hash.error());
   }
-  const auto link = store.create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
+  const auto link =
+      store.create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
   if (!link) return tl::unexpected(link.error());
   std::cout << "For " << person.name << ", to choose a password within 7 days:\n"
             << options.url << "/join#" << link->secret << std::endl;
@@ -56,10 +63,11 @@ Result<void> let_in(store::Store& store, const PeopleOptions& options, const sto
 }
 
 Result<void> add_person(store::Store& store, const PeopleOptions& options) {
-  const auto password = given_password(options, options.name);  // before there is anybody who would be left without
+  // before there is anybody who would be left without
+  const auto password = given_password(options, options.name);
   if (!password) return tl::unexpected(password.error());
-  const auto person =
-      store.create_person(options.name, options.full_name, parse_role(options.role).value_or(Role::annotator));
+  const auto person = store.create_person(options.name, options.full_name,
+                                          parse_role(options.role).value_or(Role::annotator));
   if (!person) return tl::unexpected(person.error());
   return let_in(store, options, *person, *password);
 }
@@ -70,11 +78,13 @@ Result<void> renew(store::Store& store, const PeopleOptions& options, const stor
 }
 
 void print(const store::Person& person, Role role) {
-  std::cout << std::left << std::setw(24) << person.name << std::setw(15) << name(role) << std::setw(10)
+  std::cout << std::left << std::setw(24) << person.name << std::setw(15) << name(role)
+            << std::setw(10)
             << (person.disabled       ? "disabled"
                 : person.has_password ? "active"
                                       : "invited")
-            << "last seen " << std::setw(12) << day_of(person.last_seen) << person.full_name << "\n";
+            << "last seen " << std::setw(12) << day_of(person.last_seen) << person.full_name
+            << "\n";
 }
 
 Result<void> list_people(store::Store& store, const PeopleOptions& options) {
@@ -87,8 +97,8 @@ Result<void> list_people(store::Store& store, const PeopleOptions& options) {
     const auto groups = store.groups().of_project(project->id);
     if (!groups) return tl::unexpected(groups.error());
     for (const store::ProjectGroup& group : *groups)
-      std::cout << "group " << std::left << std::setw(18) << group.group.name << std::setw(15) << name(group.role)
-                << group.group.people << " people\n";
+      std::cout << "group " << std::left << std::setw(18) << group.group.name << std::setw(15)
+                << name(group.role) << group.group.people << " people\n";
     return {};
   }
   const auto people = store.people();
@@ -100,42 +110,52 @@ Result<void> list_people(store::Store& store, const PeopleOptions& options) {
 // Changes of one who is there.
 Work<PeopleOptions> changing(
     std::function<Result<void>(store::Store&, const PeopleOptions&, const store::Person&)> change) {
-  return [change = std::move(change)](store::Store& store, const PeopleOptions& options) -> Result<void> {
+  return [change = std::move(change)](store::Store& store,
+                                      const PeopleOptions& options) -> Result<void> {
     const auto person = store.person(options.name);
     if (!person) return tl::unexpected(person.error());
     return change(store, options, *person);
   };
 }
 
-Result<void> change(store::Store& store, const store::Person& person, const store::PersonChange& change) {
-  if (person.role == Role::owner) return fail(409, "The owner", "The owner stays the owner, and may always come in.");
-  if (auto done = store.change_person(person.id, change); !done) return tl::unexpected(done.error());
+Result<void> change(store::Store& store, const store::Person& person,
+                    const store::PersonChange& change) {
+  if (person.role == Role::owner)
+    return fail(409, "The owner", "The owner stays the owner, and may always come in.");
+  if (auto done = store.change_person(person.id, change); !done)
+    return tl::unexpected(done.error());
   return {};
 }
 
-Result<void> set_role_in_project(store::Store& store, const PeopleOptions& options, const store::Person& person) {
+Result<void> set_role_in_project(store::Store& store, const PeopleOptions& options,
+                                 const store::Person& person) {
   const auto project = store.project(options.project);
   if (!project) return tl::unexpected(project.error());
   if (options.role == "none") return store.remove_member(project->id, person.name);
-  const auto put = store.put_member(project->id, person.name, parse_role(options.role).value_or(Role::guest));
+  const auto put =
+      store.put_member(project->id, person.name, parse_role(options.role).value_or(Role::guest));
   if (!put) return tl::unexpected(put.error());
   return {};
 }
 
-Result<void> set_role(store::Store& store, const PeopleOptions& options, const store::Person& person) {
+Result<void> set_role(store::Store& store, const PeopleOptions& options,
+                      const store::Person& person) {
   if (!options.project.empty()) return set_role_in_project(store, options, person);
-  if (options.role == "none") return fail(400, "No role", "Whoever is to see no project is a guest.", "role");
+  if (options.role == "none")
+    return fail(400, "No role", "Whoever is to see no project is a guest.", "role");
   return change(store, person, {.full_name = {}, .role = parse_role(options.role), .disabled = {}});
 }
 
 Work<PeopleOptions> disabling(bool disabled) {
-  return changing([disabled](store::Store& store, const PeopleOptions&, const store::Person& person) {
-    return change(store, person, {.full_name = {}, .role = {}, .disabled = disabled});
-  });
+  return changing(
+      [disabled](store::Store& store, const PeopleOptions&, const store::Person& person) {
+        return change(store, person, {.full_name = {}, .role = {}, .disabled = disabled});
+      });
 }
 
 Result<void> remove_person(store::Store& store, const PeopleOptions&, const store::Person& person) {
-  if (auto out = change(store, person, {.full_name = {}, .role = {}, .disabled = true}); !out) return out;
+  if (auto out = change(store, person, {.full_name = {}, .role = {}, .disabled = true}); !out)
+    return out;
   return store.delete_person(person.name);
 }
 
@@ -170,10 +190,12 @@ Result<void> add_token_of(store::Store& store, const PeopleOptions& options) {
   const Role role = parse_role(options.role).value_or(usual);
   if (role > own)
     return fail(400, "Role above the person's",
-                person->name + " is " + std::string(name(own)) + (only ? " there" : "") + ": a token can do no more.",
+                person->name + " is " + std::string(name(own)) + (only ? " there" : "") +
+                    ": a token can do no more.",
                 "--role");
-  const auto made = store.create_token(TokenKind::script, person->name, role, std::chrono::hours(24 * options.days),
-                                       options.name, {}, only);
+  const auto made =
+      store.create_token(TokenKind::script, person->name, role,
+                         std::chrono::hours(24 * options.days), options.name, {}, only);
   if (!made) return tl::unexpected(made.error());
   std::cout << made->secret << std::endl;
   return {};
@@ -185,8 +207,9 @@ Result<void> list_tokens(store::Store& store, const PeopleOptions& options) {
   const auto tokens = store.tokens(person->name, TokenKind::script);
   if (!tokens) return tl::unexpected(tokens.error());
   for (const store::Token& token : *tokens)
-    std::cout << std::left << std::setw(8) << token.id << std::setw(15) << name(token.role) << "until " << std::setw(12)
-              << day_of(token.expires) << "last used " << std::setw(12) << day_of(token.last_used) << token.label
+    std::cout << std::left << std::setw(8) << token.id << std::setw(15) << name(token.role)
+              << "until " << std::setw(12) << day_of(token.expires) << "last used " << std::setw(12)
+              << day_of(token.last_used) << token.label
               << (token.project ? " (only " + *token.project + ")" : "") << "\n";
   return {};
 }
@@ -209,19 +232,25 @@ Command add_user(CLI::App& app) {
     works[name] = std::move(work);
     return command;
   };
-  auto* made = add_named("add", "A new account, and a link by which its person chooses a password", add_person);
+  auto* made = add_named("add", "A new account, and a link by which its person chooses a password",
+                         add_person);
   add_role(*made, options, "What they may do (annotator)");
   made->add_option("--full-name", options->full_name, "How the page calls them");
   add_password(*made, options);
   add_subcommand(*parent, options, "list", "Everybody with an account")
-      ->add_option("--project", options->project, "Only those with a role in this project, and that role");
+      ->add_option("--project", options->project,
+                   "Only those with a role in this project, and that role");
   works["list"] = list_people;
   auto* role = add_named("role", "What somebody may do", changing(set_role));
-  role->add_option("role", options->role, "guest, viewer, annotator, curator or administrator; in a project also none")
+  role->add_option("role", options->role,
+                   "guest, viewer, annotator, curator or administrator; in a project also none")
       ->required()
       ->check(CLI::IsMember({"guest", "viewer", "annotator", "curator", "administrator", "none"}));
-  role->add_option("--project", options->project, "What they may do there, where that is more than everywhere");
-  add_password(*add_named("password", "A new link to choose a password, or a new password", changing(renew)), options);
+  role->add_option("--project", options->project,
+                   "What they may do there, where that is more than everywhere");
+  add_password(
+      *add_named("password", "A new link to choose a password, or a new password", changing(renew)),
+      options);
   add_named("disable", "Signs somebody out everywhere, and lets them in no more", disabling(true));
   add_named("enable", "Lets somebody in again", disabling(false));
   add_named(
@@ -245,11 +274,15 @@ Command add_token(CLI::App& app) {
   made->add_option("name", options->name, "What it is for")->required();
   add_role(*made, options, "At most what it may do (as its person)");
   made->add_option("--project", options->project, "The only project that it is good in");
-  made->add_option("--days", options->days, "Until it expires")->check(CLI::Range(1, 3650))->capture_default_str();
+  made->add_option("--days", options->days, "Until it expires")
+      ->check(CLI::Range(1, 3650))
+      ->capture_default_str();
   add_of("list", "Tokens of a person");
-  add_of("revoke", "Makes a token worthless")->add_option("id", options->id, "As `list` tells it")->required();
-  return choosing<PeopleOptions>(parent, options,
-                                 {{"add", add_token_of}, {"list", list_tokens}, {"revoke", revoke_token}});
+  add_of("revoke", "Makes a token worthless")
+      ->add_option("id", options->id, "As `list` tells it")
+      ->required();
+  return choosing<PeopleOptions>(
+      parent, options, {{"add", add_token_of}, {"list", list_tokens}, {"revoke", revoke_token}});
 }
 
 }  // namespace strata::cli

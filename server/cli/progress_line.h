@@ -13,10 +13,12 @@
 
 namespace strata::cli {
 
-// Shows a Progress on stderr while it lives: one line rewritten on a terminal, a line a step elsewhere.
+// Shows a Progress on stderr while it lives: one line rewritten on a terminal, a line a step
+// elsewhere.
 class ProgressLine {
  public:
-  explicit ProgressLine(const Progress& progress) : progress_(progress), thread_([this] { watch(); }) {}
+  explicit ProgressLine(const Progress& progress)
+      : progress_(progress), thread_([this] { watch(); }) {}
   ~ProgressLine() {
     {
       std::lock_guard lock(mutex_);

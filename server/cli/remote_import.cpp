@@ -19,8 +19,10 @@ struct Reply {
 };
 
 tl::unexpected<Problem> not_strata(const std::string& what) {
-  return fail(502, "Not a Strata server",
-              what + " is not what a Strata server answers. Is the address right, and is nothing in between?");
+  return fail(
+      502, "Not a Strata server",
+      what +
+          " is not what a Strata server answers. Is the address right, and is nothing in between?");
 }
 
 // The JSON object in a reply, with these members.
@@ -28,7 +30,8 @@ Result<nlohmann::json> object_in(const Reply& reply, std::initializer_list<const
   auto json = nlohmann::json::parse(reply.body, nullptr, false);
   if (!json.is_object()) return not_strata("The answer");
   for (const char* member : members)
-    if (!json.contains(member)) return not_strata(std::string("An answer without `") + member + "`");
+    if (!json.contains(member))
+      return not_strata(std::string("An answer without `") + member + "`");
   return json;
 }
 
@@ -39,7 +42,8 @@ std::string text_of(const nlohmann::json& object, const char* member) {
 }
 
 // As the server tells it; of what it does not tell, the status and what is known here.
-Problem problem_of(const nlohmann::json& json, int status, const std::string& title, const std::string& detail) {
+Problem problem_of(const nlohmann::json& json, int status, const std::string& title,
+                   const std::string& detail) {
   Problem problem{status, text_of(json, "title"), text_of(json, "detail"), text_of(json, "field")};
   if (problem.title.empty()) problem.title = title;
   if (problem.detail.empty()) problem.detail = detail;
@@ -51,7 +55,8 @@ size_t collect(char* data, size_t size, size_t count, void* body) {
   return size * count;
 }
 
-// The certificate of a server on this machine names it as others reach it, and nobody stands in between.
+// The certificate of a server on this machine names it as others reach it, and nobody stands in
+// between.
 bool is_this_machine(const std::string& base) {
   for (const char* host : {"https://127.0.0.1", "https://localhost", "https://[::1]"})
     if (base.starts_with(host)) {
@@ -69,7 +74,8 @@ class Client {
     headers_.reset(curl_slist_append(nullptr, ("Authorization: Bearer " + token).c_str()));
     curl_slist_append(headers_.get(), "Content-Type: application/octet-stream");
     curl_slist_append(headers_.get(), "Expect:");
-    form_headers_.reset(curl_slist_append(nullptr, ("Authorization: Bearer " + token).c_str()));  // curl names the type
+    // curl names the type
+    form_headers_.reset(curl_slist_append(nullptr, ("Authorization: Bearer " + token).c_str()));
     curl_slist_append(form_headers_.get(), "Expect:");
   }
 
@@ -79,7 +85,8 @@ class Client {
   }
 
   // Streams the files, one as the body, several as a form; progress is the share uploaded.
-  Result<Reply> post_files(const std::string& path, const std::vector<jobs::ImportFile>& files, Progress& progress) {
+  Result<Reply> post_files(const std::string& path, const std::vector<jobs::ImportFile>& files,
+                           Progress& progress) {
     curl_easy_reset(curl_.get());
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> in{nullptr, &std::fclose};
     std::unique_ptr<curl_mime, void (*)(curl_mime*)> form{nullptr, &curl_mime_free};
@@ -104,7 +111,8 @@ class Client {
     curl_easy_setopt(curl_.get(), CURLOPT_NOPROGRESS, 0L);
     curl_easy_setopt(curl_.get(), CURLOPT_XFERINFODATA, &progress);
     curl_easy_setopt(
-        curl_.get(), CURLOPT_XFERINFOFUNCTION, +[](void* p, curl_off_t, curl_off_t, curl_off_t total, curl_off_t now) {
+        curl_.get(), CURLOPT_XFERINFOFUNCTION,
+        +[](void* p, curl_off_t, curl_off_t, curl_off_t total, curl_off_t now) {
           auto& watched = *static_cast<Progress*>(p);
           if (total > 0) watched.report(double(now) / double(total), "Sending the files");
           return watched.cancelled() ? 1 : 0;
@@ -130,12 +138,13 @@ class Client {
     curl_easy_setopt(curl_.get(), CURLOPT_WRITEFUNCTION, &collect);
     curl_easy_setopt(curl_.get(), CURLOPT_WRITEDATA, &reply.body);
     const CURLcode code = curl_easy_perform(curl_.get());
-    if (code != CURLE_OK) return fail(503, "Server not reached", base_ + ": " + curl_easy_strerror(code));
+    if (code != CURLE_OK)
+      return fail(503, "Server not reached", base_ + ": " + curl_easy_strerror(code));
     curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &reply.status);
     if (reply.status >= 400) {
-      return tl::unexpected(problem_of(nlohmann::json::parse(reply.body, nullptr, false),
-                                       static_cast<int>(reply.status), "Refused",
-                                       "The server answered " + std::to_string(reply.status) + "."));
+      return tl::unexpected(problem_of(
+          nlohmann::json::parse(reply.body, nullptr, false), static_cast<int>(reply.status),
+          "Refused", "The server answered " + std::to_string(reply.status) + "."));
     }
     return reply;
   }
@@ -187,9 +196,12 @@ Result<std::string> import_remotely(const std::string& server_url, const std::st
       return model->dump(2);
     }
     if (state == "failed" || state == "cancelled")
-      return tl::unexpected(problem_of(job->value("problem", nlohmann::json()), 422, "Import " + state, state));
-    if (state != "queued" && state != "running") return not_strata("A job of the state `" + state + "`");
-    progress.report(job->at("progress").is_number() ? job->at("progress").get<double>() : 0, text_of(*job, "message"));
+      return tl::unexpected(
+          problem_of(job->value("problem", nlohmann::json()), 422, "Import " + state, state));
+    if (state != "queued" && state != "running")
+      return not_strata("A job of the state `" + state + "`");
+    progress.report(job->at("progress").is_number() ? job->at("progress").get<double>() : 0,
+                    text_of(*job, "message"));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
 }

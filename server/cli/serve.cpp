@@ -36,7 +36,9 @@ struct Address {
   std::uint16_t port = 0;
 };
 
-bool is_loopback(const std::string& host) { return host == "127.0.0.1" || host == "::1" || host == "localhost"; }
+bool is_loopback(const std::string& host) {
+  return host == "127.0.0.1" || host == "::1" || host == "localhost";
+}
 
 Result<Address> parse_address(const std::string& text, const std::string& option) {
   const auto colon = text.rfind(':');
@@ -49,7 +51,8 @@ Result<Address> parse_address(const std::string& text, const std::string& option
   char* end = nullptr;
   const long number = std::strtol(port.c_str(), &end, 10);
   if (port.empty() || *end != '\0' || number < 0 || number > 65535)
-    return fail(400, "Listen address", "The port is a number from 0 (any free one) to 65535.", option);
+    return fail(400, "Listen address", "The port is a number from 0 (any free one) to 65535.",
+                option);
   address.port = static_cast<std::uint16_t>(number);
   return address;
 }
@@ -80,8 +83,8 @@ Result<store::Cluster::SqlListen> parse_sql_listen(const std::string& text) {
   auto address = parse_address(text, "--sql-listen");
   if (!address) return tl::unexpected(address.error());
   if (address->port == 0)
-    return fail(400, "Listen address", "The database needs a port of its own: give one from 1 to 65535.",
-                "--sql-listen");
+    return fail(400, "Listen address",
+                "The database needs a port of its own: give one from 1 to 65535.", "--sql-listen");
   if (!is_loopback(address->host))
     return fail(
         403, "Listen address not allowed",
@@ -103,7 +106,8 @@ std::string owner_token() {
   return token ? token : "";
 }
 
-// Signals are taken by `wait_for_end`, not by handlers: blocked before any thread starts, they are inherited blocked.
+// Signals are taken by `wait_for_end`, not by handlers: blocked before any thread starts, they are
+// inherited blocked.
 sigset_t block_signals() {
   sigset_t ending;
   sigemptyset(&ending);
@@ -137,9 +141,10 @@ int run(ServeOptions options) {
     auto sql = parse_sql_listen(options.sql_listen);
     if (!sql) return report(sql.error());
     if (!options.data.database.empty())
-      return report({400, "Not a private database",
-                     "With --database, let analysts into that PostgreSQL itself: docs/sql.md has the statements.",
-                     "--sql-listen"});
+      return report(
+          {400, "Not a private database",
+           "With --database, let analysts into that PostgreSQL itself: docs/sql.md has the statements.",
+           "--sql-listen"});
     options.data.sql = std::move(*sql);
   }
   const sigset_t ending = block_signals();
@@ -148,7 +153,8 @@ int run(ServeOptions options) {
   auto database = open_database(options.data);
   if (!database) return report(database.error());
   store::Store& store = *(*database)->store;
-  if (auto safe = check_reach(store, *address, !options.tls_cert.empty()); !safe) return report(safe.error());
+  if (auto safe = check_reach(store, *address, !options.tls_cert.empty()); !safe)
+    return report(safe.error());
   auto orphans = store.drop_orphans();
   if (!orphans) return report(orphans.error());
   if (*orphans > 0) log::info("dropped " + std::to_string(*orphans) + " files that nothing uses");
@@ -184,19 +190,21 @@ int run(ServeOptions options) {
   if (!server) return report(server.error());
 
   const std::string url = (options.tls_cert.empty() ? "http://" : "https://") +
-                          (address->host == "::1" ? "[::1]" : address->host) + ":" + std::to_string((*server)->port());
+                          (address->host == "::1" ? "[::1]" : address->host) + ":" +
+                          std::to_string((*server)->port());
   std::cout << "listening on " << url << std::endl;
   const auto owner = store.person("owner");
   if (!owner) return report(owner.error());
   if (options.data.sql)
     std::cout << "SQL on " << options.data.sql->host << ":" << options.data.sql->port
-              << ": database strata, user strata_reader, password in " << (options.data.data / "sql-password").string()
-              << std::endl;
+              << ": database strata, user strata_reader, password in "
+              << (options.data.data / "sql-password").string() << std::endl;
   // Who has a password needs no link, which would stand in logs.
   if (owner->has_password) {
     std::cout << "sign in at: " << url << "/" << std::endl;
   } else {
-    auto link = store.create_link(store::TokenKind::owner_link, owner->name, std::chrono::hours(24));
+    auto link =
+        store.create_link(store::TokenKind::owner_link, owner->name, std::chrono::hours(24));
     if (!link) return report(link.error());
     std::cout << "owner link: " << url << "/login?link=" << link->secret << std::endl;
   }
@@ -219,18 +227,22 @@ Command add_serve(CLI::App& app) {
       ->envname("STRATA_LISTEN")
       ->check([](const std::string& text) { return usage_of(parse_listen, text); })
       ->capture_default_str();
-  command->add_option("--sql-listen", options->sql_listen, "HOST:PORT where analysts read with SQL (docs/sql.md)")
+  command
+      ->add_option("--sql-listen", options->sql_listen,
+                   "HOST:PORT where analysts read with SQL (docs/sql.md)")
       ->envname("STRATA_SQL_LISTEN")
       ->check([](const std::string& text) { return usage_of(parse_sql_listen, text); });
   command->add_option("--origin", options->origins, "Further web origins that may connect (repeat)")
       ->envname("STRATA_ORIGIN");
-  auto* tls_cert = command
-                       ->add_option("--tls-cert", options->tls_cert,
-                                    "Speak https with this certificate chain (PEM; docs/operation.md)")
-                       ->envname("STRATA_TLS_CERT");
-  auto* tls_key =
-      command->add_option("--tls-key", options->tls_key, "Key of the certificate (PEM, without a passphrase)")
-          ->envname("STRATA_TLS_KEY");
+  auto* tls_cert =
+      command
+          ->add_option("--tls-cert", options->tls_cert,
+                       "Speak https with this certificate chain (PEM; docs/operation.md)")
+          ->envname("STRATA_TLS_CERT");
+  auto* tls_key = command
+                      ->add_option("--tls-key", options->tls_key,
+                                   "Key of the certificate (PEM, without a passphrase)")
+                      ->envname("STRATA_TLS_KEY");
   tls_cert->needs(tls_key);
   tls_key->needs(tls_cert);
   command
@@ -239,13 +251,15 @@ Command add_serve(CLI::App& app) {
       ->envname("STRATA_GPU_MEMORY")
       ->transform(CLI::AsSizeValue(false));
   command
-      ->add_option("--memory", options->memory,
-                   "Budget of main memory for open models, e.g. 8GiB (default: 60 % of the machine's)")
+      ->add_option(
+          "--memory", options->memory,
+          "Budget of main memory for open models, e.g. 8GiB (default: 60 % of the machine's)")
       ->envname("STRATA_MEMORY")
       ->transform(CLI::AsSizeValue(false));
   command
-      ->add_option("--bin-days", options->bin_days,
-                   "Days for which deleted layers and models can be restored; 0: they are erased at once")
+      ->add_option(
+          "--bin-days", options->bin_days,
+          "Days for which deleted layers and models can be restored; 0: they are erased at once")
       ->envname("STRATA_BIN_DAYS")
       ->check(CLI::Range(0, kMostBinDays))
       ->capture_default_str();

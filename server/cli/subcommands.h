@@ -10,15 +10,16 @@
 #include "cli/commands.h"
 #include "cli/open_database.h"
 
-// Commands that have subcommands, each of which works on the database, also while a server runs there. `Options` has the DataOptions `data`.
+// Commands that have subcommands, each of which works on the database, also while a server runs
+// there. `Options` has the DataOptions `data`.
 namespace strata::cli {
 
 template <class Options>
 using Work = std::function<Result<void>(store::Store&, const Options&)>;
 
 template <class Options>
-CLI::App* add_subcommand(CLI::App& parent, const std::shared_ptr<Options>& options, const char* name,
-                         const char* what) {
+CLI::App* add_subcommand(CLI::App& parent, const std::shared_ptr<Options>& options,
+                         const char* name, const char* what) {
   auto* command = parent.add_subcommand(name, what);
   add_data_options(*command, options->data);
   return command;
@@ -26,12 +27,14 @@ CLI::App* add_subcommand(CLI::App& parent, const std::shared_ptr<Options>& optio
 
 // Runs the subcommand that was chosen.
 template <class Options>
-Command choosing(CLI::App* parent, std::shared_ptr<Options> options, std::map<std::string, Work<Options>> works) {
+Command choosing(CLI::App* parent, std::shared_ptr<Options> options,
+                 std::map<std::string, Work<Options>> works) {
   parent->require_subcommand(1);
   return [parent, options = std::move(options), works = std::move(works)] {
     auto database = open_database_beside(options->data);
     if (!database) return report(database.error());
-    const auto done = works.at(parent->get_subcommands().front()->get_name())(*(*database)->store, *options);
+    const auto done =
+        works.at(parent->get_subcommands().front()->get_name())(*(*database)->store, *options);
     return done ? 0 : report(done.error());
   };
 }

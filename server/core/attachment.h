@@ -16,8 +16,9 @@ struct Attachment {
   std::string name;        // a file's, without folders
   std::string media_type;  // by its bytes
   std::uint64_t bytes = 0;
-  std::string sha256;                // hexadecimal
-  std::optional<int> width, height;  // of pictures that can be read, before they are turned as Exif says
+  std::string sha256;  // hexadecimal
+  // of pictures that can be read, before they are turned as Exif says
+  std::optional<int> width, height;
   std::string user;
   std::chrono::system_clock::time_point time;
   Visibility visibility = Visibility::everyone;
@@ -25,7 +26,8 @@ struct Attachment {
 
 // As core/visibility has it; who may attach files sees those that they attached themselves, too.
 inline bool sees(const Author& who, const Attachment& attachment) {
-  return sees(who.role, attachment.visibility) || (who.role >= Role::annotator && who.user == attachment.user);
+  return sees(who.role, attachment.visibility) ||
+         (who.role >= Role::annotator && who.user == attachment.user);
 }
 
 }  // namespace strata

@@ -8,7 +8,8 @@
 
 namespace strata {
 
-// A queue between threads with a bound. `push` refuses when full or closed: the caller names what happens then.
+// A queue between threads with a bound. `push` refuses when full or closed: the caller names what
+// happens then.
 template <class T>
 class BoundedQueue {
  public:

@@ -18,7 +18,8 @@ bool is_finite(const glm::dmat4& m) {
 
 constexpr double kShortestNormal = 1e-100;
 
-// A determinant alone says little of a matrix in small or large units; what is needed is a usable inverse.
+// A determinant alone says little of a matrix in small or large units; what is needed is a usable
+// inverse.
 bool is_invertible(const glm::dmat4& m) {
   const double det = glm::determinant(m);
   if (!std::isfinite(det) || det == 0) return false;
@@ -31,23 +32,26 @@ Result<void> validate(const Camera& camera, const std::string& field) {
   auto size = [&](int value, const char* side) -> Result<void> {
     if (value < 1 || value > kMaxViewSize)
       return fail(422, "Size out of range",
-                  "A camera's window is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", field + "." + side);
+                  "A camera's window is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.",
+                  field + "." + side);
     return {};
   };
   if (auto ok = size(camera.width, "width"); !ok) return ok;
   if (auto ok = size(camera.height, "height"); !ok) return ok;
   auto matrix = [&](const glm::dmat4& m, const char* name) -> Result<void> {
     if (!is_finite(m))
-      return fail(422, "Matrix not finite", "Every element must be a finite number.", field + "." + name);
-    if (!is_invertible(m))
-      return fail(422, "Matrix is singular", "The matrix has no inverse, so nothing can be seen with it.",
+      return fail(422, "Matrix not finite", "Every element must be a finite number.",
                   field + "." + name);
+    if (!is_invertible(m))
+      return fail(422, "Matrix is singular",
+                  "The matrix has no inverse, so nothing can be seen with it.", field + "." + name);
     return {};
   };
   if (auto ok = matrix(camera.view, "view"); !ok) return ok;
   if (auto ok = matrix(camera.projection, "projection"); !ok) return ok;
   if (camera.section.size() > kMaxSectionPlanes)
-    return fail(422, "Too many planes", "A section has at most " + std::to_string(kMaxSectionPlanes) + " planes.",
+    return fail(422, "Too many planes",
+                "A section has at most " + std::to_string(kMaxSectionPlanes) + " planes.",
                 field + ".section");
   for (std::size_t i = 0; i < camera.section.size(); ++i) {
     const glm::dvec4& plane = camera.section[i];
@@ -77,7 +81,8 @@ Camera camera_of_rows(const Camera& camera, int top, int rows) {
   const double share = static_cast<double>(rows) / camera.height;
   const double middle = 1 - (2.0 * top + rows) / camera.height;
   for (glm::length_t column = 0; column < 4; ++column)
-    part.projection[column][1] = (camera.projection[column][1] - middle * camera.projection[column][3]) / share;
+    part.projection[column][1] =
+        (camera.projection[column][1] - middle * camera.projection[column][3]) / share;
   return part;
 }
 
@@ -87,15 +92,18 @@ SectionPlanes section_in_model(const Camera& camera, const glm::dvec3& origin) {
   for (std::size_t i = 0; i < camera.section.size(); ++i) {
     const glm::dvec3 normal(camera.section[i]);
     const double length = glm::length(normal);
-    planes[i] = glm::vec4(glm::dvec4(normal, camera.section[i].w + glm::dot(normal, origin)) / length);
+    planes[i] =
+        glm::vec4(glm::dvec4(normal, camera.section[i].w + glm::dot(normal, origin)) / length);
   }
   return planes;
 }
 
 bool eye_is_cut_away(const Camera& camera) {
-  const glm::dvec4 eye = is_orthographic(camera) ? glm::inverse(camera.view) * glm::dvec4(0, 0, 1, 0)
-                                                 : glm::dvec4(eye_in_world(camera), 1);
-  return std::ranges::any_of(camera.section, [&](const glm::dvec4& plane) { return glm::dot(plane, eye) < 0; });
+  const glm::dvec4 eye = is_orthographic(camera)
+                             ? glm::inverse(camera.view) * glm::dvec4(0, 0, 1, 0)
+                             : glm::dvec4(eye_in_world(camera), 1);
+  return std::ranges::any_of(camera.section,
+                             [&](const glm::dvec4& plane) { return glm::dot(plane, eye) < 0; });
 }
 
 RaySpan kept_span(const Camera& camera, const Ray& ray) {

@@ -17,14 +17,14 @@ struct Camera {
   glm::dmat4 projection{1.0};
   int width = 0;
   int height = 0;
-  // Planes in world coordinates that cut the model open, kMaxSectionPlanes at most: what has a x + b y + c z + d below 0 for
-  // one of them is neither seen nor painted.
+  // Planes in world coordinates that cut the model open, kMaxSectionPlanes at most: what has a x +
+  // b y + c z + d below 0 for one of them is neither seen nor painted.
   std::vector<glm::dvec4> section{};
   bool operator==(const Camera&) const = default;
 };
 
-// Refuses sizes out of 1…kMaxViewSize, non-finite and singular matrices, planes without a direction and too many of them;
-// `field` prefixes the named field.
+// Refuses sizes out of 1…kMaxViewSize, non-finite and singular matrices, planes without a direction
+// and too many of them; `field` prefixes the named field.
 Result<void> validate(const Camera& camera, const std::string& field = "camera");
 
 bool is_orthographic(const Camera& camera);
@@ -33,14 +33,17 @@ glm::dvec3 eye_in_world(const Camera& camera);
 // Float matrix from model space (world minus origin) to clip space, multiplied in double.
 glm::mat4 clip_from_model(const Camera& camera, const glm::dvec3& origin);
 
-// The section in model space, its normals of unit length; planes that are not there keep everything.
+// The section in model space, its normals of unit length; planes that are not there keep
+// everything.
 using SectionPlanes = std::array<glm::vec4, kMaxSectionPlanes>;
 SectionPlanes section_in_model(const Camera& camera, const glm::dvec3& origin);
 
-// Then the back of a surface that is seen is a solid's inside. (Without perspective the eye is infinitely far away.)
+// Then the back of a surface that is seen is a solid's inside. (Without perspective the eye is
+// infinitely far away.)
 bool eye_is_cut_away(const Camera& camera);
 
-// The camera of some rows of its window, from the top: what it sees there, it sees as the whole one does. `rows` above 0.
+// The camera of some rows of its window, from the top: what it sees there, it sees as the whole one
+// does. `rows` above 0.
 Camera camera_of_rows(const Camera& camera, int top, int rows);
 
 struct Ray {

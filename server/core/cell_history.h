@@ -8,11 +8,13 @@
 
 namespace strata {
 
-// The cells of a row, or the properties of a column, by name. One that is not there is a cell without a value, as is null.
+// The cells of a row, or the properties of a column, by name. One that is not there is a cell
+// without a value, as is null.
 using Cells = std::map<std::string, nlohmann::json>;
 
-// What one edit did to one row: the cells it wrote, also where the value stayed, before and after. `writer` and `in_force` are as in
-// core/history.h: undo and redo move content but are nobody's writing.
+// What one edit did to one row: the cells it wrote, also where the value stayed, before and after.
+// `writer` and `in_force` are as in core/history.h: undo and redo move content but are nobody's
+// writing.
 struct PastCells {
   std::int64_t sequence = 0;
   bool writer = true;
@@ -20,9 +22,10 @@ struct PastCells {
   Cells before, after;  // of the same names
 };
 
-// The rule of undo and redo for rows, as for texels (core/history.h): a cell shows what the newest edit in force that wrote it left
-// there, or what was there before all of them. Recomputes `names` of one row, after the caller flipped an edit's `in_force`, from
-// what was done to the row, which comes one by one.
+// The rule of undo and redo for rows, as for texels (core/history.h): a cell shows what the newest
+// edit in force that wrote it left there, or what was there before all of them. Recomputes `names`
+// of one row, after the caller flipped an edit's `in_force`, from what was done to the row, which
+// comes one by one.
 class CellResolver {
  public:
   explicit CellResolver(std::set<std::string> names) : open_(std::move(names)) {}

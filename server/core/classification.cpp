@@ -14,18 +14,21 @@ std::vector<NumberClass> classify(std::span<const double> numbers, ClassMethod m
   for (std::size_t i = 1; i < n; ++i) {
     const double share = static_cast<double>(i) / count;
     // Of two far numbers the difference may not be a number.
-    const double limit = method == ClassMethod::equal ? sorted.front() * (1 - share) + sorted.back() * share
-                                                      : sorted[i * sorted.size() / n];
+    const double limit = method == ClassMethod::equal
+                             ? sorted.front() * (1 - share) + sorted.back() * share
+                             : sorted[i * sorted.size() / n];
     if (limit > limits.back() && limit < sorted.back()) limits.push_back(limit);
     // Where the largest number is frequent it makes the last class.
-    if (method == ClassMethod::quantile && limit == sorted.back() && limit > limits.back()) limits.push_back(limit);
+    if (method == ClassMethod::quantile && limit == sorted.back() && limit > limits.back())
+      limits.push_back(limit);
   }
   std::vector<NumberClass> classes;
   auto begin = sorted.begin();
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const bool last = i + 1 == limits.size();
     const auto end = last ? sorted.end() : std::lower_bound(begin, sorted.end(), limits[i + 1]);
-    classes.push_back({limits[i], last ? sorted.back() : limits[i + 1], static_cast<std::uint64_t>(end - begin)});
+    classes.push_back(
+        {limits[i], last ? sorted.back() : limits[i + 1], static_cast<std::uint64_t>(end - begin)});
     begin = end;
   }
   return classes;

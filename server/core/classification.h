@@ -17,8 +17,8 @@ struct NumberClass {
   double from = 0, to = 0;  // from ≤ number < to; in the last one the largest number, too
   std::uint64_t count = 0;
 };
-// Ascending classes that hold all `numbers` (finite, any order), `count` at most: empty ones are left out for quantiles, and
-// numbers that are all the same make one class.
+// Ascending classes that hold all `numbers` (finite, any order), `count` at most: empty ones are
+// left out for quantiles, and numbers that are all the same make one class.
 std::vector<NumberClass> classify(std::span<const double> numbers, ClassMethod method, int count);
 
 struct TextClass {

@@ -7,7 +7,8 @@
 
 namespace strata {
 
-// Where the model's axes lie on the map. `east` and `north` are axes: as on a map where z is up, and so that east × north = up.
+// Where the model's axes lie on the map. `east` and `north` are axes: as on a map where z is up,
+// and so that east × north = up.
 struct Compass {
   explicit Compass(const Model& model);
   glm::dvec3 east{1, 0, 0}, north{0, 1, 0};

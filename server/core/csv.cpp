@@ -22,7 +22,8 @@ char guess_separator(std::string_view text) {
     if (ends_row(c)) break;
     for (std::size_t i = 0; i < kSeparators.size(); ++i) count[i] += c == kSeparators[i];
   }
-  return kSeparators[static_cast<std::size_t>(std::max_element(count.begin(), count.end()) - count.begin())];
+  return kSeparators[static_cast<std::size_t>(std::max_element(count.begin(), count.end()) -
+                                              count.begin())];
 }
 
 class Reader {
@@ -33,7 +34,8 @@ class Reader {
     if (rest_.starts_with("\xff\xfe") || rest_.starts_with("\xfe\xff"))
       return fail(422, "Not UTF-8", "The text is UTF-16. Save it as \"CSV UTF-8\".", "body");
     if (rest_.starts_with(kUtf8Mark)) rest_.remove_prefix(kUtf8Mark.size());
-    if (rest_.size() >= 5 && rest_.starts_with("sep=") && (rest_.size() == 5 || ends_row(rest_[5]))) {
+    if (rest_.size() >= 5 && rest_.starts_with("sep=") &&
+        (rest_.size() == 5 || ends_row(rest_[5]))) {
       out_.separator = rest_[4];
       rest_.remove_prefix(5);
       take_row_end();
@@ -73,8 +75,11 @@ class Reader {
       if (more) rest_.remove_prefix(1);
     }
     take_row_end();
-    if (std::all_of(row.cells.begin(), row.cells.end(), [](const auto& cell) { return cell.empty(); })) return {};
-    if (out_.rows.size() == limits_.rows) return refuse("A text has at most " + std::to_string(limits_.rows) + " rows");
+    if (std::all_of(row.cells.begin(), row.cells.end(),
+                    [](const auto& cell) { return cell.empty(); }))
+      return {};
+    if (out_.rows.size() == limits_.rows)
+      return refuse("A text has at most " + std::to_string(limits_.rows) + " rows");
     out_.rows.push_back(std::move(row));
     return {};
   }
@@ -95,7 +100,8 @@ class Reader {
       if (quote == std::string_view::npos) return refuse("A quoted cell does not end");
       const std::string_view part = rest_.substr(0, quote);
       for (std::size_t i = 0; i < part.size(); ++i)
-        line_ += part[i] == '\n' || (part[i] == '\r' && (i + 1 == part.size() || part[i + 1] != '\n'));
+        line_ +=
+            part[i] == '\n' || (part[i] == '\r' && (i + 1 == part.size() || part[i + 1] != '\n'));
       cell += part;
       rest_.remove_prefix(quote + 1);
       if (!rest_.starts_with('"')) break;
@@ -115,12 +121,14 @@ class Reader {
 
 // A reader that takes another separator, or none of the quotes, begins a cell behind any of these.
 constexpr std::string_view kCellEnds = ",;\t\r\n";
-constexpr std::array<std::string_view, 8> kFormulaBegins = {"=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20"};
+constexpr std::array<std::string_view, 8> kFormulaBegins = {"=",      "+",      "-",      "@",
+                                                            "\uff1d", "\uff0b", "\uff0d", "\uff20"};
 
 // Apostrophes and quotes may stand before it: a reader takes the quotes away.
 bool begins_formula(std::string_view cell) {
   cell.remove_prefix(std::min(cell.find_first_not_of("'\""), cell.size()));
-  return std::ranges::any_of(kFormulaBegins, [&](std::string_view begin) { return cell.starts_with(begin); });
+  return std::ranges::any_of(kFormulaBegins,
+                             [&](std::string_view begin) { return cell.starts_with(begin); });
 }
 
 // A tab or CR that leads the whole text is taken away by some readers, and what follows is run.
@@ -140,10 +148,11 @@ void for_each_cell_begin(std::string_view text, Visit visit) {
   }
 }
 
-// Any separator counts, not the row's own one alone: some readers take several. A number with a decimal comma stays bare, as some
-// readers take what is quoted for text.
+// Any separator counts, not the row's own one alone: some readers take several. A number with a
+// decimal comma stays bare, as some readers take what is quoted for text.
 bool needs_quotes(std::string_view cell, char separator) {
-  if (cell.find_first_of("\"\r\n") != std::string_view::npos || cell.find(separator) != std::string_view::npos)
+  if (cell.find_first_of("\"\r\n") != std::string_view::npos ||
+      cell.find(separator) != std::string_view::npos)
     return true;
   if (cell.starts_with(' ') || cell.ends_with(' ')) return true;
   const bool is_number = cell.find_first_not_of("0123456789,.+-eE") == std::string_view::npos;
@@ -152,7 +161,9 @@ bool needs_quotes(std::string_view cell, char separator) {
 
 }  // namespace
 
-Result<CsvText> parse_csv(std::string_view text, const CsvLimits& limits) { return Reader(text, limits).read(); }
+Result<CsvText> parse_csv(std::string_view text, const CsvLimits& limits) {
+  return Reader(text, limits).read();
+}
 
 void append_csv_cell(std::string& line, std::string_view cell, char separator) {
   if (!needs_quotes(cell, separator)) {
@@ -168,7 +179,8 @@ void append_csv_cell(std::string& line, std::string_view cell, char separator) {
 }
 
 std::string csv_line(const std::vector<std::string>& cells, char separator) {
-  if (cells.size() == 1 && cells.front().empty()) return "\"\"\r\n";  // readers leave out what would be an empty row
+  // readers leave out what would be an empty row
+  if (cells.size() == 1 && cells.front().empty()) return "\"\"\r\n";
   std::string line;
   for (const std::string& cell : cells) {
     if (&cell != cells.data()) line += separator;

@@ -16,7 +16,8 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 std::optional<std::int64_t> number_of(std::string_view digits) {
   std::int64_t number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (digits.empty() || !is_digit(digits[0]) || error != std::errc() || end != digits.data() + digits.size())
+  if (digits.empty() || !is_digit(digits[0]) || error != std::errc() ||
+      end != digits.data() + digits.size())
     return std::nullopt;
   return number;
 }
@@ -29,7 +30,8 @@ struct Span {
 std::optional<Span> years_of(std::string_view digits, bool negative) {
   std::size_t known = digits.find('X');
   if (known == std::string_view::npos) known = digits.size();
-  if (known == 0 || digits.substr(known).find_first_not_of('X') != std::string_view::npos) return std::nullopt;
+  if (known == 0 || digits.substr(known).find_first_not_of('X') != std::string_view::npos)
+    return std::nullopt;
   const auto head = number_of(digits.substr(0, known));
   if (!head) return std::nullopt;
   Span years{*head, *head};
@@ -47,7 +49,8 @@ Span days_of_month(std::int64_t year, int month) {
 // Three months from `month` on; those of winter end in the next year.
 Span days_of_season(std::int64_t year, int month) {
   const bool turns = month > 10;
-  return {day_number(year, month, 1), days_of_month(year + (turns ? 1 : 0), turns ? month - 10 : month + 2).last};
+  return {day_number(year, month, 1),
+          days_of_month(year + (turns ? 1 : 0), turns ? month - 10 : month + 2).last};
 }
 
 // The days of a date without its qualifier.
@@ -78,7 +81,8 @@ std::optional<Span> days_of_date(std::string_view text) {
   const auto month = number_of(month_text);
   if (!month || !one_year) return std::nullopt;
   const std::int64_t year = years->first;
-  if (*month >= 21 && *month <= 24 && rest.empty()) return days_of_season(year, static_cast<int>(*month - 20) * 3);
+  if (*month >= 21 && *month <= 24 && rest.empty())
+    return days_of_season(year, static_cast<int>(*month - 20) * 3);
   if (*month < 1 || *month > 12) return std::nullopt;
   const Span days = days_of_month(year, static_cast<int>(*month));
   if (rest.empty() || rest == "-XX") return days;
@@ -101,13 +105,15 @@ std::optional<Span> read_date(std::string_view text, Period& period) {
 
 }  // namespace
 
-// Howard Hinnant, "chrono-compatible low-level date algorithms": years begin in March, eras have 400 years.
+// Howard Hinnant, "chrono-compatible low-level date algorithms": years begin in March, eras have
+// 400 years.
 std::int64_t day_number(std::int64_t year, int month, int day) {
   if (month <= 2) --year;
   const std::int64_t era = (year >= 0 ? year : year - 399) / 400;
   const std::int64_t year_of_era = year - era * 400;
   const std::int64_t day_of_year = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
-  return era * 146097 + year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year - 719468;
+  return era * 146097 + year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year -
+         719468;
 }
 
 int days_in_month(std::int64_t year, int month) {
@@ -117,10 +123,11 @@ int days_in_month(std::int64_t year, int month) {
 
 Result<Period> parse_edtf(std::string_view text) {
   const auto refuse = [&] {
-    return fail(422, "Not a period",
-                "\"" + mended_utf8(text.substr(0, kLongestPeriod)) +
-                    "\" is no date of EDTF such as 1560, 1560~, 156X, 1560-04-12, -0043, 1560/1580 or 1560/..",
-                {});
+    return fail(
+        422, "Not a period",
+        "\"" + mended_utf8(text.substr(0, kLongestPeriod)) +
+            "\" is no date of EDTF such as 1560, 1560~, 156X, 1560-04-12, -0043, 1560/1580 or 1560/..",
+        {});
   };
   if (text.empty() || text.size() > kLongestPeriod) return refuse();
   Period period;

@@ -8,7 +8,8 @@
 
 namespace strata {
 
-// Days since 1970-01-01 in the proleptic Gregorian calendar with a year 0 (ISO 8601: year 0 is 1 BC, -1 is 2 BC).
+// Days since 1970-01-01 in the proleptic Gregorian calendar with a year 0 (ISO 8601: year 0 is 1
+// BC, -1 is 2 BC).
 std::int64_t day_number(std::int64_t year, int month, int day);
 int days_in_month(std::int64_t year, int month);
 
@@ -22,10 +23,12 @@ struct Period {
 
 inline constexpr std::size_t kLongestPeriod = 64;  // bytes
 
-// Extended Date/Time Format (ISO 8601-2:2019), levels 0 and 1 without times of the day: `1985`, `1985-04`, `1985-04-12`, seasons
-// `2001-21` (spring) … `-24` (December to February), years of more digits `Y-17000`, `-0043`, `156X`, `1560-XX`, `1560-12-XX`, each
-// with `?`, `~` or `%` behind it; and intervals `A/B` of them, with `..` where an end is open and nothing where it is unknown.
-// The days of an approximate date are those that it names: how far "circa" reaches is nobody's to guess.
+// Extended Date/Time Format (ISO 8601-2:2019), levels 0 and 1 without times of the day: `1985`,
+// `1985-04`, `1985-04-12`, seasons `2001-21` (spring) … `-24` (December to February), years of more
+// digits `Y-17000`, `-0043`, `156X`, `1560-XX`, `1560-12-XX`, each with `?`, `~` or `%` behind it;
+// and intervals `A/B` of them, with `..` where an end is open and nothing where it is unknown. The
+// days of an approximate date are those that it names: how far "circa" reaches is nobody's to
+// guess.
 Result<Period> parse_edtf(std::string_view text);
 
 }  // namespace strata

@@ -6,7 +6,8 @@ namespace strata {
 namespace {
 
 void collect(const Expression& expression, std::vector<std::string>& layers) {
-  if (!expression.name.empty() && std::find(layers.begin(), layers.end(), expression.name) == layers.end())
+  if (!expression.name.empty() &&
+      std::find(layers.begin(), layers.end(), expression.name) == layers.end())
     layers.push_back(expression.name);
   for (const Expression& part : expression.parts) collect(part, layers);
 }
@@ -14,7 +15,8 @@ void collect(const Expression& expression, std::vector<std::string>& layers) {
 }  // namespace
 
 Problem expression_problem(const std::string& what, std::size_t at, const std::string& field) {
-  Problem problem{422, "Expression not understood", what + " (at character " + std::to_string(at + 1) + ").", field};
+  Problem problem{422, "Expression not understood",
+                  what + " (at character " + std::to_string(at + 1) + ").", field};
   problem.offset = at;
   return problem;
 }

@@ -8,12 +8,14 @@
 
 namespace strata {
 
-// A formula: what a fill, a selection, a filter of records or a computed layer is given by, once its text was read
-// (query/expression_parser). A condition, a number, a text or a time at each texel or record.
+// A formula: what a fill, a selection, a filter of records or a computed layer is given by, once
+// its text was read (query/expression_parser). A condition, a number, a text or a time at each
+// texel or record.
 //
-// Where a layer or a column has no value it is unknown, and so is what is computed from it: also what has no finite value (1/0).
-// Conditions are of three values as in SQL: a comparison with an unknown number is unknown, `false and unknown` is false, `true
-// or unknown` is true. Only `valid(layer)` and `known` are always known. Nothing is done where a condition is unknown.
+// Where a layer or a column has no value it is unknown, and so is what is computed from it: also
+// what has no finite value (1/0). Conditions are of three values as in SQL: a comparison with an
+// unknown number is unknown, `false and unknown` is false, `true or unknown` is true. Only
+// `valid(layer)` and `known` are always known. Nothing is done where a condition is unknown.
 struct Expression {
   enum class Op {
     // numbers
@@ -50,9 +52,13 @@ struct Expression {
     y,               //
     z,               //
     area,            // of the texel, m²
-    record_number,  // the number at place `index` of what was read from records (query/record_parts), by the key that `name` holds
+    // the number at place `index` of what was read from records (query/record_parts), by the key
+    // that `name` holds
+    record_number,
     // of any kind
-    column,  // `path` of a record: that whose key the layer `name` holds, or, without a name, the one that is filtered
+    // `path` of a record: that whose key the layer `name` holds, or, without a name, the one that
+    // is filtered
+    column,
     // texts, which also write times: ISO 8601, EDTF
     text,          // `text`
     fold_case,     // of one part
@@ -68,23 +74,24 @@ struct Expression {
     greater_equal,  //
     equal,          //
     not_equal,      //
-    like,           // of a text and a pattern: % for any characters, _ for one, \ before one that is meant itself
-    all,            // of two or more conditions
-    any,            // of two or more conditions
-    negation,       // of one condition
-    holds,          // of a column of truths
-    before,         // of two times, as the next ones: all of the first is before all of the second
-    after,          //
-    during,         // the first lies within the second
-    contains,       // the second lies within the first
-    intersects,     // they have a moment in common
-    disjoint,       // they have none
-    coincides,      // they begin and end together
-    has_all,        // of a relation and keys: all of them are in it
-    has_any,        // one of them is
-    has_only,       // nothing else is
-    has_exactly,    // they are the same
-    record_truth,   // as record_number
+    // of a text and a pattern: % for any characters, _ for one, \ before one that is meant itself
+    like,
+    all,           // of two or more conditions
+    any,           // of two or more conditions
+    negation,      // of one condition
+    holds,         // of a column of truths
+    before,        // of two times, as the next ones: all of the first is before all of the second
+    after,         //
+    during,        // the first lies within the second
+    contains,      // the second lies within the first
+    intersects,    // they have a moment in common
+    disjoint,      // they have none
+    coincides,     // they begin and end together
+    has_all,       // of a relation and keys: all of them are in it
+    has_any,       // one of them is
+    has_only,      // nothing else is
+    has_exactly,   // they are the same
+    record_truth,  // as record_number
   };
 
   // Of the text that it was read from: no part of what it means.
@@ -96,8 +103,8 @@ struct Expression {
   Op op = Op::number;
   double number = 0;
   std::string name;  // slug of a layer
-  std::vector<std::string>
-      path;  // slugs of columns: of the record, then of the record whose key the column before holds
+  // slugs of columns: of the record, then of the record whose key the column before holds
+  std::vector<std::string> path;
   std::string text;
   std::size_t index = 0;
   std::vector<Expression> parts;
@@ -109,7 +116,8 @@ struct Expression {
   bool operator==(const Expression&) const = default;
 };
 
-// What is wrong at a character (from 0) of the text of an expression: a Problem (422) that says where.
+// What is wrong at a character (from 0) of the text of an expression: a Problem (422) that says
+// where.
 Problem expression_problem(const std::string& what, std::size_t at, const std::string& field);
 
 // Slugs of the layers that it reads, each once, in order of their first use.

@@ -7,8 +7,8 @@
 
 namespace strata {
 
-// libpng reports errors by longjmp. Only `guarded` catches that: what runs in it holds no object with a destructor. For those who link
-// libpng.
+// libpng reports errors by longjmp. Only `guarded` catches that: what runs in it holds no object
+// with a destructor. For those who link libpng.
 
 struct PngMessage {
   char text[200] = "damaged";
@@ -33,7 +33,8 @@ bool guarded(png_structp png, const Call& call) {
 // `info` is null where libpng does not start.
 struct PngWriter {
   PngMessage message;
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, keep_png_message, ignore_png_warning);
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message, keep_png_message,
+                                            ignore_png_warning);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   PngWriter() = default;
   PngWriter(const PngWriter&) = delete;

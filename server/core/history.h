@@ -6,9 +6,9 @@
 
 namespace strata {
 
-// One revision of a tile and what its edit is now: `writer` is false for the entries that undo, redo and reviews leave
-// (they move content but are nobody's paint); `in_force` is false for an edit that is undone or rejected. A restore is a writer: later undos
-// see what it brought back.
+// One revision of a tile and what its edit is now: `writer` is false for the entries that undo,
+// redo and reviews leave (they move content but are nobody's paint); `in_force` is false for an
+// edit that is undone or rejected. A restore is a writer: later undos see what it brought back.
 struct PastRevision {
   std::int64_t sequence = 0;
   bool writer = true;
@@ -17,13 +17,15 @@ struct PastRevision {
   TileRevision revision;
 };
 
-// The rule of undo and redo: a texel shows what the newest in-force edit that wrote it left there, or what was there
-// before all of them; it is provisional where that edit is. Recomputes the `texels` of a tile by that rule, after the caller changed
-// what an edit is, from the tile's revisions, which come one by one: a tile may have more of them than fit into memory.
+// The rule of undo and redo: a texel shows what the newest in-force edit that wrote it left there,
+// or what was there before all of them; it is provisional where that edit is. Recomputes the
+// `texels` of a tile by that rule, after the caller changed what an edit is, from the tile's
+// revisions, which come one by one: a tile may have more of them than fit into memory.
 class TileResolver {
  public:
   // `current` is the tile after its newest revision.
-  TileResolver(const TileData& current, const TileMask& texels) : result_(current), past_(current), open_(texels) {}
+  TileResolver(const TileData& current, const TileMask& texels)
+      : result_(current), past_(current), open_(texels) {}
 
   // False when older revisions change nothing more.
   bool is_open() const { return open_.any(); }

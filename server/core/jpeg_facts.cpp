@@ -13,10 +13,12 @@ class TiffReader {
  public:
   TiffReader(Bytes bytes, bool little) : bytes_(bytes), little_(little) {}
   std::optional<std::uint32_t> number(std::size_t at, int size) const {
-    if (at > bytes_.size() || bytes_.size() - at < static_cast<std::size_t>(size)) return std::nullopt;
+    if (at > bytes_.size() || bytes_.size() - at < static_cast<std::size_t>(size))
+      return std::nullopt;
     std::uint32_t value = 0;
     for (int i = 0; i < size; ++i)
-      value |= std::uint32_t{bytes_[at + static_cast<std::size_t>(i)]} << (8 * (little_ ? i : size - 1 - i));
+      value |= std::uint32_t{bytes_[at + static_cast<std::size_t>(i)]}
+               << (8 * (little_ ? i : size - 1 - i));
     return value;
   }
 
@@ -33,9 +35,11 @@ int orientation_of(Bytes tiff) {
   const auto entries = directory ? reader.number(*directory, 2) : std::nullopt;
   for (std::uint32_t i = 0; i < entries.value_or(0); ++i) {
     const std::size_t entry = std::size_t{*directory} + 2 + std::size_t{12} * i;
-    const auto tag = reader.number(entry, 2), kind = reader.number(entry + 2, 2), value = reader.number(entry + 8, 2);
+    const auto tag = reader.number(entry, 2), kind = reader.number(entry + 2, 2),
+               value = reader.number(entry + 8, 2);
     if (!tag || !kind || !value) break;
-    if (*tag == kOrientation && *kind == kShort && *value >= 1 && *value <= 8) return static_cast<int>(*value);
+    if (*tag == kOrientation && *kind == kShort && *value >= 1 && *value <= 8)
+      return static_cast<int>(*value);
   }
   return 1;
 }
@@ -60,11 +64,14 @@ JpegFacts read_jpeg_facts(Bytes bytes) {
         std::equal(std::begin(kExif), std::end(kExif), content.begin()))
       facts.orientation = orientation_of(content.subspan(sizeof kExif));
     constexpr std::uint8_t kAdobe[] = {'A', 'd', 'o', 'b', 'e'};
-    if (marker == 0xee && content.size() >= 12 && std::equal(std::begin(kAdobe), std::end(kAdobe), content.begin()))
+    if (marker == 0xee && content.size() >= 12 &&
+        std::equal(std::begin(kAdobe), std::end(kAdobe), content.begin()))
       facts.adobe = true;
-    const bool is_frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    const bool is_frame =
+        marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
     // Coded in several scans: spectral selection, in any of its variants.
-    if (is_frame) facts.progressive = marker == 0xc2 || marker == 0xc6 || marker == 0xca || marker == 0xce;
+    if (is_frame)
+      facts.progressive = marker == 0xc2 || marker == 0xc6 || marker == 0xca || marker == 0xce;
     at += 2 + length;
   }
   return facts;

@@ -29,7 +29,8 @@ Palette colors_of_numbers(const Palette& palette, std::span<const KeyNumber> num
   for (const KeyNumber& known : numbers) {
     const Palette::Point* point = point_of(palette, known.number);
     if (!point && palette.mode == PaletteMode::categorical) continue;
-    made.points.push_back(drawn_as(point ? *point : Palette::Point{}, known.key, color_of(palette, known.number)));
+    made.points.push_back(
+        drawn_as(point ? *point : Palette::Point{}, known.key, color_of(palette, known.number)));
   }
   std::ranges::sort(made.points, {}, &Palette::Point::at);
   return made;
@@ -46,7 +47,8 @@ Palette colors_of_texts(const Palette& palette, std::span<const KeyText> texts) 
   return made;
 }
 
-Palette highlighted_colors(const Palette& by_key, std::span<const std::uint32_t> keys, bool isolate) {
+Palette highlighted_colors(const Palette& by_key, std::span<const std::uint32_t> keys,
+                           bool isolate) {
   Palette made{PaletteMode::categorical, 0, 1, {}, {}};
   made.others = isolate ? kNothing : kDimmed;
   made.points.reserve(keys.size());

@@ -6,7 +6,9 @@ namespace strata {
 namespace {
 
 bool same_tag(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  const auto lower = [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  };
   return std::ranges::equal(a, b, {}, lower, lower);
 }
 
@@ -22,7 +24,8 @@ const std::string* find_label(const Labels& labels, std::string_view language) {
   return nullptr;
 }
 
-const std::string& label_or(const Labels& labels, std::string_view language, const std::string& name) {
+const std::string& label_or(const Labels& labels, std::string_view language,
+                            const std::string& name) {
   const std::string* label = find_label(labels, language);
   return label && !label->empty() ? *label : name;
 }

@@ -16,8 +16,10 @@ enum class LayerKind { numeric, database };
 
 // What a computed layer is made of. Its texels are written by computing alone.
 struct LayerFormula {
-  std::string expression;              // a number or a condition over layers of the model (query/expression_parser)
-  bool automatic = false;              // computed again soon after something that it reads has changed
+  // a number or a condition over layers of the model (query/expression_parser)
+  std::string expression;
+  // computed again soon after something that it reads has changed
+  bool automatic = false;
   std::int64_t computed_sequence = 0;  // of the model, when it was computed last; 0: never
   bool records_changed = false;        // of a table that it reads, since then
   struct Input {
@@ -46,24 +48,30 @@ struct Layer {
   Labels labels;        // its name in other languages
   Labels descriptions;  // its description in other languages
   Palette palette;
-  bool palette_of_terms = false;  // it follows the colours of the terms of its table, and is not kept
+  // it follows the colours of the terms of its table, and is not kept
+  bool palette_of_terms = false;
   double opacity = 1;
   bool visible = true;
-  bool locked = false;  // against everybody below curator: neither its texels nor what it is may be changed
-  bool review = false;  // edits of those below curator are provisional until a curator accepts or rejects them
+  // against everybody below curator: neither its texels nor what it is may be changed
+  bool locked = false;
+  // edits of those below curator are provisional until a curator accepts or rejects them
+  bool review = false;
   Visibility visibility = Visibility::everyone;
   int order = 0;                      // drawn ascending: higher is on top
   std::optional<std::int64_t> table;  // database: the project's table whose keys the texels hold
   std::optional<LayerFormula> formula;
   std::optional<LayerOrigin> origin;
-  bool edited_by_hand =
-      false;  // with an origin: it was unlocked since, so that its values need not be those that were computed
+  // with an origin: it was unlocked since, so that its values need not be those that were computed
+  bool edited_by_hand = false;
   std::int64_t sequence = 0;  // of the last edit in it
   std::int64_t version = 1;   // of the metadata, for ETag and If-Match
 };
 
-// Its values are what was computed, and nobody may change them until it is unlocked to be edited by hand.
-inline bool is_as_computed(const Layer& layer) { return layer.origin && layer.locked && !layer.edited_by_hand; }
+// Its values are what was computed, and nobody may change them until it is unlocked to be edited by
+// hand.
+inline bool is_as_computed(const Layer& layer) {
+  return layer.origin && layer.locked && !layer.edited_by_hand;
+}
 
 nlohmann::json to_json(const Layer& layer);
 

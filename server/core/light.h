@@ -6,8 +6,8 @@
 
 namespace strata {
 
-// museum: a soft key light with fill and sky; headlight: from the eye; raking: from one side, which shows relief; unlit: the
-// colours as they are.
+// museum: a soft key light with fill and sky; headlight: from the eye; raking: from one side, which
+// shows relief; unlit: the colours as they are.
 enum class LightMode { museum, headlight, raking, unlit };
 
 struct Light {

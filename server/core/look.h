@@ -6,7 +6,8 @@
 
 namespace strata {
 
-// A picture of the model's surface on its texture coordinates (uv origin bottom left: the picture's top row is v = 1).
+// A picture of the model's surface on its texture coordinates (uv origin bottom left: the picture's
+// top row is v = 1).
 struct Look {
   std::int64_t id = 0;
   std::int64_t model_id = 0;

@@ -27,12 +27,14 @@ MappedFile::~MappedFile() {
 
 Result<MappedFile> MappedFile::open(const std::filesystem::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return unreadable("The file cannot be opened: " + std::string(std::strerror(errno)) + ".");
+  if (descriptor < 0)
+    return unreadable("The file cannot be opened: " + std::string(std::strerror(errno)) + ".");
   MappedFile mapped;
   struct stat status {};
   const bool regular = ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
   if (regular && status.st_size > 0) {
-    void* data = ::mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_PRIVATE, descriptor, 0);
+    void* data = ::mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_PRIVATE,
+                        descriptor, 0);
     if (data != MAP_FAILED) {
       mapped.data_ = data;
       mapped.size_ = static_cast<std::size_t>(status.st_size);

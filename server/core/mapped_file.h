@@ -9,7 +9,8 @@
 
 namespace strata {
 
-// A file as read-only memory. The file must not shrink meanwhile: uploads and imports are finished before they are read.
+// A file as read-only memory. The file must not shrink meanwhile: uploads and imports are finished
+// before they are read.
 class MappedFile {
  public:
   // A Problem 422 that says why a file cannot be read. An empty file has no bytes.
@@ -18,9 +19,11 @@ class MappedFile {
   MappedFile& operator=(MappedFile&&) = delete;
   ~MappedFile();
 
-  std::span<const std::uint8_t> bytes() const { return {static_cast<const std::uint8_t*>(data_), size_}; }
-  // Lets go of the memory that holds this part of it, which is read from the file again when it is wanted: who goes through gigabytes
-  // once needs no memory for them.
+  std::span<const std::uint8_t> bytes() const {
+    return {static_cast<const std::uint8_t*>(data_), size_};
+  }
+  // Lets go of the memory that holds this part of it, which is read from the file again when it is
+  // wanted: who goes through gigabytes once needs no memory for them.
   void release(std::string_view part) const;
   std::string_view view() const { return {static_cast<const char*>(data_), size_}; }
 

@@ -25,7 +25,8 @@ bool fits(const std::vector<Mark>& marks, bool lines) {
   std::size_t places = 0;
   for (const Mark& mark : marks) {
     places += mark.places.size();
-    if (mark.model < 1 || (lines ? mark.places.size() < 2 || length_of(mark) == 0 : mark.places.size() != 1))
+    if (mark.model < 1 ||
+        (lines ? mark.places.size() < 2 || length_of(mark) == 0 : mark.places.size() != 1))
       return false;
   }
   return marks.size() <= kMostMarks && places <= kMostMarkPlaces;
@@ -42,12 +43,13 @@ class MarkReader {
       skip_blank();
       if (rest_.empty() && !marks.empty()) break;  // a semicolon at the end
       Mark mark;
-      if (marks.size() == kMostMarks || !number(mark.model) || !word(lines_ ? "LINESTRING" : "POINT") || !word("Z") ||
-          !sign('('))
+      if (marks.size() == kMostMarks || !number(mark.model) ||
+          !word(lines_ ? "LINESTRING" : "POINT") || !word("Z") || !sign('('))
         return std::nullopt;
       do {
         glm::dvec3 place(0);
-        if (!number(place.x) || !number(place.y) || !number(place.z) || mark.places.size() == kMostMarkPlaces)
+        if (!number(place.x) || !number(place.y) || !number(place.z) ||
+            mark.places.size() == kMostMarkPlaces)
           return std::nullopt;
         mark.places.push_back(place);
       } while (sign(','));
@@ -60,8 +62,8 @@ class MarkReader {
 
  private:
   void skip_blank() {
-    while (!rest_.empty() &&
-           (rest_.front() == ' ' || rest_.front() == '\t' || rest_.front() == '\n' || rest_.front() == '\r'))
+    while (!rest_.empty() && (rest_.front() == ' ' || rest_.front() == '\t' ||
+                              rest_.front() == '\n' || rest_.front() == '\r'))
       rest_.remove_prefix(1);
   }
   bool sign(char wanted) {
@@ -100,8 +102,8 @@ std::optional<std::vector<Mark>> read_marks(const json& value, bool lines) {
   for (const json& item : value) {
     if (!item.is_object() || item.size() != 2) return std::nullopt;
     const auto model = item.find("model"), coordinates = item.find("coordinates");
-    if (model == item.end() || coordinates == item.end() || !model->is_number_integer() || !coordinates->is_array() ||
-        coordinates->size() > kMostMarkPlaces)
+    if (model == item.end() || coordinates == item.end() || !model->is_number_integer() ||
+        !coordinates->is_array() || coordinates->size() > kMostMarkPlaces)
       return std::nullopt;
     Mark mark{model->get<std::int64_t>(), {}};
     for (const json& place : *coordinates) {
@@ -133,7 +135,8 @@ json to_json(std::span<const Mark> marks) {
 std::string print_marks(std::span<const Mark> marks, bool lines) {
   std::string text;
   for (const Mark& mark : marks) {
-    text += (text.empty() ? "" : "; ") + std::to_string(mark.model) + (lines ? " LINESTRING Z (" : " POINT Z (");
+    text += (text.empty() ? "" : "; ") + std::to_string(mark.model) +
+            (lines ? " LINESTRING Z (" : " POINT Z (");
     for (std::size_t i = 0; i < mark.places.size(); ++i) {
       if (i > 0) text += ", ";
       for (int axis = 0; axis < 3; ++axis) {
@@ -158,7 +161,8 @@ std::optional<std::vector<Mark>> parse_marks(std::string_view text, bool lines) 
 
 double length_of(const Mark& mark) {
   double length = 0;
-  for (std::size_t i = 1; i < mark.places.size(); ++i) length += glm::distance(mark.places[i - 1], mark.places[i]);
+  for (std::size_t i = 1; i < mark.places.size(); ++i)
+    length += glm::distance(mark.places[i - 1], mark.places[i]);
   return length;
 }
 

@@ -10,7 +10,8 @@ namespace strata {
 template <class Visit>
 void for_each_texel(const TileMask& mask, Visit&& visit) {
   for (int w = 0; w < kMaskWords; ++w)
-    for (std::uint64_t left = mask.words[w]; left != 0; left &= left - 1) visit(w * 64 + std::countr_zero(left));
+    for (std::uint64_t left = mask.words[w]; left != 0; left &= left - 1)
+      visit(w * 64 + std::countr_zero(left));
 }
 
 }  // namespace strata

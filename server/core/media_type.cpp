@@ -28,7 +28,8 @@ constexpr std::array kMagics = {
     Magic{0, "%PDF-"sv, "application/pdf"},
     Magic{0, "%!PS"sv, "application/postscript"},
     Magic{0, "{\\rtf"sv, "application/rtf"},
-    Magic{0, "\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"sv, "application/x-ole-storage"},  // Office before 2007
+    // Office before 2007
+    Magic{0, "\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"sv, "application/x-ole-storage"},
     Magic{0, "\x1f\x8b"sv, "application/gzip"},
     Magic{0, "7z\xbc\xaf\x27\x1c"sv, "application/x-7z-compressed"},
     Magic{0, "Rar!\x1a\x07"sv, "application/vnd.rar"},
@@ -46,8 +47,9 @@ bool has_at(std::string_view text, std::size_t offset, std::string_view part) {
 
 std::string lower(std::string_view text) {
   std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  std::transform(out.begin(), out.end(), out.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
   return out;
 }
 
@@ -60,7 +62,8 @@ std::string_view riff_type(std::string_view head) {
 }
 
 std::string_view brand_type(std::string_view brand) {
-  constexpr std::array kHeif = {"heic"sv, "heix"sv, "hevc"sv, "hevx"sv, "heim"sv, "heis"sv, "mif1"sv, "msf1"sv};
+  constexpr std::array kHeif = {"heic"sv, "heix"sv, "hevc"sv, "hevx"sv,
+                                "heim"sv, "heis"sv, "mif1"sv, "msf1"sv};
   if (std::find(kHeif.begin(), kHeif.end(), brand) != kHeif.end()) return "image/heic";
   if (brand == "avif" || brand == "avis") return "image/avif";
   if (brand == "qt  ") return "video/quicktime";
@@ -71,12 +74,14 @@ std::string_view brand_type(std::string_view brand) {
 std::string_view zip_type(std::string_view head) {
   // OpenDocument and EPUB put their type first, uncompressed.
   for (const auto type :
-       {"application/vnd.oasis.opendocument.text"sv, "application/vnd.oasis.opendocument.spreadsheet"sv,
-        "application/vnd.oasis.opendocument.presentation"sv, "application/vnd.oasis.opendocument.graphics"sv,
-        "application/epub+zip"sv})
+       {"application/vnd.oasis.opendocument.text"sv,
+        "application/vnd.oasis.opendocument.spreadsheet"sv,
+        "application/vnd.oasis.opendocument.presentation"sv,
+        "application/vnd.oasis.opendocument.graphics"sv, "application/epub+zip"sv})
     if (has_at(head, 30, "mimetype") && has_at(head, 38, type)) return type;
   // Office names its parts; which of them comes first is nowhere said.
-  if (head.find("[Content_Types].xml") == std::string_view::npos && head.find("_rels/.rels") == std::string_view::npos)
+  if (head.find("[Content_Types].xml") == std::string_view::npos &&
+      head.find("_rels/.rels") == std::string_view::npos)
     return "application/zip";
   if (head.find("word/") != std::string_view::npos)
     return "application/vnd.openxmlformats-officedocument.wordprocessingml.document";
@@ -94,34 +99,60 @@ std::string_view binary_type(std::string_view head) {
   if (has_at(head, 4, "ftyp") && head.size() >= 12) return brand_type(head.substr(8, 4));
   if (head.starts_with("PK\x03\x04") || head.starts_with("PK\x05\x06")) return zip_type(head);
   if (head.starts_with("\x1a\x45\xdf\xa3"))
-    return head.substr(0, 64).find("webm") != std::string_view::npos ? "video/webm" : "video/x-matroska";
-  if (head.starts_with("BM") && head.size() >= 14 && has_at(head, 6, "\0\0\0\0"sv)) return "image/bmp";
+    return head.substr(0, 64).find("webm") != std::string_view::npos ? "video/webm"
+                                                                     : "video/x-matroska";
+  if (head.starts_with("BM") && head.size() >= 14 && has_at(head, 6, "\0\0\0\0"sv))
+    return "image/bmp";
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(head[i]); };
-  if (head.size() >= 2 && byte(0) == 0xff && (byte(1) & 0xe6) == 0xe2) return "audio/mpeg";  // a frame without a tag
+  // a frame without a tag
+  if (head.size() >= 2 && byte(0) == 0xff && (byte(1) & 0xe6) == 0xe2) return "audio/mpeg";
   return {};
 }
 
 bool is_text(std::string_view head) {
   return std::none_of(head.begin(), head.end(), [](char c) {
-    return (static_cast<unsigned char>(c) < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\f' && c != 27) ||
+    return (static_cast<unsigned char>(c) < ' ' && c != '\t' && c != '\n' && c != '\r' &&
+            c != '\f' && c != 27) ||
            c == 127;
   });
 }
 
 // What a browser would take for markup, whatever stands around it.
 std::string_view markup_type(std::string_view text) {
-  constexpr std::array kHtml = {
-      "<!doctype html"sv, "<html"sv, "<head"sv,  "<script"sv, "<iframe"sv, "<h1"sv,    "<div"sv,  "<font"sv,
-      "<table"sv,         "<a"sv,    "<style"sv, "<title"sv,  "<b"sv,      "<body"sv,  "<br"sv,   "<p"sv,
-      "<meta"sv,          "<img"sv,  "<form"sv,  "<svg"sv,    "<object"sv, "<embed"sv, "<link"sv, "<base"sv};
+  constexpr std::array kHtml = {"<!doctype html"sv,
+                                "<html"sv,
+                                "<head"sv,
+                                "<script"sv,
+                                "<iframe"sv,
+                                "<h1"sv,
+                                "<div"sv,
+                                "<font"sv,
+                                "<table"sv,
+                                "<a"sv,
+                                "<style"sv,
+                                "<title"sv,
+                                "<b"sv,
+                                "<body"sv,
+                                "<br"sv,
+                                "<p"sv,
+                                "<meta"sv,
+                                "<img"sv,
+                                "<form"sv,
+                                "<svg"sv,
+                                "<object"sv,
+                                "<embed"sv,
+                                "<link"sv,
+                                "<base"sv};
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n\f"), text.size()));
   if (!text.starts_with('<')) return {};
   const std::string small = lower(text);
   if (small.starts_with("<svg")) return "image/svg+xml";
-  const bool is_xml = small.starts_with("<?xml") || small.starts_with("<!--") || small.starts_with("<!doctype svg");
+  const bool is_xml =
+      small.starts_with("<?xml") || small.starts_with("<!--") || small.starts_with("<!doctype svg");
   if (is_xml && small.find("<svg") != std::string::npos) return "image/svg+xml";
-  if (small.find("<html") != std::string::npos || small.find("<script") != std::string::npos) return "text/html";
+  if (small.find("<html") != std::string::npos || small.find("<script") != std::string::npos)
+    return "text/html";
   for (const auto tag : kHtml)
     if (small.starts_with(tag)) return "text/html";
   return is_xml ? "application/xml" : "";
@@ -130,12 +161,14 @@ std::string_view markup_type(std::string_view text) {
 }  // namespace
 
 std::string sniff_media_type(std::span<const std::uint8_t> bytes, std::string_view name) {
-  const std::string_view head(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), kSniffedBytes));
+  const std::string_view head(reinterpret_cast<const char*>(bytes.data()),
+                              std::min(bytes.size(), kSniffedBytes));
   if (const auto type = binary_type(head); !type.empty()) return std::string(type);
   if (head.empty() || !is_text(head)) return "application/octet-stream";
   if (const auto type = markup_type(head); !type.empty()) return std::string(type);
   const auto dot = name.rfind('.');
-  const std::string ending = dot == std::string_view::npos ? std::string() : lower(name.substr(dot + 1));
+  const std::string ending =
+      dot == std::string_view::npos ? std::string() : lower(name.substr(dot + 1));
   if (ending == "csv") return "text/csv";
   if (ending == "json" || ending == "geojson") return "application/json";
   if (ending == "md") return "text/markdown";
@@ -143,8 +176,9 @@ std::string sniff_media_type(std::span<const std::uint8_t> bytes, std::string_vi
 }
 
 bool is_raster_picture(std::string_view media_type) {
-  constexpr std::array kTypes = {"image/jpeg"sv, "image/png"sv,  "image/tiff"sv, "image/webp"sv, "image/gif"sv,
-                                 "image/heic"sv, "image/avif"sv, "image/bmp"sv,  "image/jp2"sv};
+  constexpr std::array kTypes = {"image/jpeg"sv, "image/png"sv, "image/tiff"sv,
+                                 "image/webp"sv, "image/gif"sv, "image/heic"sv,
+                                 "image/avif"sv, "image/bmp"sv, "image/jp2"sv};
   return std::find(kTypes.begin(), kTypes.end(), media_type) != kTypes.end();
 }
 

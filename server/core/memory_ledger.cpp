@@ -7,7 +7,9 @@ namespace {
 
 constexpr std::string_view kUsedUp = " used up";
 
-std::string mib(std::uint64_t bytes) { return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB"; }
+std::string mib(std::uint64_t bytes) {
+  return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB";
+}
 
 }  // namespace
 
@@ -48,10 +50,13 @@ Problem MemoryLedger::used_up(std::uint64_t bytes, std::string_view what) const 
           kind_ + std::string(kUsedUp),
           "The budget of " + mib(budget_bytes_) + " of " + kind_ + " is used up: " + mib(bytes) +
               " more are needed for " + std::string(what) + ", and " + mib(used_bytes_) +
-              " are in use. Close models or layers, or start the " + "server with a larger " + option_ + ".",
+              " are in use. Close models or layers, or start the " + "server with a larger " +
+              option_ + ".",
           {}};
 }
 
-bool is_used_up(const Problem& problem) { return problem.status == 503 && problem.title.ends_with(kUsedUp); }
+bool is_used_up(const Problem& problem) {
+  return problem.status == 503 && problem.title.ends_with(kUsedUp);
+}
 
 }  // namespace strata

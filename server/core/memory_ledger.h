@@ -10,8 +10,8 @@
 
 namespace strata {
 
-// The ledger of one kind of memory: every large object holds a share of the budget while it lives. Thread-safe, but for
-// `set_budget` and `set_evictor`, which belong to the start and the end.
+// The ledger of one kind of memory: every large object holds a share of the budget while it lives.
+// Thread-safe, but for `set_budget` and `set_evictor`, which belong to the start and the end.
 class MemoryLedger {
  public:
   // A counted number of bytes, given back on destruction. Move-only; must not outlive the ledger.
@@ -22,7 +22,8 @@ class MemoryLedger {
     Share& operator=(Share&& other) noexcept;
     ~Share() { reset(); }
     std::uint64_t bytes() const { return bytes_; }
-    // Of something that grew or shrank already: counted also beyond the budget. Not for an empty share.
+    // Of something that grew or shrank already: counted also beyond the budget. Not for an empty
+    // share.
     void recount(std::uint64_t bytes);
     void reset();
 
@@ -39,10 +40,12 @@ class MemoryLedger {
   void set_budget(std::uint64_t budget_bytes) { budget_bytes_ = budget_bytes; }
   std::uint64_t budget() const { return budget_bytes_; }
   std::uint64_t used() const { return used_bytes_; }
-  bool fits(std::uint64_t bytes) const { return used_bytes_ + bytes <= budget_bytes_; }  // with nothing evicted
+  // with nothing evicted
+  bool fits(std::uint64_t bytes) const { return used_bytes_ + bytes <= budget_bytes_; }
   bool exceeded() const { return used_bytes_ > budget_bytes_; }
 
-  // Frees one thing that is not used or can be made again; false when there is none. Called by `reserve`, on its thread.
+  // Frees one thing that is not used or can be made again; false when there is none. Called by
+  // `reserve`, on its thread.
   void set_evictor(std::function<bool()> evict_one) { evict_one_ = std::move(evict_one); }
   // A Problem 503 when `bytes` do not fit even after eviction; `what` names their use in it.
   Result<Share> reserve(std::uint64_t bytes, std::string_view what);

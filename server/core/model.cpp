@@ -43,8 +43,8 @@ std::string_view name(ScaleReason reason) {
 }
 
 std::optional<ScaleReason> parse_scale_reason(std::string_view text) {
-  for (ScaleReason reason : {ScaleReason::given, ScaleReason::format, ScaleReason::comment, ScaleReason::coordinates,
-                             ScaleReason::size, ScaleReason::shape})
+  for (ScaleReason reason : {ScaleReason::given, ScaleReason::format, ScaleReason::comment,
+                             ScaleReason::coordinates, ScaleReason::size, ScaleReason::shape})
     if (name(reason) == text) return reason;
   return std::nullopt;
 }
@@ -65,10 +65,12 @@ std::optional<ScaleProposal> scale_proposal_from_json(const nlohmann::json& json
   if (!json.is_object()) return std::nullopt;
   const auto text = [&](const char* member) { return json.value(member, std::string()); };
   const auto unit = parse_unit(text("unit"));
-  const auto unit_reason = parse_scale_reason(text("unit_reason")), up_reason = parse_scale_reason(text("up_reason"));
+  const auto unit_reason = parse_scale_reason(text("unit_reason")),
+             up_reason = parse_scale_reason(text("up_reason"));
   if (!unit || !unit_reason || !up_reason || !is_up(text("up"))) return std::nullopt;
-  return ScaleProposal{*unit,      *unit_reason, json.value("unit_confidence", 1.0), text("unit_comment"),
-                       text("up"), *up_reason,   json.value("up_confidence", 1.0),   text("up_comment")};
+  return ScaleProposal{
+      *unit,      *unit_reason, json.value("unit_confidence", 1.0), text("unit_comment"),
+      text("up"), *up_reason,   json.value("up_confidence", 1.0),   text("up_comment")};
 }
 
 nlohmann::json to_json(const Project& project) {
@@ -87,7 +89,8 @@ nlohmann::json to_json(const AtlasReport& atlas, double metres_per_unit) {
                      {"area_mean_m2", size.area_mean * square_metres},
                      {"area_max_m2", size.area_max * square_metres}});
   nlohmann::json limits = nlohmann::json::array();
-  for (const auto& limit : atlas.limits) limits.push_back({{"code", limit.code}, {"text", limit.text}});
+  for (const auto& limit : atlas.limits)
+    limits.push_back({{"code", limit.code}, {"text", limit.text}});
   return {{"source", atlas.source},
           {"lowest_resolution", atlas.lowest_resolution},
           {"charts", atlas.charts},
@@ -111,49 +114,52 @@ AtlasReport atlas_from_json(const nlohmann::json& json) {
   atlas.stretch_p99 = json.value("stretch_p99", 0.0);
   atlas.texel_area_max = json.value("texel_area_max_m2", 0.0);  // stored with metres_per_unit = 1
   for (const auto& size : json.value("texel_sizes", nlohmann::json::array()))
-    atlas.texel_sizes.push_back(
-        {size.value("resolution", 0), size.value("area_mean_m2", 0.0), size.value("area_max_m2", 0.0)});
+    atlas.texel_sizes.push_back({size.value("resolution", 0), size.value("area_mean_m2", 0.0),
+                                 size.value("area_max_m2", 0.0)});
   for (const auto& limit : json.value("limits", nlohmann::json::array()))
-    atlas.limits.push_back({limit.value("code", std::string()), limit.value("text", std::string())});
+    atlas.limits.push_back(
+        {limit.value("code", std::string()), limit.value("text", std::string())});
   return atlas;
 }
 
 nlohmann::json to_json(const Model& model, const std::string& project_slug) {
   nlohmann::json repairs = nlohmann::json::array();
-  for (const auto& repair : model.repairs) repairs.push_back({{"what", repair.what}, {"count", repair.count}});
+  for (const auto& repair : model.repairs)
+    repairs.push_back({{"what", repair.what}, {"count", repair.count}});
   nlohmann::json files = nlohmann::json::array();
   for (const auto& file : model.source_files)
     files.push_back({{"name", file.name}, {"sha256", file.sha256}, {"bytes", file.bytes}});
-  nlohmann::json json = {{"id", model.id},
-                         {"name", model.name},
-                         {"slug", model.slug},
-                         {"project", project_slug},
-                         {"unit", name(model.unit)},
-                         {"unit_assumed", model.unit_assumed},
-                         {"scale_verified", model.scale_verified},
-                         {"up", model.up},
-                         {"north", model.north},
-                         {"crs", model.crs},
-                         {"origin", vec3(model.origin)},
-                         {"triangles", model.triangles},
-                         {"vertices", model.vertices},
-                         {"bounds", {{"min", vec3(model.bounds_min)}, {"max", vec3(model.bounds_max)}}},
-                         {"area_m2", model.area_m2()},
-                         {"atlas", to_json(model.atlas, model.metres())},
-                         {"repairs", repairs},
-                         {"source_files", files},
-                         {"default_resolution", model.default_resolution},
-                         {"inventory_number", model.inventory_number},
-                         {"owner", model.owner},
-                         {"creator", model.creator},
-                         {"captured", model.captured},
-                         {"method", model.method},
-                         {"accuracy", model.accuracy},
-                         {"processing", model.processing},
-                         {"rights_uri", model.rights_uri},
-                         {"credit", model.credit},
-                         {"source_download", name(model.source_download)},
-                         {"sequence", model.sequence}};
+  nlohmann::json json = {
+      {"id", model.id},
+      {"name", model.name},
+      {"slug", model.slug},
+      {"project", project_slug},
+      {"unit", name(model.unit)},
+      {"unit_assumed", model.unit_assumed},
+      {"scale_verified", model.scale_verified},
+      {"up", model.up},
+      {"north", model.north},
+      {"crs", model.crs},
+      {"origin", vec3(model.origin)},
+      {"triangles", model.triangles},
+      {"vertices", model.vertices},
+      {"bounds", {{"min", vec3(model.bounds_min)}, {"max", vec3(model.bounds_max)}}},
+      {"area_m2", model.area_m2()},
+      {"atlas", to_json(model.atlas, model.metres())},
+      {"repairs", repairs},
+      {"source_files", files},
+      {"default_resolution", model.default_resolution},
+      {"inventory_number", model.inventory_number},
+      {"owner", model.owner},
+      {"creator", model.creator},
+      {"captured", model.captured},
+      {"method", model.method},
+      {"accuracy", model.accuracy},
+      {"processing", model.processing},
+      {"rights_uri", model.rights_uri},
+      {"credit", model.credit},
+      {"source_download", name(model.source_download)},
+      {"sequence", model.sequence}};
   if (model.proposal) json["proposal"] = to_json(*model.proposal);
   return json;
 }

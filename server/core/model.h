@@ -18,7 +18,8 @@ struct Project {
   std::string slug;
   std::string description;
   std::int64_t version = 1;
-  bool require_if_match = false;  // what has a version is changed only by who names the one that they read
+  // what has a version is changed only by who names the one that they read
+  bool require_if_match = false;
 };
 
 enum class Unit { mm, cm, m };
@@ -41,13 +42,17 @@ struct AtlasReport {
   std::string source;  // "file": UVs of the scan were kept; "made": unwrapped here
   int lowest_resolution = 2048;
   int charts = 0;
-  double coverage = 0;      // share of texels that lie on the surface, at lowest_resolution
-  double overlap = 0;       // share of covered texels with more than one owner, at lowest_resolution
+  double coverage = 0;  // share of texels that lie on the surface, at lowest_resolution
+  // share of covered texels with more than one owner, at lowest_resolution
+  double overlap = 0;
   double stretch_mean = 0;  // area-weighted surface area per uv area, relative to the mean
   double stretch_p99 = 0;
-  double texel_area_max = 0;           // unit², largest surface area of one texel at lowest_resolution
-  std::vector<TexelSize> texel_sizes;  // from lowest_resolution up; empty in models of before it was measured
-  std::vector<Limit> limits;           // empty where 60 % and more are used, and in models of before it was said
+  // unit², largest surface area of one texel at lowest_resolution
+  double texel_area_max = 0;
+  // from lowest_resolution up; empty in models of before it was measured
+  std::vector<TexelSize> texel_sizes;
+  // empty where 60 % and more are used, and in models of before it was said
+  std::vector<Limit> limits;
 };
 
 // Why a unit or an up direction is proposed.
@@ -67,7 +72,8 @@ struct ScaleProposal {
   std::string up_comment;
 };
 nlohmann::json to_json(const ScaleProposal& proposal);
-std::optional<ScaleProposal> scale_proposal_from_json(const nlohmann::json& json);  // of our own stored form
+// of our own stored form
+std::optional<ScaleProposal> scale_proposal_from_json(const nlohmann::json& json);
 
 struct Repair {
   std::string what;  // "dropped degenerate faces"
@@ -88,11 +94,12 @@ struct Model {
   Unit unit = Unit::m;
   bool unit_assumed = true;
   bool scale_verified = false;
-  std::string up = "z";                   // of kUpDirections (core/up.h)
-  std::optional<ScaleProposal> proposal;  // none for models that were imported before there were any
-  std::string north;                      // free: degrees from +y, or empty
-  std::string crs;                        // "EPSG:n" or empty
-  glm::dvec3 origin{0};                   // model space is world minus origin
+  std::string up = "z";  // of kUpDirections (core/up.h)
+  // none for models that were imported before there were any
+  std::optional<ScaleProposal> proposal;
+  std::string north;     // free: degrees from +y, or empty
+  std::string crs;       // "EPSG:n" or empty
+  glm::dvec3 origin{0};  // model space is world minus origin
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;
   glm::dvec3 bounds_min{0};  // world
@@ -101,9 +108,11 @@ struct Model {
   AtlasReport atlas;
   std::vector<Repair> repairs;
   std::vector<SourceFile> source_files;
-  Role source_download = Role::annotator;  // the least that gets them, and what is as good as they are
-  int default_resolution = 2048;           // of new layers
-  std::string inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri, credit;
+  // the least that gets them, and what is as good as they are
+  Role source_download = Role::annotator;
+  int default_resolution = 2048;  // of new layers
+  std::string inventory_number, owner, creator, captured, method, accuracy, processing, rights_uri,
+      credit;
   std::int64_t sequence = 0;  // of the last journal entry
   std::int64_t version = 1;
 

@@ -23,36 +23,44 @@ Result<NamePattern> NamePattern::parse(std::string_view text, const std::string&
   std::size_t words = 0;
   while (!text.empty()) {
     const bool is_word = text.front() == '{';
-    const std::size_t end = is_word ? text.find('}') : std::min(text.find_first_of("{}"), text.size());
-    if (end == std::string_view::npos || (!is_word && end == 0)) return wrong("The braces do not fit.");
+    const std::size_t end =
+        is_word ? text.find('}') : std::min(text.find_first_of("{}"), text.size());
+    if (end == std::string_view::npos || (!is_word && end == 0))
+      return wrong("The braces do not fit.");
     const std::string part(text.substr(is_word ? 1 : 0, is_word ? end - 1 : end));
     text.remove_prefix(end + (is_word ? 1 : 0));
     if (is_word) {
-      if (part.empty() || part.find('{') != std::string::npos) return wrong("Between braces stands a word.");
+      if (part.empty() || part.find('{') != std::string::npos)
+        return wrong("Between braces stands a word.");
       if (pattern.has(part)) return wrong("`{" + part + "}` stands in it twice.");
       if (!pattern.parts_.empty() && pattern.parts_.back().is_word)
-        return wrong("Something must stand between `{" + pattern.parts_.back().text + "}` and `{" + part + "}`.");
+        return wrong("Something must stand between `{" + pattern.parts_.back().text + "}` and `{" +
+                     part + "}`.");
       ++words;
     }
     pattern.parts_.push_back({is_word, part});
   }
   if (words == 0) return wrong("It has no word.");
-  if (words > kMostWords) return wrong("It has more than " + std::to_string(kMostWords) + " words.");
+  if (words > kMostWords)
+    return wrong("It has more than " + std::to_string(kMostWords) + " words.");
   return pattern;
 }
 
 bool NamePattern::has(std::string_view word) const {
-  return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) { return part.is_word && part.text == word; });
+  return std::any_of(parts_.begin(), parts_.end(),
+                     [&](const Part& part) { return part.is_word && part.text == word; });
 }
 
-std::vector<std::vector<bool>> NamePattern::fits(std::string_view name, std::size_t first, std::size_t last) const {
+std::vector<std::vector<bool>> NamePattern::fits(std::string_view name, std::size_t first,
+                                                 std::size_t last) const {
   std::vector<std::vector<bool>> can(parts_.size() + 1, std::vector<bool>(name.size() + 1, false));
   can[last][name.size()] = true;
   for (std::size_t p = last; p-- > first;) {
     bool later = false;  // the rest fits behind here
     for (std::size_t at = name.size() + 1; at-- > 0;) {
-      can[p][at] =
-          parts_[p].is_word ? later : stands_at(name, at, parts_[p].text) && can[p + 1][at + parts_[p].text.size()];
+      can[p][at] = parts_[p].is_word ? later
+                                     : stands_at(name, at, parts_[p].text) &&
+                                           can[p + 1][at + parts_[p].text.size()];
       later = later || can[p + 1][at];
     }
   }
@@ -77,7 +85,8 @@ std::vector<bool> NamePattern::reached(std::string_view name, std::size_t last) 
   return ends;
 }
 
-std::vector<NamePattern::Span> NamePattern::spans(std::string_view name, std::string_view word) const {
+std::vector<NamePattern::Span> NamePattern::spans(std::string_view name,
+                                                  std::string_view word) const {
   std::size_t at = 0;
   while (!(parts_[at].is_word && parts_[at].text == word)) ++at;
   const auto behind = fits(name, at + 1, parts_.size());
@@ -93,7 +102,8 @@ std::vector<NamePattern::Span> NamePattern::spans(std::string_view name, std::st
   return found;
 }
 
-std::map<std::string, std::string> NamePattern::words_around(std::string_view name, std::string_view word,
+std::map<std::string, std::string> NamePattern::words_around(std::string_view name,
+                                                             std::string_view word,
                                                              Span span) const {
   std::map<std::string, std::string> words;
   std::size_t at = 0;

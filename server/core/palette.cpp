@@ -27,12 +27,15 @@ Result<void> read_pattern(const nlohmann::json& item, PaletteMode mode, const st
     return fail(422, "Palette not usable", std::move(detail), field + "." + member);
   };
   if (const auto asked = item.find("pattern"); asked != item.end()) {
-    const auto known = std::ranges::find_if(kPatterns, [&](const char* name) { return *asked == name; });
-    if (known == std::end(kPatterns)) return wrong("pattern", "A pattern is solid, hatch, dots or outline.");
+    const auto known =
+        std::ranges::find_if(kPatterns, [&](const char* name) { return *asked == name; });
+    if (known == std::end(kPatterns))
+      return wrong("pattern", "A pattern is solid, hatch, dots or outline.");
     point.pattern = static_cast<Pattern>(known - std::begin(kPatterns));
     if (mode == PaletteMode::linear && point.pattern != Pattern::solid)
-      return wrong("pattern",
-                   "Colours that run into each other have no patterns: use a step or a categorical palette.");
+      return wrong(
+          "pattern",
+          "Colours that run into each other have no patterns: use a step or a categorical palette.");
   }
   if (const auto asked = item.find("angle"); asked != item.end()) {
     if (!asked->is_number() || asked->get<double>() < 0 || asked->get<double>() > 180)
@@ -54,20 +57,24 @@ Palette linear_palette(double min, double max) {
                                     {94, 201, 98, 255},  {173, 220, 48, 255}, {253, 231, 37, 255}};
   Palette palette{PaletteMode::linear, min, max, {}, {}};
   const int n = static_cast<int>(std::size(kStops));
-  for (int i = 0; i < n; ++i) palette.points.push_back({min + (max - min) * i / (n - 1), kStops[i]});
+  for (int i = 0; i < n; ++i)
+    palette.points.push_back({min + (max - min) * i / (n - 1), kStops[i]});
   return palette;
 }
 
 Rgba mix(const Rgba& a, const Rgba& b, double t) {
   Rgba out;
-  for (int i = 0; i < 4; ++i) out[i] = static_cast<std::uint8_t>(std::lround(a[i] + (b[i] - a[i]) * t));
+  for (int i = 0; i < 4; ++i)
+    out[i] = static_cast<std::uint8_t>(std::lround(a[i] + (b[i] - a[i]) * t));
   return out;
 }
 
 }  // namespace
 
 Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field) {
-  auto wrong = [&] { return fail(422, "Not a colour", "A colour is \"#rrggbb\" or \"#rrggbbaa\".", field); };
+  auto wrong = [&] {
+    return fail(422, "Not a colour", "A colour is \"#rrggbb\" or \"#rrggbbaa\".", field);
+  };
   if (!json.is_string()) return wrong();
   const auto& text = json.get_ref<const std::string&>();
   if ((text.size() != 7 && text.size() != 9) || text[0] != '#') return wrong();
@@ -106,18 +113,22 @@ Result<Palette> palette_from_json(const nlohmann::json& json, const std::string&
 
   const auto points = json.find("points");
   if (points != json.end()) {
-    if (!points->is_array() || points->size() > kMaxPoints) return wrong("points", "Points are a list of up to 4096.");
+    if (!points->is_array() || points->size() > kMaxPoints)
+      return wrong("points", "Points are a list of up to 4096.");
     for (std::size_t i = 0; i < points->size(); ++i) {
       const auto& item = (*points)[i];
       const std::string at_field = "points[" + std::to_string(i) + "]";
-      if (!item.is_object() || !item.contains("at") || !item["at"].is_number() || !item.contains("color"))
+      if (!item.is_object() || !item.contains("at") || !item["at"].is_number() ||
+          !item.contains("color"))
         return wrong(at_field.c_str(), "A point has a number `at` and a `color`.");
       auto color = parse_color(item["color"], field + "." + at_field + ".color");
       if (!color) return tl::unexpected(color.error());
       const double at = item["at"].get<double>();
       if (!palette.points.empty() && at <= palette.points.back().at)
-        return wrong(at_field.c_str(), "Points go upward: each `at` is larger than the one before.");
-      Palette::Point point{at, *color, item.value("label", std::string()), item.value("value", std::string())};
+        return wrong(at_field.c_str(),
+                     "Points go upward: each `at` is larger than the one before.");
+      Palette::Point point{at, *color, item.value("label", std::string()),
+                           item.value("value", std::string())};
       if (auto read = read_pattern(item, palette.mode, field + "." + at_field, point); !read)
         return tl::unexpected(read.error());
       palette.points.push_back(std::move(point));
@@ -149,12 +160,15 @@ nlohmann::json to_json(const Palette& palette) {
     if (point.pattern != Pattern::solid) {
       item["pattern"] = kPatterns[static_cast<int>(point.pattern)];
       if (point.pattern != Pattern::outline) item["angle"] = point.angle;
-      if (point.pattern != Pattern::outline && point.spacing_mm > 0) item["spacing_mm"] = point.spacing_mm;
+      if (point.pattern != Pattern::outline && point.spacing_mm > 0)
+        item["spacing_mm"] = point.spacing_mm;
     }
     points.push_back(std::move(item));
   }
-  nlohmann::json json{
-      {"mode", kModes[static_cast<int>(palette.mode)]}, {"min", palette.min}, {"max", palette.max}, {"points", points}};
+  nlohmann::json json{{"mode", kModes[static_cast<int>(palette.mode)]},
+                      {"min", palette.min},
+                      {"max", palette.max},
+                      {"points", points}};
   if (!palette.column.empty()) json["column"] = palette.column;
   if (palette.others) json["others"] = format_color(*palette.others);
   return json;
@@ -162,14 +176,15 @@ nlohmann::json to_json(const Palette& palette) {
 
 Palette default_palette(ValueType type, bool categorical) {
   if (categorical) {
-    static constexpr Rgba kOkabeIto[] = {{230, 159, 0, 255},  {86, 180, 233, 255}, {0, 158, 115, 255},
-                                         {240, 228, 66, 255}, {0, 114, 178, 255},  {213, 94, 0, 255},
-                                         {204, 121, 167, 255}};
+    static constexpr Rgba kOkabeIto[] = {
+        {230, 159, 0, 255}, {86, 180, 233, 255}, {0, 158, 115, 255},  {240, 228, 66, 255},
+        {0, 114, 178, 255}, {213, 94, 0, 255},   {204, 121, 167, 255}};
     Palette palette{PaletteMode::categorical, 1, 7, {}, {}};
     for (int i = 0; i < 7; ++i) palette.points.push_back({double(i + 1), kOkabeIto[i]});
     return palette;
   }
-  return is_float(type) ? linear_palette(0, 1) : linear_palette(0, std::min(100.0, highest_value(type)));
+  return is_float(type) ? linear_palette(0, 1)
+                        : linear_palette(0, std::min(100.0, highest_value(type)));
 }
 
 Rgba generated_color(std::uint32_t key) {
@@ -179,7 +194,8 @@ Rgba generated_color(std::uint32_t key) {
   constexpr float kBrightness = 0.85f;
   auto channel = [&](float offset) {
     const float k = std::fmod(offset + hue, 6.0f);
-    const float v = kBrightness - kBrightness * saturation * std::clamp(std::min(k, 4.0f - k), 0.0f, 1.0f);
+    const float v =
+        kBrightness - kBrightness * saturation * std::clamp(std::min(k, 4.0f - k), 0.0f, 1.0f);
     return static_cast<std::uint8_t>(std::lround(v * 255.0f));
   };
   return {channel(5), channel(3), channel(1), 255};
@@ -200,7 +216,8 @@ const Palette::Point* point_of(const Palette& palette, double value) {
 Rgba color_of(const Palette& palette, double value) {
   if (const Palette::Point* point = point_of(palette, value)) return point->color;
   if (palette.mode == PaletteMode::categorical)
-    return palette.others.value_or(generated_color(static_cast<std::uint32_t>(static_cast<std::int64_t>(value))));
+    return palette.others.value_or(
+        generated_color(static_cast<std::uint32_t>(static_cast<std::int64_t>(value))));
   const auto& points = palette.points;
   const double v = std::clamp(value, palette.min, palette.max);
   const auto above = std::ranges::upper_bound(points, v, {}, &Palette::Point::at);

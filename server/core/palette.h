@@ -15,14 +15,15 @@ using Rgba = std::array<std::uint8_t, 4>;
 
 enum class PaletteMode { linear, step, categorical };
 
-// How the colour is laid on, so that what lies below stays legible, also in greyscale. Lines and dots stay where they are on the
-// picture's plane; an outline has nothing inside.
+// How the colour is laid on, so that what lies below stays legible, also in greyscale. Lines and
+// dots stay where they are on the picture's plane; an outline has nothing inside.
 enum class Pattern { solid, hatch, dots, outline };
 
-// Control points that turn values into colours. `linear` interpolates between points, `step` holds the colour of the
-// last point at or below the value, `categorical` gives listed values their colour and others a generated one.
-// Values outside [min,max] take the colour of the nearer end. With a `column`, values are those of the record behind a key:
-// numbers, or texts that points name by `value` (categorical only; `at` then only orders them).
+// Control points that turn values into colours. `linear` interpolates between points, `step` holds
+// the colour of the last point at or below the value, `categorical` gives listed values their
+// colour and others a generated one. Values outside [min,max] take the colour of the nearer end.
+// With a `column`, values are those of the record behind a key: numbers, or texts that points name
+// by `value` (categorical only; `at` then only orders them).
 struct Palette {
   struct Point {
     double at = 0;
@@ -31,16 +32,16 @@ struct Palette {
     std::string value{};
     Pattern pattern = Pattern::solid;  // step and categorical
     double angle = 45;                 // degrees, of lines: 0 runs to the right, 90 up
-    double spacing_mm =
-        0;  // of lines and dots, at the distance of the model's middle; 0: as a legend has them, in pixels
+    // of lines and dots, at the distance of the model's middle; 0: as a legend has them, in pixels
+    double spacing_mm = 0;
   };
   PaletteMode mode = PaletteMode::linear;
   double min = 0;
   double max = 1;
   std::vector<Point> points;  // ascending `at`, 1…4096 of them (categorical: may be none)
   std::string column;         // database layers: column of the table that colours (empty: the key)
-  std::optional<Rgba>
-      others{};  // categorical: of what no point lists. With a column: of records that have no value there, too
+  // categorical: of what no point lists. With a column: of records that have no value there, too
+  std::optional<Rgba> others{};
 };
 
 // Whether its points are a legend of the values themselves, and not of what records hold.
@@ -63,7 +64,8 @@ Palette default_palette(ValueType type, bool categorical);
 // The colour of a value that a categorical palette does not list; the shader computes the same.
 Rgba generated_color(std::uint32_t key);
 Rgba color_of(const Palette& palette, double value);
-// The point whose colour a value has in a step or categorical palette; null: none, and in a linear palette.
+// The point whose colour a value has in a step or categorical palette; null: none, and in a linear
+// palette.
 const Palette::Point* point_of(const Palette& palette, double value);
 
 }  // namespace strata

@@ -27,7 +27,9 @@ struct DestroyTurbo {
 // They keep tables: one a thread.
 tjhandle codec(tjhandle (*make)()) {
   tjhandle handle = make();
-  if (!handle) throw std::runtime_error(std::string("libjpeg-turbo does not start: ") + tjGetErrorStr2(nullptr));
+  if (!handle)
+    throw std::runtime_error(std::string("libjpeg-turbo does not start: ") +
+                             tjGetErrorStr2(nullptr));
   return handle;
 }
 tjhandle compressor() {
@@ -47,7 +49,8 @@ struct PngReader {
   ~PngReader() { png_image_free(&image); }
 };
 
-// From here on what encoding takes is grown: the worst case would be more than the pixels themselves.
+// From here on what encoding takes is grown: the worst case would be more than the pixels
+// themselves.
 constexpr std::size_t kLargePicture_bytes = std::size_t{64} << 20;
 
 // For the C library: a stream's bytes at the end of a vector.
@@ -66,16 +69,19 @@ void check_size(std::span<const std::uint8_t> rgba, int width, int height) {
     throw std::invalid_argument("A picture's pixels do not have its size.");
 }
 
-Result<PictureInfo> inspect_jpeg(std::span<const std::uint8_t> bytes, int largest_side, int* color_space = nullptr) {
+Result<PictureInfo> inspect_jpeg(std::span<const std::uint8_t> bytes, int largest_side,
+                                 int* color_space = nullptr) {
   int width = 0, height = 0, sampling = 0, space = 0;
   const tjhandle handle = decompressor();
-  if (tjDecompressHeader3(handle, bytes.data(), bytes.size(), &width, &height, &sampling, &space) != 0)
+  if (tjDecompressHeader3(handle, bytes.data(), bytes.size(), &width, &height, &sampling, &space) !=
+      0)
     return damaged_picture(PictureFormat::jpeg, tjGetErrorStr2(handle));
   if (color_space) *color_space = space;
   return sized_picture(PictureFormat::jpeg, std::max(width, 0), std::max(height, 0), largest_side);
 }
 
-Result<PictureInfo> begin_png(PngReader& reader, std::span<const std::uint8_t> bytes, int largest_side) {
+Result<PictureInfo> begin_png(PngReader& reader, std::span<const std::uint8_t> bytes,
+                              int largest_side) {
   if (!png_image_begin_read_from_memory(&reader.image, bytes.data(), bytes.size()))
     return damaged_picture(PictureFormat::png, reader.image.message);
   return sized_picture(PictureFormat::png, reader.image.width, reader.image.height, largest_side);
@@ -94,12 +100,14 @@ void show_inks(std::vector<std::uint8_t>& pixels, bool inverted) {
 }
 
 bool says_premature_end(std::string why) {
-  std::transform(why.begin(), why.end(), why.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(why.begin(), why.end(), why.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return why.find("premature end") != std::string::npos;
 }
 
 // `divisor` of the sides: 1, 2, 4 or 8.
-Result<Picture> decode_jpeg(std::span<const std::uint8_t> bytes, int largest_side, int divisor = 1) {
+Result<Picture> decode_jpeg(std::span<const std::uint8_t> bytes, int largest_side,
+                            int divisor = 1) {
   int space = 0;
   const auto info = inspect_jpeg(bytes, largest_side, &space);
   if (!info) return tl::unexpected(info.error());
@@ -109,9 +117,11 @@ Result<Picture> decode_jpeg(std::span<const std::uint8_t> bytes, int largest_sid
   const tjhandle handle = decompressor();
   const bool is_cmyk = space == TJCS_CMYK || space == TJCS_YCCK;
   // LIMITSCANS: a small file of many scans would take minutes.
-  if (tjDecompress2(handle, bytes.data(), bytes.size(), picture.rgba.data(), picture.width, 0, picture.height,
-                    is_cmyk ? TJPF_CMYK : TJPF_RGBA, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0) {
-    // Strange but harmless bytes are only warnings; a picture that ends too early is one, too, and is refused.
+  if (tjDecompress2(handle, bytes.data(), bytes.size(), picture.rgba.data(), picture.width, 0,
+                    picture.height, is_cmyk ? TJPF_CMYK : TJPF_RGBA,
+                    TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0) {
+    // Strange but harmless bytes are only warnings; a picture that ends too early is one, too, and
+    // is refused.
     const std::string why = tjGetErrorStr2(handle);
     if (tjGetErrorCode(handle) == TJERR_FATAL || says_premature_end(why))
       return damaged_picture(PictureFormat::jpeg, why);
@@ -163,9 +173,10 @@ constexpr std::array kOtherFormats{
 tl::unexpected<Problem> no_format(std::span<const std::uint8_t> bytes) {
   for (const OtherFormat& other : kOtherFormats)
     if (starts_with(bytes, other.magic, other.at))
-      return fail(415, "Picture format not taken",
-                  "The picture is " + std::string(other.name) +
-                      ", which is not read; save it as JPEG or PNG, and a model with such textures, too.");
+      return fail(
+          415, "Picture format not taken",
+          "The picture is " + std::string(other.name) +
+              ", which is not read; save it as JPEG or PNG, and a model with such textures, too.");
   return fail(415, "Picture format not taken",
               "The picture is none of JPEG, PNG, TIFF, WebP, BMP and TGA; save it as one of them.");
 }
@@ -187,14 +198,16 @@ std::string_view media_type(PictureFormat format) {
 tl::unexpected<Problem> damaged_picture(PictureFormat format, const std::string& why) {
   constexpr std::array kNames{"JPEG", "PNG", "TIFF", "WebP", "BMP", "TGA"};
   return fail(422, "Picture not readable",
-              std::string("The ") + kNames.at(static_cast<std::size_t>(format)) + " cannot be read: " + why + ".");
+              std::string("The ") + kNames.at(static_cast<std::size_t>(format)) +
+                  " cannot be read: " + why + ".");
 }
 
-Result<PictureInfo> sized_picture(PictureFormat format, std::uint64_t width, std::uint64_t height, int largest_side) {
+Result<PictureInfo> sized_picture(PictureFormat format, std::uint64_t width, std::uint64_t height,
+                                  int largest_side) {
   if (width < 1 || height < 1 || std::max(width, height) > static_cast<std::uint64_t>(largest_side))
     return fail(422, "Picture size not usable",
-                "The picture has " + std::to_string(width) + " × " + std::to_string(height) + " pixels; 1 to " +
-                    std::to_string(largest_side) + " a side are taken.");
+                "The picture has " + std::to_string(width) + " × " + std::to_string(height) +
+                    " pixels; 1 to " + std::to_string(largest_side) + " a side are taken.");
   return PictureInfo{format, static_cast<int>(width), static_cast<int>(height)};
 }
 
@@ -257,8 +270,8 @@ std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int wi
   // The fast transform's errors show only where little else is lost.
   const int transform = settings.quality < 85 ? TJFLAG_FASTDCT : TJFLAG_ACCURATEDCT;
   const auto compress = [&](unsigned char** out, unsigned long* size, int flags) {
-    if (tjCompress2(handle, rgba.data(), width, 0, height, TJPF_RGBX, out, size, sampling, settings.quality,
-                    flags | transform) != 0)
+    if (tjCompress2(handle, rgba.data(), width, 0, height, TJPF_RGBX, out, size, sampling,
+                    settings.quality, flags | transform) != 0)
       throw std::runtime_error(std::string("A picture was not encoded: ") + tjGetErrorStr2(handle));
   };
   unsigned long size = 0;
@@ -289,7 +302,8 @@ std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> rgba, int wid
   const std::unique_ptr<FILE, decltype(&fclose)> file(
       fopencookie(&png, "wb", {nullptr, append_bytes, nullptr, nullptr}), fclose);
   if (!file) throw std::runtime_error("A picture was not encoded: no memory for a stream.");
-  if (!png_image_write_to_stdio(&image, file.get(), 0, rgba.data(), 0, nullptr) || fflush(file.get()) != 0)
+  if (!png_image_write_to_stdio(&image, file.get(), 0, rgba.data(), 0, nullptr) ||
+      fflush(file.get()) != 0)
     throw std::runtime_error(std::string("A picture was not encoded: ") + image.message);
   return png;
 }

@@ -12,9 +12,10 @@ namespace strata {
 
 // Pictures as files, told apart by their bytes, never by a name. Thread-safe.
 //
-// JPEG: also grey and CMYK (whose inks become colours without their profile). PNG: all. TIFF: the first page; grey, colour tables,
-// RGB, CMYK and YCbCr of up to 16 bits, in strips or tiles, losslessly packed, as JPEG or as fax. WebP: still pictures. BMP:
-// without run lengths. TGA: all. Of 16 bits the upper 8 are kept.
+// JPEG: also grey and CMYK (whose inks become colours without their profile). PNG: all. TIFF: the
+// first page; grey, colour tables, RGB, CMYK and YCbCr of up to 16 bits, in strips or tiles,
+// losslessly packed, as JPEG or as fax. WebP: still pictures. BMP: without run lengths. TGA: all.
+// Of 16 bits the upper 8 are kept.
 
 // RGBA8, row 0 at the top, sRGB; alpha is not multiplied in.
 struct Picture {
@@ -25,7 +26,8 @@ struct Picture {
 enum class PictureFormat { jpeg, png, tiff, webp, bmp, tga };
 std::string_view media_type(PictureFormat format);  // "image/jpeg", "image/png", …
 
-// What the first bytes say; nothing: none of them. A TGA has no mark: bytes are one where all fields of its header make sense.
+// What the first bytes say; nothing: none of them. A TGA has no mark: bytes are one where all
+// fields of its header make sense.
 std::optional<PictureFormat> picture_format(std::span<const std::uint8_t> bytes);
 
 // Looks are JPEG or PNG, which every browser shows. Others are stored as the PNG of their pixels.
@@ -40,15 +42,19 @@ struct PictureInfo {
 
 constexpr int kLargestPictureSide = 16384;
 
-// The size, from the header alone. 415: none of the formats, by its name where it is a known one; 422: damaged, or a side of more
-// than `largest_side`.
-Result<PictureInfo> inspect_picture(std::span<const std::uint8_t> bytes, int largest_side = kLargestPictureSide);
+// The size, from the header alone. 415: none of the formats, by its name where it is a known one;
+// 422: damaged, or a side of more than `largest_side`.
+Result<PictureInfo> inspect_picture(std::span<const std::uint8_t> bytes,
+                                    int largest_side = kLargestPictureSide);
 
-// Whole, as RGBA8. Refused as above, where the data ends before the picture does, and where it is of a kind that is not read
-// (422, which names it). Sizes are checked before anything is allocated; takes at most twice the pixels' memory.
-Result<Picture> decode_picture(std::span<const std::uint8_t> bytes, int largest_side = kLargestPictureSide);
+// Whole, as RGBA8. Refused as above, where the data ends before the picture does, and where it is
+// of a kind that is not read (422, which names it). Sizes are checked before anything is allocated;
+// takes at most twice the pixels' memory.
+Result<Picture> decode_picture(std::span<const std::uint8_t> bytes,
+                               int largest_side = kLargestPictureSide);
 
-// The same, but a JPEG may come smaller, by halves, as long as its longer side keeps `side` pixels: it then takes little memory.
+// The same, but a JPEG may come smaller, by halves, as long as its longer side keeps `side` pixels:
+// it then takes little memory.
 Result<Picture> decode_coarse(std::span<const std::uint8_t> bytes, int side);
 
 struct JpegSettings {
@@ -57,8 +63,10 @@ struct JpegSettings {
   bool operator==(const JpegSettings&) const = default;
 };
 
-// RGBA8 rows, top first → JPEG, which leaves alpha out. Throws where `rgba` is not width × height × 4 bytes.
-std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int width, int height, JpegSettings settings);
+// RGBA8 rows, top first → JPEG, which leaves alpha out. Throws where `rgba` is not width × height ×
+// 4 bytes.
+std::vector<std::uint8_t> encode_jpeg(std::span<const std::uint8_t> rgba, int width, int height,
+                                      JpegSettings settings);
 std::vector<std::uint8_t> encode_png(std::span<const std::uint8_t> rgba, int width, int height);
 
 }  // namespace strata

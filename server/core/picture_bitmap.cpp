@@ -6,7 +6,8 @@
 
 #include "core/picture_formats.h"
 
-// stb_image, for BMP and TGA alone: no file, no other format, and nothing larger than a picture may be.
+// stb_image, for BMP and TGA alone: no file, no other format, and nothing larger than a picture may
+// be.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_BMP
@@ -60,14 +61,18 @@ BmpHeader bmp_header(std::span<const std::uint8_t> bytes) {
 
 constexpr std::size_t kTgaHeader = 18;
 struct TgaHeader {
-  std::uint32_t id = 0, has_map = 0, kind = 0, map_length = 0, map_bits = 0, width = 0, height = 0, bits = 0, flags = 0;
+  std::uint32_t id = 0, has_map = 0, kind = 0, map_length = 0, map_bits = 0, width = 0, height = 0,
+                bits = 0, flags = 0;
   bool is_packed() const { return kind >= 8; }
-  std::uint64_t pixels_at() const { return kTgaHeader + id + std::uint64_t{map_length} * ((map_bits + 7) / 8); }
+  std::uint64_t pixels_at() const {
+    return kTgaHeader + id + std::uint64_t{map_length} * ((map_bits + 7) / 8);
+  }
 };
 
 TgaHeader tga_header(std::span<const std::uint8_t> bytes) {
-  return {number(bytes, 0, 1),  number(bytes, 1, 1),  number(bytes, 2, 1),  number(bytes, 5, 2), number(bytes, 7, 1),
-          number(bytes, 12, 2), number(bytes, 14, 2), number(bytes, 16, 1), number(bytes, 17, 1)};
+  return {number(bytes, 0, 1),  number(bytes, 1, 1),  number(bytes, 2, 1),
+          number(bytes, 5, 2),  number(bytes, 7, 1),  number(bytes, 12, 2),
+          number(bytes, 14, 2), number(bytes, 16, 1), number(bytes, 17, 1)};
 }
 
 bool is_one_of(std::uint32_t value, std::initializer_list<std::uint32_t> known) {
@@ -77,7 +82,8 @@ bool is_one_of(std::uint32_t value, std::initializer_list<std::uint32_t> known) 
 // stb_image reads zeros where a file ends too early.
 bool is_whole_bmp(std::span<const std::uint8_t> bytes) {
   const BmpHeader header = bmp_header(bytes);
-  const std::uint64_t row = (header.width * header.bits + 31) / 32 * 4, last = (header.width * header.bits + 7) / 8;
+  const std::uint64_t row = (header.width * header.bits + 31) / 32 * 4,
+                      last = (header.width * header.bits + 7) / 8;
   return header.pixels_at + (header.height - 1) * row + last <= bytes.size();
 }
 
@@ -105,8 +111,10 @@ bool is_bmp(std::span<const std::uint8_t> bytes) {
 bool is_tga(std::span<const std::uint8_t> bytes) {
   if (bytes.size() <= kTgaHeader) return false;
   const TgaHeader header = tga_header(bytes);
-  if (header.width == 0 || header.height == 0 || header.flags >> 6 != 0 || (header.flags & 15u) > 8) return false;
-  const bool has_map = header.has_map == 1 && header.map_length > 0 && is_one_of(header.map_bits, {15, 16, 24, 32});
+  if (header.width == 0 || header.height == 0 || header.flags >> 6 != 0 || (header.flags & 15u) > 8)
+    return false;
+  const bool has_map =
+      header.has_map == 1 && header.map_length > 0 && is_one_of(header.map_bits, {15, 16, 24, 32});
   const bool has_no_map = header.has_map == 0 && number(bytes, 3, 4) == 0 && header.map_bits == 0;
   switch (header.kind & ~8u) {
     case 1: return has_map && is_one_of(header.bits, {8, 16});
@@ -116,7 +124,8 @@ bool is_tga(std::span<const std::uint8_t> bytes) {
   }
 }
 
-Result<PictureInfo> inspect_bitmap(PictureFormat format, std::span<const std::uint8_t> bytes, int largest_side) {
+Result<PictureInfo> inspect_bitmap(PictureFormat format, std::span<const std::uint8_t> bytes,
+                                   int largest_side) {
   if (format == PictureFormat::tga) {
     const TgaHeader header = tga_header(bytes);
     return sized_picture(format, header.width, header.height, largest_side);
@@ -125,14 +134,17 @@ Result<PictureInfo> inspect_bitmap(PictureFormat format, std::span<const std::ui
   auto info = sized_picture(format, header.width, header.height, largest_side);
   if (!info) return info;
   if (header.compression == 1 || header.compression == 2)
-    return damaged_picture(format, "its pixels are packed as run lengths; save it without compression");
+    return damaged_picture(format,
+                           "its pixels are packed as run lengths; save it without compression");
   if (header.compression > 3 || !is_one_of(header.bits, {1, 4, 8, 16, 24, 32}))
-    return damaged_picture(format, "it has " + std::to_string(header.bits) + " bits a pixel and compression " +
-                                       std::to_string(header.compression) + "; save it with 24 bits, uncompressed");
+    return damaged_picture(
+        format, "it has " + std::to_string(header.bits) + " bits a pixel and compression " +
+                    std::to_string(header.compression) + "; save it with 24 bits, uncompressed");
   return info;
 }
 
-Result<Picture> decode_bitmap(PictureFormat format, std::span<const std::uint8_t> bytes, int largest_side) {
+Result<Picture> decode_bitmap(PictureFormat format, std::span<const std::uint8_t> bytes,
+                              int largest_side) {
   const auto info = inspect_bitmap(format, bytes, largest_side);
   if (!info) return tl::unexpected(info.error());
   if (!(format == PictureFormat::bmp ? is_whole_bmp(bytes) : is_whole_tga(bytes)))
@@ -140,9 +152,12 @@ Result<Picture> decode_bitmap(PictureFormat format, std::span<const std::uint8_t
   if (bytes.size() > INT_MAX) return damaged_picture(format, "it has more than 2 GB");
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, decltype(&std::free)> pixels(
-      stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &channels, 4), std::free);
+      stbi_load_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height,
+                            &channels, 4),
+      std::free);
   if (!pixels) return damaged_picture(format, stbi_failure_reason());
-  if (width != info->width || height != info->height) return damaged_picture(format, "its header contradicts itself");
+  if (width != info->width || height != info->height)
+    return damaged_picture(format, "its header contradicts itself");
   const std::size_t size = std::size_t(width) * std::size_t(height) * 4;
   return Picture{width, height, {pixels.get(), pixels.get() + size}};
 }

@@ -10,7 +10,8 @@ namespace strata {
 
 tl::unexpected<Problem> damaged_picture(PictureFormat format, const std::string& why);  // 422
 // 422 where a side is none, or more than `largest_side`.
-Result<PictureInfo> sized_picture(PictureFormat format, std::uint64_t width, std::uint64_t height, int largest_side);
+Result<PictureInfo> sized_picture(PictureFormat format, std::uint64_t width, std::uint64_t height,
+                                  int largest_side);
 
 Result<PictureInfo> inspect_tiff_picture(std::span<const std::uint8_t> bytes, int largest_side);
 Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, int largest_side);
@@ -21,7 +22,9 @@ Result<Picture> decode_webp(std::span<const std::uint8_t> bytes, int largest_sid
 // BMP and TGA.
 bool is_bmp(std::span<const std::uint8_t> bytes);
 bool is_tga(std::span<const std::uint8_t> bytes);
-Result<PictureInfo> inspect_bitmap(PictureFormat format, std::span<const std::uint8_t> bytes, int largest_side);
-Result<Picture> decode_bitmap(PictureFormat format, std::span<const std::uint8_t> bytes, int largest_side);
+Result<PictureInfo> inspect_bitmap(PictureFormat format, std::span<const std::uint8_t> bytes,
+                                   int largest_side);
+Result<Picture> decode_bitmap(PictureFormat format, std::span<const std::uint8_t> bytes,
+                              int largest_side);
 
 }  // namespace strata

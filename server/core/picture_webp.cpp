@@ -20,10 +20,12 @@ const char* meaning(VP8StatusCode status) {
 
 Result<PictureInfo> inspect_webp(std::span<const std::uint8_t> bytes, int largest_side) {
   WebPBitstreamFeatures features;
-  if (const auto status = WebPGetFeatures(bytes.data(), bytes.size(), &features); status != VP8_STATUS_OK)
+  if (const auto status = WebPGetFeatures(bytes.data(), bytes.size(), &features);
+      status != VP8_STATUS_OK)
     return damaged_picture(PictureFormat::webp, meaning(status));
   if (features.has_animation)
-    return damaged_picture(PictureFormat::webp, "it is animated; save one of its pictures as a still one");
+    return damaged_picture(PictureFormat::webp,
+                           "it is animated; save one of its pictures as a still one");
   return sized_picture(PictureFormat::webp, static_cast<std::uint64_t>(std::max(features.width, 0)),
                        static_cast<std::uint64_t>(std::max(features.height, 0)), largest_side);
 }
@@ -32,7 +34,8 @@ Result<Picture> decode_webp(std::span<const std::uint8_t> bytes, int largest_sid
   const auto info = inspect_webp(bytes, largest_side);
   if (!info) return tl::unexpected(info.error());
   WebPDecoderConfig config;
-  if (!WebPInitDecoderConfig(&config)) return damaged_picture(PictureFormat::webp, "libwebp is of another version");
+  if (!WebPInitDecoderConfig(&config))
+    return damaged_picture(PictureFormat::webp, "libwebp is of another version");
   Picture picture{info->width, info->height, {}};
   picture.rgba.resize(std::size_t(info->width) * std::size_t(info->height) * 4);
   config.output.colorspace = MODE_RGBA;

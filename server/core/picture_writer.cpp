@@ -29,7 +29,8 @@ class PictureWriter::File {
   virtual std::vector<std::uint8_t> finish() = 0;
 };
 
-// libjpeg reports errors by a function that must not return: as with libpng, what runs below its setjmp holds nothing with a destructor.
+// libjpeg reports errors by a function that must not return: as with libpng, what runs below its
+// setjmp holds nothing with a destructor.
 class PictureWriter::Jpeg : public PictureWriter::File {
  public:
   Jpeg(int width, int height, JpegSettings settings) {
@@ -40,7 +41,9 @@ class PictureWriter::Jpeg : public PictureWriter::File {
       longjmp(errors->back, 1);
     };
     errors_.base.output_message = [](j_common_ptr) {};
-    target_.base.init_destination = [](j_compress_ptr encoder) { begin_piece(*target_of(encoder)); };
+    target_.base.init_destination = [](j_compress_ptr encoder) {
+      begin_piece(*target_of(encoder));
+    };
     target_.base.empty_output_buffer = [](j_compress_ptr encoder) -> boolean {
       Target& target = *target_of(encoder);
       target.used = target.bytes.size();
@@ -91,7 +94,9 @@ class PictureWriter::Jpeg : public PictureWriter::File {
     std::vector<std::uint8_t> bytes;
     std::size_t used = 0;
   };
-  static Target* target_of(j_compress_ptr encoder) { return reinterpret_cast<Target*>(encoder->dest); }
+  static Target* target_of(j_compress_ptr encoder) {
+    return reinterpret_cast<Target*>(encoder->dest);
+  }
   static void begin_piece(Target& target) {
     target.bytes.resize(target.used + kPieceBytes);
     target.base.next_output_byte = target.bytes.data() + target.used;
@@ -120,8 +125,9 @@ class PictureWriter::Png : public PictureWriter::File {
         },
         nullptr);
     guard([&] {
-      png_set_IHDR(writer_.png, writer_.info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
-                   PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+      png_set_IHDR(writer_.png, writer_.info, static_cast<png_uint_32>(width),
+                   static_cast<png_uint_32>(height), 8, PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
+                   PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
       png_set_sRGB(writer_.png, writer_.info, PNG_sRGB_INTENT_PERCEPTUAL);
       // Half the time for a tenth more bytes, as encode_png.
       png_set_filter(writer_.png, PNG_FILTER_TYPE_BASE, PNG_NO_FILTERS);
@@ -159,7 +165,8 @@ PictureWriter::~PictureWriter() = default;
 PictureWriter::PictureWriter(PictureWriter&&) noexcept = default;
 
 void PictureWriter::put(std::span<const std::uint8_t> rgba) {
-  if (rgba.size() % row_bytes_ != 0) throw std::invalid_argument("A picture is written in whole rows.");
+  if (rgba.size() % row_bytes_ != 0)
+    throw std::invalid_argument("A picture is written in whole rows.");
   for (std::size_t at = 0; at < rgba.size(); at += row_bytes_) file_->put(rgba.data() + at);
 }
 

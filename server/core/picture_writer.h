@@ -9,8 +9,9 @@
 
 namespace strata {
 
-// Writes a picture as a file of JPEG or PNG while its rows come, top first, so that it is nowhere as a whole. The bytes mean the
-// same as those of encode_jpeg and encode_png. Belongs to one thread. Throws std::runtime_error where the library fails.
+// Writes a picture as a file of JPEG or PNG while its rows come, top first, so that it is nowhere
+// as a whole. The bytes mean the same as those of encode_jpeg and encode_png. Belongs to one
+// thread. Throws std::runtime_error where the library fails.
 class PictureWriter {
  public:
   // `jpeg` counts for JPEGs alone.

@@ -12,7 +12,8 @@ constexpr std::size_t kMostRows = 4096;
 }  // namespace
 
 PolygonArea::PolygonArea(const std::vector<std::vector<glm::dvec2>>& rings)
-    : low_(std::numeric_limits<double>::infinity()), high_(-std::numeric_limits<double>::infinity()) {
+    : low_(std::numeric_limits<double>::infinity()),
+      high_(-std::numeric_limits<double>::infinity()) {
   std::vector<Edge> edges;
   for (const auto& ring : rings)
     for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -23,7 +24,8 @@ PolygonArea::PolygonArea(const std::vector<std::vector<glm::dvec2>>& rings)
     }
   rows_.assign(std::clamp<std::size_t>(edges.size(), 1, kMostRows) + 1, 0);
   for (const Edge& edge : edges)
-    for (int row = row_of(edge.lower.y); row <= row_of(edge.upper.y); ++row) ++rows_[static_cast<std::size_t>(row) + 1];
+    for (int row = row_of(edge.lower.y); row <= row_of(edge.upper.y); ++row)
+      ++rows_[static_cast<std::size_t>(row) + 1];
   for (std::size_t row = 1; row < rows_.size(); ++row) rows_[row] += rows_[row - 1];
   edges_.resize(rows_.back());
   auto next = rows_;
@@ -40,7 +42,8 @@ int PolygonArea::row_of(double y) const {
 }
 
 bool PolygonArea::contains(const glm::dvec2& point) const {
-  if (!(point.x >= low_.x && point.x <= high_.x && point.y >= low_.y && point.y <= high_.y)) return false;
+  if (!(point.x >= low_.x && point.x <= high_.x && point.y >= low_.y && point.y <= high_.y))
+    return false;
   bool inside = false;
   const auto row = static_cast<std::size_t>(row_of(point.y));
   for (std::size_t i = rows_[row]; i < rows_[row + 1]; ++i) {
@@ -48,7 +51,8 @@ bool PolygonArea::contains(const glm::dvec2& point) const {
     if (point.y < edge.lower.y || point.y >= edge.upper.y) continue;
     const glm::dvec2 along = edge.upper - edge.lower;
     // Left of the edge, seen upward.
-    if (along.x * (point.y - edge.lower.y) - along.y * (point.x - edge.lower.x) > 0) inside = !inside;
+    if (along.x * (point.y - edge.lower.y) - along.y * (point.x - edge.lower.x) > 0)
+      inside = !inside;
   }
   return inside;
 }

@@ -9,11 +9,12 @@
 
 namespace strata {
 
-// Shared between a long piece of work and those who watch it. The worker calls `report` and stops soon after
-// `cancelled()` turns true by returning `cancelled_problem()`. Thread-safe.
+// Shared between a long piece of work and those who watch it. The worker calls `report` and stops
+// soon after `cancelled()` turns true by returning `cancelled_problem()`. Thread-safe.
 class Progress {
  public:
-  // What is reported from now on is a share of [from, to] of the whole: steps need not know where they stand in it.
+  // What is reported from now on is a share of [from, to] of the whole: steps need not know where
+  // they stand in it.
   void begin_stage(double from, double to) {
     std::lock_guard lock(mutex_);
     from_ = from;
@@ -48,6 +49,8 @@ class Progress {
   std::int64_t job_ = 0;
 };
 
-inline tl::unexpected<Problem> cancelled_problem() { return fail(499, "Cancelled", "The work was cancelled."); }
+inline tl::unexpected<Problem> cancelled_problem() {
+  return fail(499, "Cancelled", "The work was cancelled.");
+}
 
 }  // namespace strata

@@ -7,7 +7,9 @@ namespace {
 
 thread_local Question* current_question = nullptr;
 
-std::string in_millions(std::uint64_t number) { return std::to_string((number + 999'999) / 1'000'000); }
+std::string in_millions(std::uint64_t number) {
+  return std::to_string((number + 999'999) / 1'000'000);
+}
 
 }  // namespace
 
@@ -23,7 +25,10 @@ QuestionLimits limits_of(Role role) {
 }
 
 Question::Question(std::string asker, QuestionLimits limits, std::shared_ptr<QuestionTurns> turns)
-    : asker_(std::move(asker)), limits_(limits), turns_(std::move(turns)), has_deadline_(limits.time.count() > 0) {
+    : asker_(std::move(asker)),
+      limits_(limits),
+      turns_(std::move(turns)),
+      has_deadline_(limits.time.count() > 0) {
   place_.asker = asker_;
 }
 
@@ -79,8 +84,8 @@ void Question::hold(std::int64_t bytes) {
   end({422,
        "Question too large",
        "The answer takes " + in_millions(static_cast<std::uint64_t>(held)) +
-           " MB of main memory while it is made; a question may take " + in_millions(limits_.bytes) +
-           " MB. Ask of a coarser layer, or for less at once.",
+           " MB of main memory while it is made; a question may take " +
+           in_millions(limits_.bytes) + " MB. Ask of a coarser layer, or for less at once.",
        {}});
   throw_ended();
 }
@@ -97,7 +102,8 @@ Question::Helper::Helper(Question* question) { current_question = question; }
 Question::Helper::~Helper() { current_question = nullptr; }
 
 QuestionTurn::QuestionTurn()
-    : question_(Question::current()), has_turn_(question_ && question_->turns_ && question_->takes_turns_) {
+    : question_(Question::current()),
+      has_turn_(question_ && question_->turns_ && question_->takes_turns_) {
   if (has_turn_ && question_->turns_held_++ == 0) question_->turns_->enter(question_->place_);
 }
 

@@ -19,12 +19,14 @@ namespace strata {
 struct QuestionLimits {
   std::chrono::milliseconds time{0};  // from its beginning to its answer; 0: any
   std::uint64_t steps = 0;            // texels times the steps of a formula at each of them; 0: any
-  std::uint64_t bytes = 0;            // of main memory that its answer takes while it is made; 0: any
+  // of main memory that its answer takes while it is made; 0: any
+  std::uint64_t bytes = 0;
 };
 
 QuestionLimits limits_of(Role role);
 
-// Work that stops because its question is over: thrown by what computes, caught where the question was begun.
+// Work that stops because its question is over: thrown by what computes, caught where the question
+// was begun.
 class QuestionEnded : public std::exception {
  public:
   explicit QuestionEnded(Problem problem) : problem_(std::move(problem)) {}
@@ -35,9 +37,10 @@ class QuestionEnded : public std::exception {
   const Problem problem_;
 };
 
-// A question that somebody asks, for as long as it is worked on: whose it is, what it may still cost, and whether its answer is still wanted.
-// Long loops over texels ask it at every tile (`QuestionTurn`, `mesh::parallel_for`): they stop when it is over, and wait where
-// the processors are another person's turn. Thread-safe, but for Scope and QuestionTurn, which belong to a thread.
+// A question that somebody asks, for as long as it is worked on: whose it is, what it may still
+// cost, and whether its answer is still wanted. Long loops over texels ask it at every tile
+// (`QuestionTurn`, `mesh::parallel_for`): they stop when it is over, and wait where the processors
+// are another person's turn. Thread-safe, but for Scope and QuestionTurn, which belong to a thread.
 class Question : public std::enable_shared_from_this<Question> {
  public:
   using Clock = std::chrono::steady_clock;
@@ -50,7 +53,8 @@ class Question : public std::enable_shared_from_this<Question> {
   void end(Problem why);
   bool ended() const { return ended_; }
   std::optional<Problem> why() const;  // it ended; nothing: it did not
-  // From now on it may take any time: its answer is on its way to a client who reads it as quickly as they can.
+  // From now on it may take any time: its answer is on its way to a client who reads it as quickly
+  // as they can.
   void let_take_time() { has_deadline_ = false; }
 
   // From now on it waits for no turn: what others do waits for it.
@@ -58,13 +62,15 @@ class Question : public std::enable_shared_from_this<Question> {
 
   // Throws QuestionEnded where it is over; waits where it is another's turn.
   void check();
-  // So many steps are about to be taken: refused as a whole (QuestionEnded, 422) where that is more than it may.
+  // So many steps are about to be taken: refused as a whole (QuestionEnded, 422) where that is more
+  // than it may.
   void spend(std::uint64_t steps);
   // Steps that were taken, for those who count what the server does.
   void took(std::uint64_t steps) {
     if (turns_) turns_->took(steps);
   }
-  // Refused (QuestionEnded, 422) where what it holds is more than it may. Given back with `bytes` below 0.
+  // Refused (QuestionEnded, 422) where what it holds is more than it may. Given back with `bytes`
+  // below 0.
   void hold(std::int64_t bytes);
 
   // The question that this thread works on; null: none, and nothing limits the work.
@@ -133,7 +139,8 @@ class QuestionTurn {
   const bool has_turn_;
 };
 
-// Whether the current question goes on (Question::check), for what is no work of its own: rows that a client waits for.
+// Whether the current question goes on (Question::check), for what is no work of its own: rows that
+// a client waits for.
 inline void check_question() {
   if (Question* question = Question::current()) question->check();
 }

@@ -22,8 +22,11 @@ void QuestionTurns::leave(Place& place) {
   place.state = Place::State::away;
   place.paused = false;
   --askers_.at(place.asker).places;
-  // One who asks again at once has not been away: what they were served beyond the others is kept until the others have had as much.
-  std::erase_if(askers_, [&](const auto& each) { return each.second.places == 0 && each.second.served <= now_; });
+  // One who asks again at once has not been away: what they were served beyond the others is kept
+  // until the others have had as much.
+  std::erase_if(askers_, [&](const auto& each) {
+    return each.second.places == 0 && each.second.served <= now_;
+  });
   fill();
 }
 

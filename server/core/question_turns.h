@@ -11,9 +11,10 @@
 
 namespace strata {
 
-// Whose turn it is to compute. A few questions run at once; the others wait, and those who run make way after a while.
-// Fair between persons by the time that their questions ran, however many each of them asks (start-time fair queueing, as
-// render/frame_queue): who was served the least is next, and who did not ask for a while has no more credit than who waits. Thread-safe.
+// Whose turn it is to compute. A few questions run at once; the others wait, and those who run make
+// way after a while. Fair between persons by the time that their questions ran, however many each
+// of them asks (start-time fair queueing, as render/frame_queue): who was served the least is next,
+// and who did not ask for a while has no more credit than who waits. Thread-safe.
 class QuestionTurns {
  public:
   using Clock = std::chrono::steady_clock;
@@ -35,7 +36,8 @@ class QuestionTurns {
 
   void enter(Place& place);  // returns when it is its turn, or when it is over
   void leave(Place& place);
-  // Of any thread that works on a question that has entered: hands the turn on where another's is, and returns when it is its own again.
+  // Of any thread that works on a question that has entered: hands the turn on where another's is,
+  // and returns when it is its own again.
   void check(Place& place);
   void give_up(Place& place);  // who waits does so no more
 

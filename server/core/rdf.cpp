@@ -55,8 +55,8 @@ World new_world(Complaint& complaint) {
 }
 
 Uri new_uri(raptor_world* world, std::string_view text) {
-  return Uri(
-      raptor_new_uri_from_counted_string(world, reinterpret_cast<const unsigned char*>(text.data()), text.size()));
+  return Uri(raptor_new_uri_from_counted_string(
+      world, reinterpret_cast<const unsigned char*>(text.data()), text.size()));
 }
 
 std::string text_of(const unsigned char* text, std::size_t size) {
@@ -89,8 +89,9 @@ void take(void* user, raptor_statement* statement) {
     const auto& literal = object->value.literal;
     triple.object = text_of(literal.string, literal.string_len);
     triple.language = text_of(literal.language, literal.language_len);
-    std::transform(triple.language.begin(), triple.language.end(), triple.language.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    std::transform(
+        triple.language.begin(), triple.language.end(), triple.language.begin(),
+        [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   } else {
     triple.object = name_of(object);
   }
@@ -101,28 +102,34 @@ void take(void* user, raptor_statement* statement) {
 
 raptor_term* new_term(raptor_world* world, const std::string& name) {
   const auto* text = reinterpret_cast<const unsigned char*>(name.data());
-  if (name.starts_with("_:")) return raptor_new_term_from_counted_blank(world, text + 2, name.size() - 2);
+  if (name.starts_with("_:"))
+    return raptor_new_term_from_counted_blank(world, text + 2, name.size() - 2);
   return raptor_new_term_from_counted_uri_string(world, text, name.size());
 }
 
 }  // namespace
 
-Result<void> read_rdf(std::string_view text, RdfSyntax syntax, const std::function<bool(const Triple&)>& sink) {
+Result<void> read_rdf(std::string_view text, RdfSyntax syntax,
+                      const std::function<bool(const Triple&)>& sink) {
   const char* name = syntax == RdfSyntax::turtle ? "Turtle" : "RDF/XML";
   const auto refuse = [&](const std::string& why) {
-    return fail(422, std::string("Not ") + name, "It cannot be read as " + std::string(name) + ": " + why, "body");
+    return fail(422, std::string("Not ") + name,
+                "It cannot be read as " + std::string(name) + ": " + why, "body");
   };
-  if (!is_utf8(text) || text.find('\0') != std::string_view::npos) return refuse("it is not UTF-8.");
+  if (!is_utf8(text) || text.find('\0') != std::string_view::npos)
+    return refuse("it is not UTF-8.");
   if (syntax == RdfSyntax::rdf_xml)
     if (auto good = check_xml_bounds(text); !good) return refuse(good.error().detail + ".");
   const std::lock_guard lock(one_at_a_time());
   Complaint complaint;
   const World world = new_world(complaint);
-  const Parser parser(world ? raptor_new_parser(world.get(), syntax == RdfSyntax::turtle ? "turtle" : "rdfxml")
-                            : nullptr);
+  const Parser parser(
+      world ? raptor_new_parser(world.get(), syntax == RdfSyntax::turtle ? "turtle" : "rdfxml")
+            : nullptr);
   if (!parser) return fail(500, "RDF not readable", "libraptor2 could not be started.");
-  for (const auto& [option, value] : {std::pair(RAPTOR_OPTION_NO_NET, 1), std::pair(RAPTOR_OPTION_NO_FILE, 1),
-                                      std::pair(RAPTOR_OPTION_LOAD_EXTERNAL_ENTITIES, 0)})
+  for (const auto& [option, value] :
+       {std::pair(RAPTOR_OPTION_NO_NET, 1), std::pair(RAPTOR_OPTION_NO_FILE, 1),
+        std::pair(RAPTOR_OPTION_LOAD_EXTERNAL_ENTITIES, 0)})
     if (raptor_parser_set_option(parser.get(), option, nullptr, value) != 0)
       return fail(500, "RDF not readable", "libraptor2 cannot be kept from fetching.");
   const Uri base = new_uri(world.get(), kRelativeBase);
@@ -131,15 +138,22 @@ Result<void> read_rdf(std::string_view text, RdfSyntax syntax, const std::functi
   const bool started = base && raptor_parser_parse_start(parser.get(), base.get()) == 0;
   const bool read =
       started &&
-      raptor_parser_parse_chunk(parser.get(), reinterpret_cast<const unsigned char*>(text.data()), text.size(), 1) == 0;
+      raptor_parser_parse_chunk(parser.get(), reinterpret_cast<const unsigned char*>(text.data()),
+                                text.size(), 1) == 0;
   if (reading.stopped || (read && complaint.text.empty())) return {};
-  const std::string where = complaint.line > 0 ? "line " + std::to_string(complaint.line) + ": " : std::string();
-  return refuse(where + mended_utf8(complaint.text.empty() ? "its syntax is wrong" : complaint.text.substr(0, 300)) +
-                ".");
+  const std::string where =
+      complaint.line > 0 ? "line " + std::to_string(complaint.line) + ": " : std::string();
+  return refuse(
+      where +
+      mended_utf8(complaint.text.empty() ? "its syntax is wrong" : complaint.text.substr(0, 300)) +
+      ".");
 }
 
-Result<std::string> write_turtle(std::span<const Triple> triples, std::span<const RdfPrefix> prefixes) {
-  const auto failed = [] { return fail(500, "Turtle not written", "libraptor2 could not write the terms."); };
+Result<std::string> write_turtle(std::span<const Triple> triples,
+                                 std::span<const RdfPrefix> prefixes) {
+  const auto failed = [] {
+    return fail(500, "Turtle not written", "libraptor2 could not write the terms.");
+  };
   const std::lock_guard lock(one_at_a_time());
   Complaint complaint;
   const World world = new_world(complaint);
@@ -153,7 +167,8 @@ Result<std::string> write_turtle(std::span<const Triple> triples, std::span<cons
   const Uri base = new_uri(world.get(), kRelativeBase);
   void* text = nullptr;
   std::size_t size = 0;
-  if (!base || raptor_serializer_start_to_string(serializer.get(), base.get(), &text, &size) != 0) return failed();
+  if (!base || raptor_serializer_start_to_string(serializer.get(), base.get(), &text, &size) != 0)
+    return failed();
   bool good = true;
   for (const Triple& triple : triples) {
     const Statement statement(raptor_new_statement(world.get()));
@@ -165,7 +180,9 @@ Result<std::string> write_turtle(std::span<const Triple> triples, std::span<cons
         triple.is_literal
             ? raptor_new_term_from_counted_literal(
                   world.get(), object, triple.object.size(), nullptr,
-                  triple.language.empty() ? nullptr : reinterpret_cast<const unsigned char*>(triple.language.c_str()),
+                  triple.language.empty()
+                      ? nullptr
+                      : reinterpret_cast<const unsigned char*>(triple.language.c_str()),
                   static_cast<unsigned char>(triple.language.size()))
             : new_term(world.get(), triple.object);
     good = good && raptor_serializer_serialize_statement(serializer.get(), statement.get()) == 0;

@@ -23,14 +23,18 @@ struct Triple {
 // What IRIs of a text without a base of its own are relative to: they begin with it.
 inline constexpr std::string_view kRelativeBase = "http://relative.invalid/";
 
-// Reads a graph by libraptor2, triple by triple, until the sink says false. Nothing is ever fetched or included: neither addresses nor
-// files nor external entities. A Problem (422) says where the text stops being what it should be. One at a time in the process.
-Result<void> read_rdf(std::string_view text, RdfSyntax syntax, const std::function<bool(const Triple&)>& sink);
+// Reads a graph by libraptor2, triple by triple, until the sink says false. Nothing is ever fetched
+// or included: neither addresses nor files nor external entities. A Problem (422) says where the
+// text stops being what it should be. One at a time in the process.
+Result<void> read_rdf(std::string_view text, RdfSyntax syntax,
+                      const std::function<bool(const Triple&)>& sink);
 
-// The triples as Turtle. IRIs that begin with kRelativeBase are written relative to the document, without naming a base.
+// The triples as Turtle. IRIs that begin with kRelativeBase are written relative to the document,
+// without naming a base.
 struct RdfPrefix {
   std::string name, iri;
 };
-Result<std::string> write_turtle(std::span<const Triple> triples, std::span<const RdfPrefix> prefixes);
+Result<std::string> write_turtle(std::span<const Triple> triples,
+                                 std::span<const RdfPrefix> prefixes);
 
 }  // namespace strata

@@ -86,7 +86,8 @@ class Knots {
 };
 
 // Breadth first from the knot's lowest key until something names it.
-std::vector<std::int64_t> shortest_cycle(const Relation& relation, const std::vector<std::int64_t>& knot) {
+std::vector<std::int64_t> shortest_cycle(const Relation& relation,
+                                         const std::vector<std::int64_t>& knot) {
   const std::int64_t first = knot.front();
   std::unordered_map<std::int64_t, std::int64_t> from{{first, first}};
   std::deque<std::int64_t> waiting{first};

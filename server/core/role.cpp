@@ -5,7 +5,8 @@
 
 namespace strata {
 namespace {
-constexpr std::array<std::string_view, 6> kNames{"guest", "viewer", "annotator", "curator", "administrator", "owner"};
+constexpr std::array<std::string_view, 6> kNames{"guest",   "viewer",        "annotator",
+                                                 "curator", "administrator", "owner"};
 }
 
 std::optional<Role> parse_role(std::string_view text) {

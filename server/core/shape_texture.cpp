@@ -22,7 +22,8 @@ std::uint32_t weight(const std::uint8_t* rgba, ShapePart part) {
   return (part == ShapePart::light ? luma : 255u - luma) * alpha / 255u;
 }
 
-// Sums of weights over rectangles from the picture's corner; between pixels they are linear in both directions.
+// Sums of weights over rectangles from the picture's corner; between pixels they are linear in both
+// directions.
 class WeightSums {
  public:
   WeightSums(const Picture& picture, ShapePart part)
@@ -30,7 +31,8 @@ class WeightSums {
     for (int y = 0; y < height_; ++y) {
       std::uint64_t so_far = 0;
       for (int x = 0; x < width_; ++x) {
-        so_far += weight(&picture.rgba[4 * (std::size_t(y) * std::size_t(width_) + std::size_t(x))], part);
+        so_far += weight(&picture.rgba[4 * (std::size_t(y) * std::size_t(width_) + std::size_t(x))],
+                         part);
         sums_[row(y + 1) + std::size_t(x) + 1] = sums_[row(y) + std::size_t(x) + 1] + so_far;
       }
     }
@@ -39,7 +41,9 @@ class WeightSums {
     x = std::clamp(x, 0.0, double(width_));
     y = std::clamp(y, 0.0, double(height_));
     const int left = std::min(int(x), width_ - 1), top = std::min(int(y), height_ - 1);
-    const auto at = [&](int column, int line) { return double(sums_[row(line) + std::size_t(column)]); };
+    const auto at = [&](int column, int line) {
+      return double(sums_[row(line) + std::size_t(column)]);
+    };
     const double u = x - left, v = y - top;
     return (at(left, top) * (1 - u) + at(left + 1, top) * u) * (1 - v) +
            (at(left, top + 1) * (1 - u) + at(left + 1, top + 1) * u) * v;
@@ -54,7 +58,8 @@ class WeightSums {
 }  // namespace
 
 Result<ShapeBits> shape_of(const Picture& picture, std::optional<ShapePart> part) {
-  const WeightSums sums(picture, part.value_or(has_transparency(picture) ? ShapePart::opaque : ShapePart::light));
+  const WeightSums sums(
+      picture, part.value_or(has_transparency(picture) ? ShapePart::opaque : ShapePart::light));
   const double side = std::max(picture.width, picture.height), cell = side / kShapeSide;
   const double left = (picture.width - side) / 2, top = (picture.height - side) / 2;
   ShapeBits bits{};
@@ -62,7 +67,8 @@ Result<ShapeBits> shape_of(const Picture& picture, std::optional<ShapePart> part
   for (int y = 0; y < kShapeSide; ++y) {
     for (int x = 0; x < kShapeSide; ++x) {
       const double x0 = left + x * cell, y0 = top + y * cell, x1 = x0 + cell, y1 = y0 + cell;
-      const double sum = sums.up_to(x1, y1) - sums.up_to(x0, y1) - sums.up_to(x1, y0) + sums.up_to(x0, y0);
+      const double sum =
+          sums.up_to(x1, y1) - sums.up_to(x0, y1) - sums.up_to(x1, y0) + sums.up_to(x0, y0);
       if (sum < kLeastShare * 255 * cell * cell) continue;
       const auto bit = static_cast<std::size_t>(y * kShapeSide + x);
       bits[bit / 64] |= std::uint64_t{1} << (bit % 64);
@@ -88,9 +94,12 @@ Picture picture_of(const ShapeBits& bits) {
   return picture;
 }
 
-ShapeTexture::ShapeTexture(const ShapeBits& bits) : bits_(bits), distances_(kShapeSide * kShapeSide, 255) {
+ShapeTexture::ShapeTexture(const ShapeBits& bits)
+    : bits_(bits), distances_(kShapeSide * kShapeSide, 255) {
   constexpr int kLast = kShapeSide - 1;
-  const auto at = [&](int x, int y) -> std::uint8_t& { return distances_[std::size_t(y * kShapeSide + x)]; };
+  const auto at = [&](int x, int y) -> std::uint8_t& {
+    return distances_[std::size_t(y * kShapeSide + x)];
+  };
   const auto lower = [&](int x, int y, int other_x, int other_y) {
     if (other_x < 0 || other_x > kLast || other_y < 0 || other_y > kLast) return;
     at(x, y) = static_cast<std::uint8_t>(std::min<int>(at(x, y), at(other_x, other_y) + 1));

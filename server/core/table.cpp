@@ -12,12 +12,16 @@
 namespace strata {
 namespace {
 
-constexpr std::array<std::string_view, 15> kKindNames = {"text",      "integer", "numeric",     "boolean", "date",
-                                                         "timestamp", "period",  "enumeration", "url",     "term",
-                                                         "relation",  "picture", "document",    "line",    "point"};
+constexpr std::array<std::string_view, 15> kKindNames = {
+    "text", "integer", "numeric",  "boolean", "date",     "timestamp", "period", "enumeration",
+    "url",  "term",    "relation", "picture", "document", "line",      "point"};
 
-bool is_number(ColumnKind kind) { return kind == ColumnKind::integer || kind == ColumnKind::numeric; }
-bool names_records(ColumnKind kind) { return kind == ColumnKind::term || kind == ColumnKind::relation; }
+bool is_number(ColumnKind kind) {
+  return kind == ColumnKind::integer || kind == ColumnKind::numeric;
+}
+bool names_records(ColumnKind kind) {
+  return kind == ColumnKind::term || kind == ColumnKind::relation;
+}
 
 bool is_language_tag(std::string_view tag) {
   if (tag.empty() || tag.size() > 35 || tag.front() == '-' || tag.back() == '-') return false;
@@ -26,33 +30,42 @@ bool is_language_tag(std::string_view tag) {
   });
 }
 
-Result<void> check_short(const std::string& text, const std::string& field, std::size_t longest = kLongestColumnText) {
+Result<void> check_short(const std::string& text, const std::string& field,
+                         std::size_t longest = kLongestColumnText) {
   if (text.size() <= longest && is_utf8(text) && text.find('\0') == std::string::npos) return {};
   return fail(422, "Bad text",
-              "`" + field + "` must be UTF-8 of at most " + std::to_string(longest) + " bytes, without U+0000.", field);
+              "`" + field + "` must be UTF-8 of at most " + std::to_string(longest) +
+                  " bytes, without U+0000.",
+              field);
 }
 
 Result<void> check_choices(const Column& column) {
   if (column.kind != ColumnKind::enumeration) {
     if (column.choices.empty()) return {};
-    return fail(422, "Choices without enumeration", "Only columns of kind `enumeration` have choices.", "choices");
+    return fail(422, "Choices without enumeration",
+                "Only columns of kind `enumeration` have choices.", "choices");
   }
   if (column.choices.empty() || column.choices.size() > kMostChoices)
-    return fail(422, "Bad choices", "An enumeration has 1 to " + std::to_string(kMostChoices) + " choices.", "choices");
+    return fail(422, "Bad choices",
+                "An enumeration has 1 to " + std::to_string(kMostChoices) + " choices.", "choices");
   std::set<std::string> known;
   for (const std::string& choice : column.choices) {
     if (auto good = check_short(choice, "choices"); !good) return good;
     if (choice.empty() || !known.insert(choice).second)
-      return fail(422, "Bad choices", "Choices must not be empty and must differ: \"" + choice + "\".", "choices");
+      return fail(422, "Bad choices",
+                  "Choices must not be empty and must differ: \"" + choice + "\".", "choices");
   }
   return {};
 }
 
 Result<void> check_limits(const Column& column) {
   if (!is_number(column.kind)) {
-    if (!column.unit.empty()) return fail(422, "Unit without number", "Only numbers have a unit.", "unit");
-    if (column.minimum) return fail(422, "Limit without number", "Only numbers have a minimum.", "minimum");
-    if (column.maximum) return fail(422, "Limit without number", "Only numbers have a maximum.", "maximum");
+    if (!column.unit.empty())
+      return fail(422, "Unit without number", "Only numbers have a unit.", "unit");
+    if (column.minimum)
+      return fail(422, "Limit without number", "Only numbers have a minimum.", "minimum");
+    if (column.maximum)
+      return fail(422, "Limit without number", "Only numbers have a maximum.", "maximum");
     return {};
   }
   if (column.minimum && column.maximum && *column.minimum > *column.maximum)
@@ -63,21 +76,24 @@ Result<void> check_limits(const Column& column) {
 Result<void> check_kind(const Column& column) {
   if (names_records(column.kind) != column.target.has_value())
     return names_records(column.kind)
-               ? fail(422, "Target missing", "A column of this kind names a table of the project as `target`.",
-                      "target")
-               : fail(422, "Target without relation", "Only columns of kind `term` or `relation` have a target.",
-                      "target");
-  if ((holds_attachments(column.kind) || holds_marks(column.kind)) && !column.default_value.is_null())
+               ? fail(422, "Target missing",
+                      "A column of this kind names a table of the project as `target`.", "target")
+               : fail(422, "Target without relation",
+                      "Only columns of kind `term` or `relation` have a target.", "target");
+  if ((holds_attachments(column.kind) || holds_marks(column.kind)) &&
+      !column.default_value.is_null())
     return fail(422, "No default",
                 holds_marks(column.kind) ? "Lines and points are drawn for single records."
                                          : "Files are attached to single records.",
                 "default");
   if (column.unique && (column.kind == ColumnKind::boolean || holds_lists(column.kind)))
     return fail(422, "Cannot be unique",
-                "Columns of kind `" + std::string(name(column.kind)) + "` hold the same value in many records.",
+                "Columns of kind `" + std::string(name(column.kind)) +
+                    "` hold the same value in many records.",
                 "unique");
   if (column.unique && !column.default_value.is_null())
-    return fail(422, "Default of a unique column", "A second record could not have the default, too.", "default");
+    return fail(422, "Default of a unique column",
+                "A second record could not have the default, too.", "default");
   return {};
 }
 
@@ -95,11 +111,14 @@ Result<void> check_labels(const Labels& labels, const std::string& field) {
   return check_texts_by_language(labels, kLongestColumnText, field);
 }
 
-Result<void> check_texts_by_language(const Labels& texts, std::size_t longest, const std::string& field) {
-  if (texts.size() > 100) return fail(422, "Too many labels", "A thing has at most 100 labels.", field);
+Result<void> check_texts_by_language(const Labels& texts, std::size_t longest,
+                                     const std::string& field) {
+  if (texts.size() > 100)
+    return fail(422, "Too many labels", "A thing has at most 100 labels.", field);
   for (const auto& [tag, text] : texts) {
     if (!is_language_tag(tag))
-      return fail(422, "Bad language", "\"" + mended_utf8(tag) + "\" is no language tag such as `es` or `pt-BR`.",
+      return fail(422, "Bad language",
+                  "\"" + mended_utf8(tag) + "\" is no language tag such as `es` or `pt-BR`.",
                   field);
     if (auto good = check_short(text, field + "." + tag, longest); !good) return good;
   }
@@ -108,7 +127,8 @@ Result<void> check_texts_by_language(const Labels& texts, std::size_t longest, c
 
 Result<void> check_column(Column& column) {
   if (column.name.empty())
-    return fail(422, "Bad name", "A column has a name of 1 to " + std::to_string(kLongestColumnText) + " bytes.",
+    return fail(422, "Bad name",
+                "A column has a name of 1 to " + std::to_string(kLongestColumnText) + " bytes.",
                 "name");
   if (auto good = check_short(column.name, "name"); !good) return good;
   if (auto good = check_short(column.unit, "unit"); !good) return good;
@@ -118,10 +138,12 @@ Result<void> check_column(Column& column) {
   if (auto good = check_limits(column); !good) return good;
   if (auto good = check_kind(column); !good) return good;
   // Who writes records must be able to.
-  if (column.required && column.visibility == Visibility::curators && column.default_value.is_null())
-    return fail(422, "Required and private",
-                "Who does not see the column could make no records: give it a default, or let it be empty.",
-                "visibility");
+  if (column.required && column.visibility == Visibility::curators &&
+      column.default_value.is_null())
+    return fail(
+        422, "Required and private",
+        "Who does not see the column could make no records: give it a default, or let it be empty.",
+        "visibility");
   if (column.default_value.is_null()) return {};
   auto value = check_value(column, column.default_value, "default");
   if (!value) return tl::unexpected(value.error());
@@ -145,7 +167,8 @@ nlohmann::json to_json(const Column& column) {
 }
 
 Table seen_by(Table table, Role role) {
-  std::erase_if(table.columns, [role](const Column& column) { return !sees(role, column.visibility); });
+  std::erase_if(table.columns,
+                [role](const Column& column) { return !sees(role, column.visibility); });
   return table;
 }
 
@@ -163,7 +186,8 @@ nlohmann::json to_json(const Table& table) {
                       {"records", table.records},
                       {"sequence", table.sequence}};
   // One that is not seen, or was dropped, is not told.
-  if (table.title_column && std::ranges::find(table.columns, *table.title_column, &Column::id) != table.columns.end())
+  if (table.title_column &&
+      std::ranges::find(table.columns, *table.title_column, &Column::id) != table.columns.end())
     json["title_column"] = *table.title_column;
   return json;
 }
@@ -192,10 +216,13 @@ const Column* name_column(const Table& table) {
     return found == columns.end() ? nullptr : &*found;
   };
   const auto is_text = [](const Column& column) { return column.kind == ColumnKind::text; };
-  const Column* found = first([&](const Column& c) { return is_text(c) && c.required && c.unique; });
-  if (!found) found = first([&](const Column& c) { return is_text(c) && (c.required || c.unique); });
+  const Column* found =
+      first([&](const Column& c) { return is_text(c) && c.required && c.unique; });
+  if (!found)
+    found = first([&](const Column& c) { return is_text(c) && (c.required || c.unique); });
   // What an observation is of, and not who made it.
-  if (!found && !columns.empty() && columns.front().kind == ColumnKind::term) found = &columns.front();
+  if (!found && !columns.empty() && columns.front().kind == ColumnKind::term)
+    found = &columns.front();
   if (!found) found = first(is_text);
   if (!found) found = first([](const Column& c) { return c.unique && !c.target; });
   return found;

@@ -24,10 +24,12 @@ std::optional<std::string> label_language(std::string_view slug) {
 
 std::optional<std::string> clean_color(std::string_view text) {
   std::string color(text);
-  std::transform(color.begin(), color.end(), color.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  std::transform(color.begin(), color.end(), color.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
   if (color.size() != 4 && color.size() != 7) return std::nullopt;
-  if (color[0] != '#' || color.find_first_not_of("0123456789abcdef", 1) != std::string::npos) return std::nullopt;
+  if (color[0] != '#' || color.find_first_not_of("0123456789abcdef", 1) != std::string::npos)
+    return std::nullopt;
   if (color.size() == 7) return color;
   std::string whole = "#";
   for (const char digit : color.substr(1)) whole.append(2, digit);
@@ -36,14 +38,15 @@ std::optional<std::string> clean_color(std::string_view text) {
 
 Result<void> check_term(Term& term) {
   if (term.code.empty() || term.code.size() > kLongestCode)
-    return fail(422, "Bad code", "A term has a code of 1 to " + std::to_string(kLongestCode) + " bytes.", "code");
+    return fail(422, "Bad code",
+                "A term has a code of 1 to " + std::to_string(kLongestCode) + " bytes.", "code");
   if (!term.color.empty()) {
     const auto color = clean_color(term.color);
     if (!color) return fail(422, "Bad colour", "A colour is like #c04020.", "color");
     term.color = *color;
   }
-  if (!term.pattern.empty() &&
-      std::find(std::begin(kTermPatterns), std::end(kTermPatterns), term.pattern) == std::end(kTermPatterns))
+  if (!term.pattern.empty() && std::find(std::begin(kTermPatterns), std::end(kTermPatterns),
+                                         term.pattern) == std::end(kTermPatterns))
     return fail(422, "Bad pattern", "A pattern is solid, hatch, dots or outline.", "pattern");
   return {};
 }

@@ -42,22 +42,25 @@ struct TermMistake {
 
 // Terms as a text has them.
 struct TermList {
-  std::vector<Term> terms;        // those without mistakes
-  std::set<std::string> columns;  // slugs of those that the text has: what it does not have stays as it is in a list
+  std::vector<Term> terms;  // those without mistakes
+  // slugs of those that the text has: what it does not have stays as it is in a list
+  std::set<std::string> columns;
   std::vector<TermMistake> mistakes;  // the first kMostTermMistakes
   std::size_t rows = 0;               // terms, those with mistakes among them
-  std::size_t left_out =
-      0;  // of SKOS: further broader terms and further labels of a language, which a list has no place for
+  // of SKOS: further broader terms and further labels of a language, which a list has no place for
+  std::size_t left_out = 0;
 };
 
-// "label-es" for a language's labels; the language of such a slug, nothing for another one. Languages are tags in lower case.
+// "label-es" for a language's labels; the language of such a slug, nothing for another one.
+// Languages are tags in lower case.
 std::string label_slug(const std::string& language);
 std::optional<std::string> label_language(std::string_view slug);
 
 // "#RGB", "#rrggbb" in any case → "#rrggbb"; nothing: it is no colour.
 std::optional<std::string> clean_color(std::string_view text);
 
-// What a term says of itself is fit for a list: its code, its colour, its pattern. Puts the colour into its one form.
+// What a term says of itself is fit for a list: its code, its colour, its pattern. Puts the colour
+// into its one form.
 Result<void> check_term(Term& term);
 
 }  // namespace strata

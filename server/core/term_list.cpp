@@ -28,13 +28,15 @@ Rgba shade(const Rgba& color, int nth) {
   const double part = std::min(0.6, 0.2 * (nth / 2 + 1));
   const double end = nth % 2 == 0 ? 255 : 0;
   Rgba out = color;
-  for (int i = 0; i < 3; ++i) out[i] = static_cast<std::uint8_t>(std::lround(color[i] + (end - color[i]) * part));
+  for (int i = 0; i < 3; ++i)
+    out[i] = static_cast<std::uint8_t>(std::lround(color[i] + (end - color[i]) * part));
   return out;
 }
 
 Pattern pattern_of(const Term& term) {
   const auto known = std::find(std::begin(kTermPatterns), std::end(kTermPatterns), term.pattern);
-  return known == std::end(kTermPatterns) ? Pattern::solid : static_cast<Pattern>(known - std::begin(kTermPatterns));
+  return known == std::end(kTermPatterns) ? Pattern::solid
+                                          : static_cast<Pattern>(known - std::begin(kTermPatterns));
 }
 
 std::vector<std::string> words_of(const std::string& text) {
@@ -55,12 +57,15 @@ std::optional<TermColumns> term_columns(const Table& table) {
     const bool is_text = column.kind == ColumnKind::text;
     if (column.slug == "code" && is_text && column.required && column.unique) out.code = &column;
     if (column.slug == "label" && is_text) out.label = &column;
-    if (column.slug == "parent" && column.kind == ColumnKind::term && column.target == table.id) out.parent = &column;
+    if (column.slug == "parent" && column.kind == ColumnKind::term && column.target == table.id)
+      out.parent = &column;
     if (column.slug == "definition" && is_text) out.definition = &column;
     if (column.slug == "uri" && (is_text || column.kind == ColumnKind::url)) out.uri = &column;
     if (column.slug == "color" && is_text) out.color = &column;
-    if (column.slug == "pattern" && (is_text || column.kind == ColumnKind::enumeration)) out.pattern = &column;
-    if (const auto language = label_language(column.slug); language && is_text) out.labels[*language] = &column;
+    if (column.slug == "pattern" && (is_text || column.kind == ColumnKind::enumeration))
+      out.pattern = &column;
+    if (const auto language = label_language(column.slug); language && is_text)
+      out.labels[*language] = &column;
   }
   if (!out.code || !out.label || !out.parent) return std::nullopt;
   return out;
@@ -98,8 +103,10 @@ Column new_term_column(const std::string& slug) {
 
 std::vector<Column> new_term_columns(std::span<const std::string> languages) {
   std::vector<Column> columns{new_term_column("code"), new_term_column("label")};
-  for (const std::string& language : languages) columns.push_back(new_term_column(label_slug(language)));
-  for (const char* slug : {"parent", "definition", "uri", "color", "pattern"}) columns.push_back(new_term_column(slug));
+  for (const std::string& language : languages)
+    columns.push_back(new_term_column(label_slug(language)));
+  for (const char* slug : {"parent", "definition", "uri", "color", "pattern"})
+    columns.push_back(new_term_column(slug));
   return columns;
 }
 
@@ -115,12 +122,14 @@ std::vector<ListedTerm> list_terms(const TermColumns& columns, std::span<const R
     term.code = text_of(record, columns.code);
     term.label = text_of(record, columns.label);
     for (const auto& [language, column] : columns.labels)
-      if (std::string label = text_of(record, column); !label.empty()) term.labels[language] = std::move(label);
+      if (std::string label = text_of(record, column); !label.empty())
+        term.labels[language] = std::move(label);
     term.definition = text_of(record, columns.definition);
     term.uri = text_of(record, columns.uri);
     term.color = clean_color(text_of(record, columns.color)).value_or("");
     term.pattern = text_of(record, columns.pattern);
-    if (std::find(std::begin(kTermPatterns), std::end(kTermPatterns), term.pattern) == std::end(kTermPatterns))
+    if (std::find(std::begin(kTermPatterns), std::end(kTermPatterns), term.pattern) ==
+        std::end(kTermPatterns))
       term.pattern.clear();
     terms.emplace(listed.key, std::move(listed));
   }
@@ -179,8 +188,9 @@ std::vector<bool> terms_with(std::span<const ListedTerm> terms, std::string_view
       folded += search_text(std::string_view(all).substr(begin, end - begin)) + "\n";
       begin = end + 1;
     }
-    out.push_back(std::all_of(words.begin(), words.end(),
-                              [&](const std::string& word) { return folded.find(word) != std::string::npos; }));
+    out.push_back(std::all_of(words.begin(), words.end(), [&](const std::string& word) {
+      return folded.find(word) != std::string::npos;
+    }));
   }
   return out;
 }
@@ -216,7 +226,8 @@ Palette terms_palette(std::span<const ListedTerm> terms) {
 }
 
 bool takes_term_colors(const Palette& palette) {
-  return palette.mode == PaletteMode::categorical && palette.points.empty() && palette.column.empty();
+  return palette.mode == PaletteMode::categorical && palette.points.empty() &&
+         palette.column.empty();
 }
 
 }  // namespace strata

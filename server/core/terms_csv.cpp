@@ -9,8 +9,10 @@ namespace strata {
 namespace {
 
 constexpr std::pair<const char*, std::string Term::*> kParts[] = {
-    {"code", &Term::code}, {"parent", &Term::parent}, {"label", &Term::label},    {"definition", &Term::definition},
-    {"uri", &Term::uri},   {"color", &Term::color},   {"pattern", &Term::pattern}};
+    {"code", &Term::code},      {"parent", &Term::parent},
+    {"label", &Term::label},    {"definition", &Term::definition},
+    {"uri", &Term::uri},        {"color", &Term::color},
+    {"pattern", &Term::pattern}};
 
 std::string trimmed(std::string_view text) {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
@@ -27,8 +29,9 @@ struct Head {
 
 std::optional<Head> head_of(const std::string& cell) {
   Head head{trimmed(cell), nullptr, {}};
-  std::transform(head.slug.begin(), head.slug.end(), head.slug.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  std::transform(head.slug.begin(), head.slug.end(), head.slug.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
   for (const auto& [name, part] : kParts)
     if (head.slug == name) head.part = part;
   if (head.part) return head;
@@ -50,7 +53,8 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, TermList& list) {
               "\" is none of code, parent, label, label-es (or another language), definition, uri, color, pattern.",
           "body");
     if (!list.columns.insert(head->slug).second)
-      return fail(422, "Column named twice", "\"" + head->slug + "\" stands twice in the first row.", "body");
+      return fail(422, "Column named twice",
+                  "\"" + head->slug + "\" stands twice in the first row.", "body");
     languages += !head->language.empty();
     heads.push_back(std::move(*head));
   }
@@ -58,7 +62,9 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, TermList& list) {
     return fail(422, "No codes", "The first row must name the column `code`.", "body");
   if (languages > kMostTermLanguages)
     return fail(422, "Too many languages",
-                "A list of terms has labels in at most " + std::to_string(kMostTermLanguages) + " languages.", "body");
+                "A list of terms has labels in at most " + std::to_string(kMostTermLanguages) +
+                    " languages.",
+                "body");
   return heads;
 }
 
@@ -67,7 +73,8 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, TermList& list) {
 Result<TermList> read_terms_csv(std::string_view text) {
   auto csv = parse_csv(text, {kMostTerms + 1, std::size(kParts) + kMostTermLanguages + 1});
   if (!csv) return tl::unexpected(csv.error());
-  if (csv->rows.empty()) return fail(422, "Empty table", "The first row names the columns.", "body");
+  if (csv->rows.empty())
+    return fail(422, "Empty table", "The first row names the columns.", "body");
   TermList list;
   auto heads = read_heads(csv->rows.front(), list);
   if (!heads) return tl::unexpected(heads.error());
@@ -93,8 +100,10 @@ Result<TermList> read_terms_csv(std::string_view text) {
     if (good) good = check_term(term);
     if (good)
       if (const auto [first, is_new] = lines.emplace(term.code, row.line); !is_new)
-        good = fail(422, "Code twice",
-                    "\"" + term.code + "\" stands in line " + std::to_string(first->second) + ", too.", "code");
+        good =
+            fail(422, "Code twice",
+                 "\"" + term.code + "\" stands in line " + std::to_string(first->second) + ", too.",
+                 "code");
     if (good)
       list.terms.push_back(std::move(term));
     else if (list.mistakes.size() < kMostTermMistakes)

@@ -30,7 +30,8 @@ struct Concept {
 // Without a language, in English, or the first.
 std::string plainest(const ByLanguage& by_language) {
   for (const char* tag : {"", "en", "en-gb", "en-us"})
-    if (const auto found = by_language.find(tag); found != by_language.end()) return *found->second.begin();
+    if (const auto found = by_language.find(tag); found != by_language.end())
+      return *found->second.begin();
   return by_language.empty() ? std::string() : *by_language.begin()->second.begin();
 }
 
@@ -113,8 +114,8 @@ std::string iri_text(std::string_view text) {
   std::string out;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-                       c == '.' || c == '_' || c == '~' || byte >= 0x80;
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '.' || c == '_' || c == '~' || byte >= 0x80;
     if (plain)
       out += c;
     else
@@ -128,12 +129,16 @@ std::string iri_text(std::string_view text) {
 Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
   Concepts read;
   bool too_much = false;
-  auto done = read_rdf(text, syntax, [&](const Triple& triple) { return !(too_much = !read.take(triple)); });
+  auto done = read_rdf(text, syntax,
+                       [&](const Triple& triple) { return !(too_much = !read.take(triple)); });
   if (!done) return tl::unexpected(done.error());
   auto& concepts = read.all();
-  std::erase_if(concepts, [](const auto& entry) { return !entry.second.is_described || entry.second.is_other; });
+  std::erase_if(concepts, [](const auto& entry) {
+    return !entry.second.is_described || entry.second.is_other;
+  });
   if (too_much || concepts.size() > kMostTerms)
-    return fail(413, "Too many terms", "A list takes at most " + std::to_string(kMostTerms) + " terms.", "body");
+    return fail(413, "Too many terms",
+                "A list takes at most " + std::to_string(kMostTerms) + " terms.", "body");
   if (concepts.empty()) return fail(422, "No terms", "There is no skos:Concept in it.", "body");
 
   TermList list;
@@ -168,8 +173,9 @@ Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
     if (!iri.starts_with("_:") && !iri.starts_with(kRelativeBase)) term.uri = iri;
     if (!about.broader.empty()) {
       // One that is told of here before one that is only named.
-      auto parent = std::find_if(about.broader.begin(), about.broader.end(),
-                                 [&](const std::string& broader) { return codes.contains(broader); });
+      auto parent =
+          std::find_if(about.broader.begin(), about.broader.end(),
+                       [&](const std::string& broader) { return codes.contains(broader); });
       if (parent != about.broader.end())
         term.parent = codes.at(*parent);
       else
@@ -183,7 +189,9 @@ Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
   }
   if (languages.size() > kMostTermLanguages)
     return fail(422, "Too many languages",
-                "A list of terms has labels in at most " + std::to_string(kMostTermLanguages) + " languages.", "body");
+                "A list of terms has labels in at most " + std::to_string(kMostTermLanguages) +
+                    " languages.",
+                "body");
   for (const auto& language : languages) list.columns.insert(label_slug(language));
   return list;
 }
@@ -199,7 +207,8 @@ Result<std::string> terms_skos(const std::string& name, std::span<const Term> te
                               {scheme, kSkos + "prefLabel", name, true, {}}};
   for (const Term& term : terms) {
     const std::string& iri = iris.at(term.code);
-    const auto say = [&](const char* property, const std::string& text, const std::string& language) {
+    const auto say = [&](const char* property, const std::string& text,
+                         const std::string& language) {
       if (!text.empty()) triples.push_back({iri, kSkos + property, text, true, language});
     };
     triples.push_back({iri, kType, kSkos + "Concept", false, {}});

@@ -54,12 +54,13 @@ int ignore_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; 
 }  // namespace
 
 Tiff open_tiff(TiffMemory& file, const char* mode) {
-  std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
+  std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(TIFFOpenOptionsAlloc(),
+                                                                           TIFFOpenOptionsFree);
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_complaint, &file);
   TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore_warning, nullptr);
   TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), 2 * kMaxTiffTileBytes);
-  return Tiff(TIFFClientOpenExt("file.tif", mode, &file, read_bytes, write_bytes, seek_to, close_nothing, size_of,
-                                map_nothing, unmap_nothing, options.get()));
+  return Tiff(TIFFClientOpenExt("file.tif", mode, &file, read_bytes, write_bytes, seek_to,
+                                close_nothing, size_of, map_nothing, unmap_nothing, options.get()));
 }
 
 bool is_lossless(int compression) {

@@ -12,7 +12,8 @@ namespace strata {
 
 // TIFF files in memory, for libtiff. What a file may make it allocate at once is bounded.
 
-constexpr std::uint64_t kMaxTiffTileBytes = 256u << 20;  // of a file's own tiles; larger ones are refused
+// of a file's own tiles; larger ones are refused
+constexpr std::uint64_t kMaxTiffTileBytes = 256u << 20;
 
 // A file in memory, and libtiff's first complaint about it.
 struct TiffMemory {

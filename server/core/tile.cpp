@@ -38,7 +38,8 @@ void TileData::clear(int texel) {
 TileData widened(const TileData& tile, ValueType type) {
   TileData wide(type);
   wide.valid = tile.valid;
-  const auto from = static_cast<std::size_t>(tile.texel_bytes()), to = static_cast<std::size_t>(wide.texel_bytes());
+  const auto from = static_cast<std::size_t>(tile.texel_bytes()),
+             to = static_cast<std::size_t>(wide.texel_bytes());
   for (std::size_t texel = 0; texel < kTexelsPerTile; ++texel)
     std::copy_n(tile.values.begin() + static_cast<std::ptrdiff_t>(texel * from), from,
                 wide.values.begin() + static_cast<std::ptrdiff_t>(texel * to));

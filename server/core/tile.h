@@ -10,9 +10,9 @@
 
 namespace strata {
 
-// A tile (page) is 128 × 128 texels: the unit of storage, read-back and journal. A block is 8 × 8 texels: the unit of
-// culling. Texel (0,0) is the lower left of the atlas (uv origin); rows run upward. Everything is row-major:
-// texel index in a tile = y * 128 + x.
+// A tile (page) is 128 × 128 texels: the unit of storage, read-back and journal. A block is 8 × 8
+// texels: the unit of culling. Texel (0,0) is the lower left of the atlas (uv origin); rows run
+// upward. Everything is row-major: texel index in a tile = y * 128 + x.
 constexpr int kTileSize = 128;
 constexpr int kTexelsPerTile = kTileSize * kTileSize;
 constexpr int kBlockSize = 8;
@@ -42,7 +42,8 @@ struct TileData {
   TileMask valid;
 
   TileData() = default;
-  explicit TileData(ValueType type) : values(std::size_t{kTexelsPerTile} * strata::bytes_per_texel(type)) {}
+  explicit TileData(ValueType type)
+      : values(std::size_t{kTexelsPerTile} * strata::bytes_per_texel(type)) {}
   bool operator==(const TileData&) const = default;
 
   std::uint32_t bits(int texel) const;        // bits of the texel, 0 when invalid
@@ -61,5 +62,7 @@ void copy_texels(const TileData& from, const TileMask& mask, TileData& to);
 
 template <>
 struct std::hash<strata::TileAddress> {
-  std::size_t operator()(strata::TileAddress a) const noexcept { return (std::size_t{a.y} << 16) | a.x; }
+  std::size_t operator()(strata::TileAddress a) const noexcept {
+    return (std::size_t{a.y} << 16) | a.x;
+  }
 };

@@ -29,7 +29,8 @@ bool TileMirror::empty() const {
 }
 
 void TileMirror::assign(TileMap tiles, std::int64_t sequence) {
-  std::erase_if(tiles, [](const auto& entry) { return !entry.second || !entry.second->valid.any(); });
+  std::erase_if(tiles,
+                [](const auto& entry) { return !entry.second || !entry.second->valid.any(); });
   std::lock_guard lock(mutex_);
   tiles_ = std::move(tiles);
   sequence_ = sequence;

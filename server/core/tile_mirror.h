@@ -12,8 +12,9 @@ namespace strata {
 
 using TileMap = std::unordered_map<TileAddress, std::shared_ptr<const TileData>>;
 
-// What one layer holds, on the CPU: the tiles that have a valid texel, and the sequence of the last edit in them.
-// Tiles are immutable once put in, so a snapshot is a consistent state that costs no texel copy. Thread-safe.
+// What one layer holds, on the CPU: the tiles that have a valid texel, and the sequence of the last
+// edit in them. Tiles are immutable once put in, so a snapshot is a consistent state that costs no
+// texel copy. Thread-safe.
 class TileMirror {
  public:
   TileMirror(ValueType type, int resolution) : type_(type), resolution_(resolution) {}
@@ -26,7 +27,8 @@ class TileMirror {
     std::int64_t sequence = 0;
   };
   Snapshot snapshot() const;
-  std::shared_ptr<const TileData> tile(TileAddress address) const;  // null when nothing in it is valid
+  // null when nothing in it is valid
+  std::shared_ptr<const TileData> tile(TileAddress address) const;
   std::int64_t sequence() const;
   std::size_t bytes() const;
   bool empty() const;  // nothing is valid
@@ -36,8 +38,9 @@ class TileMirror {
   // Replaces everything.
   void assign(TileMap tiles, std::int64_t sequence);
 
-  // Taken before an edit is given to the GPU and given back once `put` has brought what it did, or it was refused: meanwhile the
-  // GPU may hold what the mirror does not. The hold may outlive the mirror.
+  // Taken before an edit is given to the GPU and given back once `put` has brought what it did, or
+  // it was refused: meanwhile the GPU may hold what the mirror does not. The hold may outlive the
+  // mirror.
   std::shared_ptr<const void> hold() const;
   bool held() const { return *holds_ > 0; }
 

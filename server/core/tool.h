@@ -6,12 +6,14 @@
 
 namespace strata {
 
-// A shape for the brush, of the whole site (core/shape_texture.h). Its shape never changes, so that a stroke's record means the
-// same for ever; a deleted tool is no longer listed or found by its slug, but its id goes on standing for its shape.
+// A shape for the brush, of the whole site (core/shape_texture.h). Its shape never changes, so that
+// a stroke's record means the same for ever; a deleted tool is no longer listed or found by its
+// slug, but its id goes on standing for its shape.
 struct Tool {
   std::int64_t id = 0;
   std::string name;
-  std::string slug;  // unique among those that are not deleted; neither all digits nor `disc` nor `square`
+  // unique among those that are not deleted; neither all digits nor `disc` nor `square`
+  std::string slug;
   bool deleted = false;
   std::int64_t version = 1;
 };

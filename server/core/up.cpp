@@ -4,7 +4,9 @@
 
 namespace strata {
 
-bool is_up(std::string_view name) { return std::ranges::find(kUpDirections, name) != kUpDirections.end(); }
+bool is_up(std::string_view name) {
+  return std::ranges::find(kUpDirections, name) != kUpDirections.end();
+}
 
 UpFrame up_frame(std::string_view up) {
   UpFrame frame;

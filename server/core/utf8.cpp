@@ -50,7 +50,8 @@ std::string mended_utf8(std::string_view text) {
 
 std::string_view first_bytes(std::string_view text, std::size_t most) {
   std::size_t end = std::min(text.size(), most);
-  while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
+  while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
+    --end;
   return text.substr(0, end);
 }
 

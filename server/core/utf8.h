@@ -6,7 +6,8 @@
 
 namespace strata {
 
-// Names come from files and systems of any encoding; what is stored, and what goes into JSON, is UTF-8 (RFC 3629).
+// Names come from files and systems of any encoding; what is stored, and what goes into JSON, is
+// UTF-8 (RFC 3629).
 
 bool is_utf8(std::string_view text);
 

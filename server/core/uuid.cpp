@@ -9,7 +9,8 @@ Uuid random_uuid() {
   Uuid uuid;
   for (std::size_t i = 0; i < uuid.bytes.size(); i += 4) {
     const std::uint32_t word = device();
-    for (std::size_t k = 0; k < 4; ++k) uuid.bytes[i + k] = static_cast<std::uint8_t>(word >> (8 * k));
+    for (std::size_t k = 0; k < 4; ++k)
+      uuid.bytes[i + k] = static_cast<std::uint8_t>(word >> (8 * k));
   }
   uuid.bytes[6] = static_cast<std::uint8_t>((uuid.bytes[6] & 0x0f) | 0x40);  // version 4
   uuid.bytes[8] = static_cast<std::uint8_t>((uuid.bytes[8] & 0x3f) | 0x80);  // RFC 4122 variant

@@ -40,7 +40,9 @@ double lowest_value(ValueType type) { return traits(type).lowest; }
 double highest_value(ValueType type) { return traits(type).highest; }
 
 bool widens_to(ValueType from, ValueType to) {
-  const auto is_unsigned = [](ValueType type) { return !is_float(type) && lowest_value(type) == 0; };
+  const auto is_unsigned = [](ValueType type) {
+    return !is_float(type) && lowest_value(type) == 0;
+  };
   return is_unsigned(from) && is_unsigned(to) && bytes_per_texel(to) > bytes_per_texel(from);
 }
 
@@ -52,18 +54,21 @@ std::optional<ValueType> parse_value_type(std::string_view name) {
 
 Result<std::uint32_t> encode_value(ValueType type, double value) {
   const Traits& t = traits(type);
-  if (!std::isfinite(value)) return fail(422, "Value not finite", "A value must be a finite number.", "value");
+  if (!std::isfinite(value))
+    return fail(422, "Value not finite", "A value must be a finite number.", "value");
   if (value < t.lowest || value > t.highest)
-    return fail(
-        422, "Value out of range",
-        "This layer holds values of type " + std::string(t.name) + ", from " + std::to_string(t.lowest) + " to " +
-            std::to_string(t.highest) + "." +
-            (widens_to(type, ValueType::u32) && value > 0 ? " It can get a wider type (PATCH {\"type\": \"u32\"})."
-                                                          : ""),
-        "value");
+    return fail(422, "Value out of range",
+                "This layer holds values of type " + std::string(t.name) + ", from " +
+                    std::to_string(t.lowest) + " to " + std::to_string(t.highest) + "." +
+                    (widens_to(type, ValueType::u32) && value > 0
+                         ? " It can get a wider type (PATCH {\"type\": \"u32\"})."
+                         : ""),
+                "value");
   if (!t.floating && value != std::floor(value))
     return fail(422, "Value not a whole number",
-                "This layer holds whole numbers (" + std::string(t.name) + "); give one without a fraction.", "value");
+                "This layer holds whole numbers (" + std::string(t.name) +
+                    "); give one without a fraction.",
+                "value");
   switch (type) {
     case ValueType::f32: return std::bit_cast<std::uint32_t>(static_cast<float>(value));
     case ValueType::f16: return glm::packHalf1x16(static_cast<float>(value));

@@ -13,7 +13,9 @@ std::optional<Visibility> parse_visibility(std::string_view text) {
   return std::nullopt;
 }
 
-std::string_view name(Visibility visibility) { return kNames[static_cast<std::size_t>(visibility)]; }
+std::string_view name(Visibility visibility) {
+  return kNames[static_cast<std::size_t>(visibility)];
+}
 
 bool sees(Role role, Visibility visibility) { return role >= least_role(visibility); }
 

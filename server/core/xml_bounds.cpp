@@ -24,7 +24,8 @@ class Scanner {
       if (is_tag) depth += ends ? -1 : is_empty ? 0 : 1;
       if (depth > kDeepestXml)
         return fail(422, "Nested too deep",
-                    "its elements are nested more than " + std::to_string(kDeepestXml) + " deep", "body");
+                    "its elements are nested more than " + std::to_string(kDeepestXml) + " deep",
+                    "body");
     }
     return {};
   }
@@ -47,7 +48,8 @@ class Scanner {
   // To behind the next `>` that stands in no quotes; whether a slash stands before it.
   bool tag() {
     for (++at_; at_ < text_.size() && text_[at_] != '>'; ++at_)
-      if (text_[at_] == '"' || text_[at_] == '\'') at_ = std::min(text_.find(text_[at_], at_ + 1), text_.size() - 1);
+      if (text_[at_] == '"' || text_[at_] == '\'')
+        at_ = std::min(text_.find(text_[at_], at_ + 1), text_.size() - 1);
     const bool is_empty = at_ < text_.size() && text_[at_ - 1] == '/';
     at_ = std::min(at_ + 1, text_.size());
     return is_empty;

@@ -7,13 +7,15 @@ namespace strata::figure {
 namespace {
 
 void set_color(cairo_t* context, const Rgba& color) {
-  cairo_set_source_rgba(context, color[0] / 255.0, color[1] / 255.0, color[2] / 255.0, color[3] / 255.0);
+  cairo_set_source_rgba(context, color[0] / 255.0, color[1] / 255.0, color[2] / 255.0,
+                        color[3] / 255.0);
 }
 
 void draw(cairo_t* context, const Path& path) {
   if (path.points.empty()) return;
   cairo_move_to(context, path.points[0].x, path.points[0].y);
-  for (std::size_t i = 1; i < path.points.size(); ++i) cairo_line_to(context, path.points[i].x, path.points[i].y);
+  for (std::size_t i = 1; i < path.points.size(); ++i)
+    cairo_line_to(context, path.points[i].x, path.points[i].y);
   if (path.closed) cairo_close_path(context);
   if (path.fill) {
     set_color(context, *path.fill);
@@ -33,7 +35,8 @@ void draw(cairo_t* context, const Words& words) {
   pango_layout_get_size(layout.get(), &width, &height);
   const double share = words.anchor == Anchor::start ? 0 : words.anchor == Anchor::middle ? 0.5 : 1;
   const double x = words.at.x - share * width / PANGO_SCALE;
-  const double y = words.at.y - static_cast<double>(pango_layout_get_baseline(layout.get())) / PANGO_SCALE;
+  const double y =
+      words.at.y - static_cast<double>(pango_layout_get_baseline(layout.get())) / PANGO_SCALE;
   if (words.halo) {
     cairo_move_to(context, x, y);
     pango_cairo_layout_path(context, layout.get());
@@ -45,7 +48,8 @@ void draw(cairo_t* context, const Words& words) {
   }
   set_color(context, {0, 0, 0, 255});
   cairo_move_to(context, x, y);
-  // Among pixels cairo puts each letter on a whole one, which shows in small words; shapes stand where they should.
+  // Among pixels cairo puts each letter on a whole one, which shows in small words; shapes stand
+  // where they should.
   if (cairo_surface_get_type(cairo_get_target(context)) == CAIRO_SURFACE_TYPE_IMAGE) {
     pango_cairo_layout_path(context, layout.get());
     cairo_fill(context);
@@ -58,7 +62,8 @@ void draw(cairo_t* context, const Words& words) {
 
 void draw_groups(cairo_t* context, const Sheet& sheet) {
   for (const Group& group : sheet.groups)
-    for (const Item& item : group.items) std::visit([&](const auto& each) { draw(context, each); }, item);
+    for (const Item& item : group.items)
+      std::visit([&](const auto& each) { draw(context, each); }, item);
 }
 
 }  // namespace strata::figure

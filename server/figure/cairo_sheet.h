@@ -6,7 +6,8 @@
 
 namespace strata::figure {
 
-// Draws all but the drawing. A unit of the context is a millimetre, its origin the sheet's top left.
+// Draws all but the drawing. A unit of the context is a millimetre, its origin the sheet's top
+// left.
 void draw_groups(cairo_t* context, const Sheet& sheet);
 
 }  // namespace strata::figure

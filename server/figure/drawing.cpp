@@ -22,20 +22,23 @@ Plane front_of(std::string_view up) {
 }
 
 // A window in millimetres from the drawing's top left, for a camera of so many pixels.
-Camera camera_over(const Drawing& drawing, const glm::dvec2& corner_mm, const glm::dvec2& size_mm, int width,
-                   int height) {
+Camera camera_over(const Drawing& drawing, const glm::dvec2& corner_mm, const glm::dvec2& size_mm,
+                   int width, int height) {
   const Plane& plane = drawing.plane;
   const double unit = drawing.units_per_mm();
-  const glm::dvec2 drawing_mm = glm::dvec2(drawing.width, drawing.height) * (kInch_mm / drawing.dpi);
+  const glm::dvec2 drawing_mm =
+      glm::dvec2(drawing.width, drawing.height) * (kInch_mm / drawing.dpi);
   // Of the middle of the drawing.
-  const double left = (corner_mm.x - drawing_mm.x / 2) * unit, top = (drawing_mm.y / 2 - corner_mm.y) * unit;
+  const double left = (corner_mm.x - drawing_mm.x / 2) * unit,
+               top = (drawing_mm.y / 2 - corner_mm.y) * unit;
   const glm::dvec3 eye = plane.in_world({drawing.center, drawing.near});
   Camera camera;
   camera.view = glm::transpose(glm::dmat4(glm::dvec4(plane.right, -glm::dot(plane.right, eye)),
                                           glm::dvec4(plane.up, -glm::dot(plane.up, eye)),
-                                          glm::dvec4(-plane.into, glm::dot(plane.into, eye)), glm::dvec4(0, 0, 0, 1)));
-  camera.projection =
-      glm::ortho(left, left + size_mm.x * unit, top - size_mm.y * unit, top, 0.0, drawing.far - drawing.near);
+                                          glm::dvec4(-plane.into, glm::dot(plane.into, eye)),
+                                          glm::dvec4(0, 0, 0, 1)));
+  camera.projection = glm::ortho(left, left + size_mm.x * unit, top - size_mm.y * unit, top, 0.0,
+                                 drawing.far - drawing.near);
   camera.width = width;
   camera.height = height;
   camera.section = drawing.section;
@@ -63,7 +66,9 @@ Plane plane_square_to(const glm::dvec3& normal, std::string_view up) {
   const double along = glm::dot(into, front.up);
   // Surface that lies has no up of its own.
   constexpr double kLying = 0.999;
-  const glm::dvec3 wish = std::abs(along) < kLying ? front.up : along < 0 ? front.into : -front.into;
+  const glm::dvec3 wish = std::abs(along) < kLying ? front.up
+                          : along < 0              ? front.into
+                                                   : -front.into;
   const glm::dvec3 right = glm::normalize(glm::cross(into, wish));
   return {right, glm::cross(right, into), into};
 }
@@ -80,7 +85,9 @@ std::optional<Extent> extent_of(std::span<const glm::dvec3> world, const Plane& 
   constexpr double kFar = std::numeric_limits<double>::infinity();
   Extent extent{glm::dvec3(kFar), glm::dvec3(-kFar)};
   for (const glm::dvec3& point : world) {
-    if (std::ranges::any_of(section, [&](const glm::dvec4& cut) { return glm::dot(cut, glm::dvec4(point, 1)) < 0; }))
+    if (std::ranges::any_of(section, [&](const glm::dvec4& cut) {
+          return glm::dot(cut, glm::dvec4(point, 1)) < 0;
+        }))
       continue;
     const glm::dvec3 drawn = plane.of(point);
     extent.min = glm::min(extent.min, drawn);

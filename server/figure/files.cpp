@@ -7,10 +7,13 @@
 namespace strata::figure {
 namespace {
 
-// Without what XML has no way to write, and cairo refuses: control characters, and the last two places of the first plane.
+// Without what XML has no way to write, and cairo refuses: control characters, and the last two
+// places of the first plane.
 std::string printable(std::string text) {
-  std::erase_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n'; });
-  for (const char* no_character : {"\uFFFE", "\uFFFF"}) boost::algorithm::erase_all(text, no_character);
+  std::erase_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n'; });
+  for (const char* no_character : {"\uFFFE", "\uFFFF"})
+    boost::algorithm::erase_all(text, no_character);
   return text;
 }
 
@@ -53,8 +56,9 @@ tl::unexpected<Problem> unwritable() {
               "The server's disk does not take the file. Free some of it, or ask for fewer dpi.");
 }
 
-Result<void> write_figure(const Sheet& asked, const Picture& drawing, int dpi, Format format, const Document& about,
-                          const std::filesystem::path& file, Progress& progress) {
+Result<void> write_figure(const Sheet& asked, const Picture& drawing, int dpi, Format format,
+                          const Document& about, const std::filesystem::path& file,
+                          Progress& progress) {
   const Sheet sheet = printable(asked);
   const Document document{printable(about.title), printable(about.author)};
   switch (format) {

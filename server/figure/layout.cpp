@@ -16,18 +16,21 @@ constexpr double kLine = 1.45;                             // of their size
 constexpr double kFrame = 0.2, kThin = 0.12;               // strokes
 constexpr int kMostTitleLines = 2, kMostCaptionLines = 8, kMostCreditLines = 3;
 constexpr double kScaleWidth = 80, kScaleHeight = 16;
-constexpr double kLegendColumn = 56, kSwatchWidth = 6, kSwatchHeight = 3, kEntry = 4.2, kTitleGap = 1.2;
+constexpr double kLegendColumn = 56, kSwatchWidth = 6, kSwatchHeight = 3, kEntry = 4.2,
+                 kTitleGap = 1.2;
 constexpr double kPi = 3.14159265358979323846;
 
-glm::dvec2 direction(double degrees) { return {std::cos(degrees * kPi / 180), -std::sin(degrees * kPi / 180)}; }
+glm::dvec2 direction(double degrees) {
+  return {std::cos(degrees * kPi / 180), -std::sin(degrees * kPi / 180)};
+}
 
 Path rectangle(const glm::dvec2& corner, const glm::dvec2& size) {
   return {{corner, corner + glm::dvec2(size.x, 0), corner + size, corner + glm::dvec2(0, size.y)}};
 }
 
 // The part of a line within a box; nothing where it passes by.
-std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& through, const glm::dvec2& along,
-                                                         const Box& box) {
+std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& through,
+                                                         const glm::dvec2& along, const Box& box) {
   double from = -1e9, to = 1e9;
   for (int axis = 0; axis < 2; ++axis) {
     const double low = box.corner[axis] - through[axis], high = low + box.size[axis];
@@ -42,19 +45,23 @@ std::optional<std::pair<glm::dvec2, glm::dvec2>> clipped(const glm::dvec2& throu
   return std::pair(through + from * along, through + to * along);
 }
 
-// How patterns are drawn, as shaders/shared/shade.h has it: pixels there are hundredths of an inch here.
+// How patterns are drawn, as shaders/shared/shade.h has it: pixels there are hundredths of an inch
+// here.
 constexpr double kPatternPixel = kInch_mm / 100;
-constexpr double kSpacing = 7 * kPatternPixel, kHatchStroke = 0.4 * kSpacing, kDotRadius = 0.32 * kSpacing;
+constexpr double kSpacing = 7 * kPatternPixel, kHatchStroke = 0.4 * kSpacing,
+                 kDotRadius = 0.32 * kSpacing;
 constexpr double kGround = 0.3, kBorder = 2 * kPatternPixel;
 
 Rgba on_paper(const Rgba& ink, double share) {
   const auto mixed = [&](int channel) {
-    return static_cast<std::uint8_t>(std::lround(255 + (ink[static_cast<std::size_t>(channel)] - 255) * share));
+    return static_cast<std::uint8_t>(
+        std::lround(255 + (ink[static_cast<std::size_t>(channel)] - 255) * share));
   };
   return {mixed(0), mixed(1), mixed(2), 255};
 }
 
-void add_filled(std::vector<Item>& items, const glm::dvec2& corner, const glm::dvec2& size, const Rgba& ink) {
+void add_filled(std::vector<Item>& items, const glm::dvec2& corner, const glm::dvec2& size,
+                const Rgba& ink) {
   Path path = rectangle(corner, size);
   path.fill = ink;
   items.push_back(std::move(path));
@@ -70,20 +77,24 @@ void add_swatch(std::vector<Item>& items, const Box& box, const LegendEntry& ent
   if (has_lines && !entry.bare) add_filled(items, box.corner, box.size, on_paper(ink, kGround));
   const glm::dvec2 middle = box.corner + box.size / 2.0;
   const glm::dvec2 along = direction(entry.angle), across(-along.y, along.x);
-  const Box within{box.corner + kHatchStroke / 2, box.size - kHatchStroke};  // so that their corners are in the box
+  // so that their corners are in the box
+  const Box within{box.corner + kHatchStroke / 2, box.size - kHatchStroke};
   if (entry.pattern == Pattern::hatch)
     for (int i = -8; i <= 8; ++i)
       if (const auto line = clipped(middle + (i * kSpacing) * across, along, within)) {
         const glm::dvec2 half = across * (kHatchStroke / 2);
         items.push_back(
-            Path{{line->first - half, line->second - half, line->second + half, line->first + half}, true, ink});
+            Path{{line->first - half, line->second - half, line->second + half, line->first + half},
+                 true,
+                 ink});
       }
   if (entry.pattern == Pattern::dots)
     for (int i = -2; i <= 2; ++i) {
       Path dot{{}, true, ink};
       const glm::dvec2 at = middle + glm::dvec2(i * kSpacing, 0);
       if (std::abs(at.x - middle.x) + kDotRadius > box.size.x / 2) continue;
-      for (int corner = 0; corner < 12; ++corner) dot.points.push_back(at + kDotRadius * direction(30.0 * corner));
+      for (int corner = 0; corner < 12; ++corner)
+        dot.points.push_back(at + kDotRadius * direction(30.0 * corner));
       items.push_back(std::move(dot));
     }
   if (entry.pattern == Pattern::solid || entry.bare) {
@@ -103,7 +114,9 @@ struct Row {
   std::string text;
   const LegendEntry* entry = nullptr;
   const Legend* legend = nullptr;
-  double height() const { return kind == Kind::ramp ? 2 * kEntry : kind == Kind::title ? kEntry + kTitleGap : kEntry; }
+  double height() const {
+    return kind == Kind::ramp ? 2 * kEntry : kind == Kind::title ? kEntry + kTitleGap : kEntry;
+  }
 };
 
 std::string first_line(const std::string& text, bool bold, double width) {
@@ -119,7 +132,8 @@ std::vector<List> lists_of(const std::vector<Legend>& legends, double width) {
     List list{{Row::Kind::title, first_line(legend.title, true, width)}};
     if (!legend.ramp.empty()) list.push_back({Row::Kind::ramp, {}, nullptr, &legend});
     for (const LegendEntry& entry : legend.entries)
-      list.push_back({Row::Kind::entry, first_line(entry.label, false, width - kSwatchWidth - 2), &entry});
+      list.push_back(
+          {Row::Kind::entry, first_line(entry.label, false, width - kSwatchWidth - 2), &entry});
     lists.push_back(std::move(list));
   }
   return lists;
@@ -131,10 +145,11 @@ struct PlacedRow {
   double y;
 };
 
-// Column by column. A list that has no room below others begins a column; one that is broken (`may_break`) has its title on each of its
-// parts. Nothing: not all has room.
-std::optional<std::vector<PlacedRow>> place_lists(const std::vector<List>& lists, int columns, double height,
-                                                  bool may_break, const std::string& continued) {
+// Column by column. A list that has no room below others begins a column; one that is broken
+// (`may_break`) has its title on each of its parts. Nothing: not all has room.
+std::optional<std::vector<PlacedRow>> place_lists(const std::vector<List>& lists, int columns,
+                                                  double height, bool may_break,
+                                                  const std::string& continued) {
   constexpr double kRounding = 1e-9;
   std::vector<PlacedRow> placed;
   int column = 0;
@@ -179,7 +194,8 @@ std::vector<PlacedRow> place_most(const std::vector<List>& lists, int columns, d
     std::size_t left = count;
     for (const List& list : lists) {
       if (left == 0) break;
-      kept.emplace_back(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(std::min(left, list.size())));
+      kept.emplace_back(list.begin(),
+                        list.begin() + static_cast<std::ptrdiff_t>(std::min(left, list.size())));
       left -= kept.back().size();
     }
     if (count < all) {
@@ -202,19 +218,24 @@ struct PlacedLegend {
   std::vector<PlacedRow> rows;
 };
 
-// In as little height as keeps its lists whole; where that is more than `whole`, they are broken so that the columns are about the same.
+// In as little height as keeps its lists whole; where that is more than `whole`, they are broken so
+// that the columns are about the same.
 PlacedLegend place_legend(const std::vector<List>& lists, int columns, double whole, double most,
                           const std::string& continued) {
   for (const bool may_break : {false, true})
-    for (double height = kEntry + kTitleGap; height <= (may_break ? most : whole) + 1e-9; height += kEntry / 2)
-      if (auto rows = place_lists(lists, columns, height, may_break, continued)) return {height, std::move(*rows)};
+    for (double height = kEntry + kTitleGap; height <= (may_break ? most : whole) + 1e-9;
+         height += kEntry / 2)
+      if (auto rows = place_lists(lists, columns, height, may_break, continued))
+        return {height, std::move(*rows)};
   return {most, place_most(lists, columns, most, continued)};
 }
 
 void add_row(std::vector<Item>& items, const Row& row, const glm::dvec2& at, double width) {
   const double base = at.y + kEntry - 1.1;
   switch (row.kind) {
-    case Row::Kind::title: items.push_back(Words{{at.x, base + kTitleGap}, row.text, kText, true}); return;
+    case Row::Kind::title:
+      items.push_back(Words{{at.x, base + kTitleGap}, row.text, kText, true});
+      return;
     case Row::Kind::more: items.push_back(Words{{at.x, base}, row.text, kText}); return;
     case Row::Kind::entry:
       add_swatch(items, {{at.x, at.y + 0.5}, {kSwatchWidth, kSwatchHeight}}, *row.entry);
@@ -227,12 +248,14 @@ void add_row(std::vector<Item>& items, const Row& row, const glm::dvec2& at, dou
         const Rgba& color = row.legend->ramp[i];
         // Each a little wider, so that no gap shows between them.
         const double wide = i + 1 < row.legend->ramp.size() ? step * 1.2 : step;
-        Path bar = rectangle({at.x + static_cast<double>(i) * step, at.y + 0.5}, {wide, kSwatchHeight});
+        Path bar =
+            rectangle({at.x + static_cast<double>(i) * step, at.y + 0.5}, {wide, kSwatchHeight});
         bar.fill = Rgba{color[0], color[1], color[2], 255};
         items.push_back(std::move(bar));
       }
       items.push_back(Words{{at.x, base + kEntry}, row.legend->low, kText});
-      items.push_back(Words{{at.x + length, base + kEntry}, row.legend->high, kText, false, Anchor::end});
+      items.push_back(
+          Words{{at.x + length, base + kEntry}, row.legend->high, kText, false, Anchor::end});
     }
   }
 }
@@ -245,8 +268,8 @@ std::vector<Item> legend_items(const PlacedLegend& legend, const Box& box, int c
   return items;
 }
 
-double add_lines(std::vector<Item>& items, const std::vector<std::string>& lines, const glm::dvec2& top, double size,
-                 bool bold) {
+double add_lines(std::vector<Item>& items, const std::vector<std::string>& lines,
+                 const glm::dvec2& top, double size, bool bold) {
   double y = top.y;
   for (const std::string& line : lines) {
     items.push_back(Words{{top.x, y + size}, line, size, bold});
@@ -273,11 +296,11 @@ Group bar_group(const ScaleBar& bar, double scale, const glm::dvec2& right_botto
   for (int i = 0; i <= bar.steps; ++i) {
     std::string text = short_number(i * bar.step);
     if (i == bar.steps) text += " " + bar.unit;
-    group.items.push_back(
-        Words{{left.x + i * step_mm, right_bottom.y}, std::move(text), kSmall, false, Anchor::middle});
+    group.items.push_back(Words{
+        {left.x + i * step_mm, right_bottom.y}, std::move(text), kSmall, false, Anchor::middle});
   }
-  group.items.push_back(
-      Words{{left.x + bar.length_mm / 2, left.y - 1.4}, scale_text(scale), kText, true, Anchor::middle});
+  group.items.push_back(Words{
+      {left.x + bar.length_mm / 2, left.y - 1.4}, scale_text(scale), kText, true, Anchor::middle});
   return group;
 }
 
@@ -327,14 +350,16 @@ ScaleBar scale_bar(double scale, double widest_mm) {
   return bar;
 }
 
-SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions, const std::vector<Legend>& legends, int dpi) {
+SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions,
+                         const std::vector<Legend>& legends, int dpi) {
   sheet_.size = paper;
   const double width = paper.x - 2 * kMargin;
   const double text_width = std::max(40.0, width - kScaleWidth - kGap);
   const auto title = wrapped(captions.title, kTitle, true, text_width, kMostTitleLines);
   const auto caption = wrapped(captions.caption, kText, false, text_width, kMostCaptionLines);
   const auto credit = wrapped(captions.credit, kSmall, false, text_width, kMostCreditLines);
-  const double text_height = height_of(title, kTitle) + height_of(caption, kText) + height_of(credit, kSmall) + 2;
+  const double text_height =
+      height_of(title, kTitle) + height_of(caption, kText) + height_of(credit, kSmall) + 2;
   const double strip = std::max(text_height, kScaleHeight);
   const double strip_top = paper.y - kMargin - strip;
 
@@ -346,12 +371,15 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions, const std::
   if (!lists.empty() && aside) {
     area.size.x -= kLegendColumn + kGap;
     const auto placed = place_legend(lists, columns, area.size.y, area.size.y, captions.continued);
-    legend.items =
-        legend_items(placed, {{paper.x - kMargin - kLegendColumn, kMargin}, {kLegendColumn, area.size.y}}, columns);
+    legend.items = legend_items(
+        placed, {{paper.x - kMargin - kLegendColumn, kMargin}, {kLegendColumn, area.size.y}},
+        columns);
   } else if (!lists.empty()) {
-    const auto placed = place_legend(lists, columns, area.size.y / 4, area.size.y / 3, captions.continued);
+    const auto placed =
+        place_legend(lists, columns, area.size.y / 4, area.size.y / 3, captions.continued);
     area.size.y -= placed.height + kGap;
-    legend.items = legend_items(placed, {{kMargin, strip_top - kGap - placed.height}, {width, placed.height}}, columns);
+    legend.items = legend_items(
+        placed, {{kMargin, strip_top - kGap - placed.height}, {width, placed.height}}, columns);
   }
 
   // On whole pixels, so that a drawing has its scale in every kind of file.
@@ -359,8 +387,9 @@ SheetLayout::SheetLayout(glm::dvec2 paper, const Captions& captions, const std::
   const auto in_mm = [&](double pixels) { return pixels * kInch_mm / dpi; };
   width_ = std::max(1, static_cast<int>(in_pixels(area.size.x)));
   height_ = std::max(1, static_cast<int>(in_pixels(area.size.y)));
-  sheet_.drawing = {{in_mm(std::round(in_pixels(area.corner.x))), in_mm(std::round(in_pixels(area.corner.y)))},
-                    {in_mm(width_), in_mm(height_)}};
+  sheet_.drawing = {
+      {in_mm(std::round(in_pixels(area.corner.x))), in_mm(std::round(in_pixels(area.corner.y)))},
+      {in_mm(width_), in_mm(height_)}};
 
   Group frame{"frame", {}};
   Path border = rectangle(sheet_.drawing.corner, sheet_.drawing.size);
@@ -379,20 +408,22 @@ Sheet SheetLayout::finish(double scale, const std::optional<glm::dvec2>& north,
   Sheet sheet = sheet_;
   Group names{"labels", {}};
   for (const Label& label : labels)
-    names.items.push_back(Words{sheet.drawing.corner + label.at + glm::dvec2(0, kLabel_mm * 0.36), label.text,
-                                kLabel_mm, false, Anchor::middle, true});
+    names.items.push_back(Words{sheet.drawing.corner + label.at + glm::dvec2(0, kLabel_mm * 0.36),
+                                label.text, kLabel_mm, false, Anchor::middle, true});
   sheet.groups.insert(sheet.groups.begin(), std::move(names));
   const glm::dvec2 end = scale_box_.corner + scale_box_.size;
   constexpr double kArrowRoom = 18, kBarOverhang = 6;  // of the last number
   const double widest = kScaleWidth - kArrowRoom - 2 * kBarOverhang;
-  sheet.groups.push_back(bar_group(scale_bar(scale, widest), scale, {end.x - kBarOverhang, end.y - 1}));
+  sheet.groups.push_back(
+      bar_group(scale_bar(scale, widest), scale, {end.x - kBarOverhang, end.y - 1}));
   if (north)
-    sheet.groups.push_back(
-        arrow_group(*north, {scale_box_.corner.x + kArrowRoom / 2, scale_box_.corner.y + kScaleHeight / 2}));
+    sheet.groups.push_back(arrow_group(
+        *north, {scale_box_.corner.x + kArrowRoom / 2, scale_box_.corner.y + kScaleHeight / 2}));
   return sheet;
 }
 
-std::vector<Label> place_labels(const std::vector<LabelWish>& wishes, const glm::dvec2& drawing_mm) {
+std::vector<Label> place_labels(const std::vector<LabelWish>& wishes,
+                                const glm::dvec2& drawing_mm) {
   std::vector<Label> placed;
   std::vector<Box> taken;
   for (const LabelWish& wish : wishes) {
@@ -401,7 +432,8 @@ std::vector<Label> place_labels(const std::vector<LabelWish>& wishes, const glm:
     for (const glm::dvec2& place : wish.places) {
       const Box box{place - size / 2.0, size};
       const glm::dvec2 end = box.corner + box.size;
-      if (box.corner.x < 0 || box.corner.y < 0 || end.x > drawing_mm.x || end.y > drawing_mm.y) continue;
+      if (box.corner.x < 0 || box.corner.y < 0 || end.x > drawing_mm.x || end.y > drawing_mm.y)
+        continue;
       const bool is_free = std::ranges::none_of(taken, [&](const Box& other) {
         const glm::dvec2 other_end = other.corner + other.size;
         return box.corner.x < other_end.x && other.corner.x < end.x && box.corner.y < other_end.y &&

@@ -16,7 +16,8 @@ glm::dvec2 paper_mm(Paper paper, bool landscape);
 
 struct Captions {
   std::string title, caption, credit;
-  std::string continued = "(continued)";  // behind the title of a list that goes on in another column of the legend
+  // behind the title of a list that goes on in another column of the legend
+  std::string continued = "(continued)";
 };
 
 struct Label {
@@ -27,15 +28,18 @@ struct Label {
 // A sheet with all but what depends on the drawing's scale: how large the drawing may be.
 class SheetLayout {
  public:
-  SheetLayout(glm::dvec2 paper_mm, const Captions& captions, const std::vector<Legend>& legends, int dpi);
+  SheetLayout(glm::dvec2 paper_mm, const Captions& captions, const std::vector<Legend>& legends,
+              int dpi);
 
   // Whole pixels of `dpi` that the drawing has room for.
   int drawing_width() const { return width_; }
   int drawing_height() const { return height_; }
   glm::dvec2 drawing_mm() const { return sheet_.drawing.size; }
 
-  // `north`: where it is on the paper (y down), unless it is too far from its plane; labels as `place_labels` leaves them.
-  Sheet finish(double scale, const std::optional<glm::dvec2>& north, const std::vector<Label>& labels) const;
+  // `north`: where it is on the paper (y down), unless it is too far from its plane; labels as
+  // `place_labels` leaves them.
+  Sheet finish(double scale, const std::optional<glm::dvec2>& north,
+               const std::vector<Label>& labels) const;
 
  private:
   Sheet sheet_;
@@ -61,7 +65,8 @@ struct LabelWish {
   std::vector<glm::dvec2> places;  // mm from the drawing's top left, the best first
 };
 inline constexpr double kLabel_mm = 2.4;  // height of letters
-// Each at its first place where it lies over no other and within the drawing; those without one are left out.
+// Each at its first place where it lies over no other and within the drawing; those without one are
+// left out.
 std::vector<Label> place_labels(const std::vector<LabelWish>& wishes, const glm::dvec2& drawing_mm);
 
 }  // namespace strata::figure

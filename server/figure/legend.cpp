@@ -13,7 +13,8 @@ Legend legend_of(const Layer& layer, const Palette& palette, const std::set<doub
   if (palette.mode == PaletteMode::linear) {
     constexpr int kSteps = 64;
     for (int i = 0; i < kSteps; ++i)
-      legend.ramp.push_back(color_of(palette, palette.min + (palette.max - palette.min) * (i + 0.5) / kSteps));
+      legend.ramp.push_back(
+          color_of(palette, palette.min + (palette.max - palette.min) * (i + 0.5) / kSteps));
     legend.low = short_number(palette.min);
     legend.high = short_number(palette.max);
     return legend;

@@ -25,9 +25,10 @@ struct Legend {
   std::string low, high;
 };
 
-// Its title is the layer's name in `language`, where it has one in it. A layer of keys whose colours are made up has none but its title. `there`: of a categorical palette of values the classes that are told;
-// null: all.
-Legend legend_of(const Layer& layer, const Palette& palette, const std::set<double>* there = nullptr,
-                 const std::string& language = {});
+// Its title is the layer's name in `language`, where it has one in it. A layer of keys whose
+// colours are made up has none but its title. `there`: of a categorical palette of values the
+// classes that are told; null: all.
+Legend legend_of(const Layer& layer, const Palette& palette,
+                 const std::set<double>* there = nullptr, const std::string& language = {});
 
 }  // namespace strata::figure

@@ -10,8 +10,8 @@
 
 namespace strata::figure {
 
-// What is on a sheet of paper besides the drawing, as shapes and words; each kind of file draws the same. Millimetres from the
-// sheet's top left, y down.
+// What is on a sheet of paper besides the drawing, as shapes and words; each kind of file draws the
+// same. Millimetres from the sheet's top left, y down.
 
 struct Path {
   std::vector<glm::dvec2> points;

@@ -16,15 +16,16 @@ namespace {
 constexpr int kBandRows = 256;
 
 // cairo's pixels are 32 bits in the machine's order: 0x00rrggbb.
-void put_drawing(std::uint8_t* band, int stride, int first_row, int rows, const Picture& drawing, int left, int top,
-                 int width) {
+void put_drawing(std::uint8_t* band, int stride, int first_row, int rows, const Picture& drawing,
+                 int left, int top, int width) {
   for (int row = 0; row < rows; ++row) {
     const int from = first_row + row - top;
     if (from < 0 || from >= drawing.height) continue;
     const std::uint8_t* rgba = drawing.rgba.data() + std::size_t{4} * from * drawing.width;
     std::uint8_t* line = band + static_cast<std::size_t>(row) * stride + std::size_t{4} * left;
     for (int x = 0; x < std::min(drawing.width, width - left); ++x, rgba += 4, line += 4) {
-      const std::uint32_t pixel = std::uint32_t{rgba[0]} << 16 | std::uint32_t{rgba[1]} << 8 | rgba[2];
+      const std::uint32_t pixel =
+          std::uint32_t{rgba[0]} << 16 | std::uint32_t{rgba[1]} << 8 | rgba[2];
       std::memcpy(line, &pixel, 4);
     }
   }
@@ -54,8 +55,8 @@ bool sheet_rows(const Sheet& sheet, const Picture& drawing, int dpi, Progress& p
     cairo_surface_flush(band.get());
     std::uint8_t* pixels = cairo_image_surface_get_data(band.get());
     const int stride = cairo_image_surface_get_stride(band.get());
-    put_drawing(pixels, stride, first, rows, drawing, pixel(sheet.drawing.corner.x), pixel(sheet.drawing.corner.y),
-                width);
+    put_drawing(pixels, stride, first, rows, drawing, pixel(sheet.drawing.corner.x),
+                pixel(sheet.drawing.corner.y), width);
     cairo_surface_mark_dirty(band.get());
     cairo_translate(context.get(), 0, -first);
     cairo_scale(context.get(), pixels_per_mm, pixels_per_mm);

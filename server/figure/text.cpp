@@ -19,15 +19,15 @@ CairoContext measuring_context() {
 
 Layout make_layout(cairo_t* context, const std::string& text, double size_mm, bool bold) {
   Layout layout(pango_cairo_create_layout(context));
-  std::unique_ptr<PangoFontDescription, decltype(&pango_font_description_free)> font(pango_font_description_new(),
-                                                                                     pango_font_description_free);
+  std::unique_ptr<PangoFontDescription, decltype(&pango_font_description_free)> font(
+      pango_font_description_new(), pango_font_description_free);
   pango_font_description_set_family(font.get(), kTypeface);
   pango_font_description_set_weight(font.get(), bold ? PANGO_WEIGHT_BOLD : PANGO_WEIGHT_NORMAL);
   pango_font_description_set_absolute_size(font.get(), size_mm * PANGO_SCALE);
   pango_layout_set_font_description(layout.get(), font.get());
   // As on any other device: hints are for pixels.
-  std::unique_ptr<cairo_font_options_t, decltype(&cairo_font_options_destroy)> options(cairo_font_options_create(),
-                                                                                       cairo_font_options_destroy);
+  std::unique_ptr<cairo_font_options_t, decltype(&cairo_font_options_destroy)> options(
+      cairo_font_options_create(), cairo_font_options_destroy);
   cairo_font_options_set_hint_style(options.get(), CAIRO_HINT_STYLE_NONE);
   cairo_font_options_set_hint_metrics(options.get(), CAIRO_HINT_METRICS_OFF);
   pango_cairo_context_set_font_options(pango_layout_get_context(layout.get()), options.get());
@@ -46,7 +46,8 @@ double width_mm(const std::string& text, double size_mm, bool bold) {
   return static_cast<double>(width) / PANGO_SCALE / kMeasured;
 }
 
-std::vector<std::string> wrapped(const std::string& text, double size_mm, bool bold, double width_mm, int most_lines) {
+std::vector<std::string> wrapped(const std::string& text, double size_mm, bool bold,
+                                 double width_mm, int most_lines) {
   std::vector<std::string> lines;
   if (text.empty() || most_lines < 1) return lines;
   const auto context = measuring_context();
@@ -56,9 +57,10 @@ std::vector<std::string> wrapped(const std::string& text, double size_mm, bool b
   const int count = pango_layout_get_line_count(layout.get());
   for (int i = 0; i < count && i < most_lines; ++i) {
     const PangoLayoutLine* line = pango_layout_get_line_readonly(layout.get(), i);
-    std::string words =
-        text.substr(static_cast<std::size_t>(line->start_index), static_cast<std::size_t>(line->length));
-    while (!words.empty() && (words.back() == ' ' || words.back() == '\n' || words.back() == '\r')) words.pop_back();
+    std::string words = text.substr(static_cast<std::size_t>(line->start_index),
+                                    static_cast<std::size_t>(line->length));
+    while (!words.empty() && (words.back() == ' ' || words.back() == '\n' || words.back() == '\r'))
+      words.pop_back();
     lines.push_back(std::move(words));
   }
   if (count > most_lines) lines.back() += " …";

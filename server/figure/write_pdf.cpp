@@ -19,22 +19,25 @@ Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Documen
   const auto jpeg = drawing_jpeg(drawing);
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.7, "Writing the file");
-  const CairoSurface page(
-      cairo_pdf_surface_create(path.c_str(), sheet.size.x * kPoints_per_mm, sheet.size.y * kPoints_per_mm));
+  const CairoSurface page(cairo_pdf_surface_create(path.c_str(), sheet.size.x * kPoints_per_mm,
+                                                   sheet.size.y * kPoints_per_mm));
   cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_TITLE, document.title.c_str());
   cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_AUTHOR, document.author.c_str());
   cairo_pdf_surface_set_metadata(page.get(), CAIRO_PDF_METADATA_CREATOR, "Strata");
   {
     const CairoContext context(cairo_create(page.get()));
     cairo_scale(context.get(), kPoints_per_mm, kPoints_per_mm);
-    // cairo takes the JPEG in place of these pixels, and needs them for their size alone. It writes to neither.
-    const CairoSurface image(cairo_image_surface_create_for_data(const_cast<std::uint8_t*>(drawing.rgba.data()),
-                                                                 CAIRO_FORMAT_RGB24, drawing.width, drawing.height,
-                                                                 4 * drawing.width));
-    cairo_surface_set_mime_data(image.get(), CAIRO_MIME_TYPE_JPEG, jpeg.data(), jpeg.size(), nullptr, nullptr);
+    // cairo takes the JPEG in place of these pixels, and needs them for their size alone. It writes
+    // to neither.
+    const CairoSurface image(cairo_image_surface_create_for_data(
+        const_cast<std::uint8_t*>(drawing.rgba.data()), CAIRO_FORMAT_RGB24, drawing.width,
+        drawing.height, 4 * drawing.width));
+    cairo_surface_set_mime_data(image.get(), CAIRO_MIME_TYPE_JPEG, jpeg.data(), jpeg.size(),
+                                nullptr, nullptr);
     cairo_save(context.get());
     cairo_translate(context.get(), sheet.drawing.corner.x, sheet.drawing.corner.y);
-    cairo_scale(context.get(), sheet.drawing.size.x / drawing.width, sheet.drawing.size.y / drawing.height);
+    cairo_scale(context.get(), sheet.drawing.size.x / drawing.width,
+                sheet.drawing.size.y / drawing.height);
     cairo_set_source_surface(context.get(), image.get(), 0, 0);
     cairo_paint(context.get());
     cairo_restore(context.get());

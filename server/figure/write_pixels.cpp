@@ -28,8 +28,9 @@ int ignore_tiff(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 
 }  // namespace
 
-Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi, const Document& document,
-                       const std::filesystem::path& path, Progress& progress) {
+Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi,
+                       const Document& document, const std::filesystem::path& path,
+                       Progress& progress) {
   const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "wb"));
   if (!file) return unwritable();
   const auto [width, height] = pixels_of(sheet, dpi);
@@ -38,14 +39,18 @@ Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi, cons
   std::string title = document.title, author = document.author;
   char title_key[] = "Title", author_key[] = "Author";
   png_text texts[2] = {};
-  texts[0] = {PNG_ITXT_COMPRESSION_NONE, title_key, title.data(), 0, title.size(), nullptr, nullptr};
-  texts[1] = {PNG_ITXT_COMPRESSION_NONE, author_key, author.data(), 0, author.size(), nullptr, nullptr};
+  texts[0] = {
+      PNG_ITXT_COMPRESSION_NONE, title_key, title.data(), 0, title.size(), nullptr, nullptr};
+  texts[1] = {
+      PNG_ITXT_COMPRESSION_NONE, author_key, author.data(), 0, author.size(), nullptr, nullptr};
   const auto per_metre = static_cast<png_uint_32>(std::lround(dpi / 0.0254));
   bool good = guarded(writer.png, [&] {
     png_init_io(writer.png, file.get());
-    png_set_compression_level(writer.png, 4);  // the best one takes four times as long for a tenth less
-    png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    // the best one takes four times as long for a tenth less
+    png_set_compression_level(writer.png, 4);
+    png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(width),
+                 static_cast<png_uint_32>(height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_set_pHYs(writer.png, writer.info, per_metre, per_metre, PNG_RESOLUTION_METER);
     png_set_text(writer.png, writer.info, texts, 2);
@@ -59,10 +64,11 @@ Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi, cons
   return ended(good, progress.cancelled());
 }
 
-Result<void> write_tiff(const Sheet& sheet, const Picture& drawing, int dpi, const Document& document,
-                        const std::filesystem::path& path, Progress& progress) {
-  const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(TIFFOpenOptionsAlloc(),
-                                                                                 TIFFOpenOptionsFree);
+Result<void> write_tiff(const Sheet& sheet, const Picture& drawing, int dpi,
+                        const Document& document, const std::filesystem::path& path,
+                        Progress& progress) {
+  const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
+      TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), ignore_tiff, nullptr);
   TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore_tiff, nullptr);
   std::unique_ptr<TIFF, CloseTiff> tiff(TIFFOpenExt(path.c_str(), "w", options.get()));

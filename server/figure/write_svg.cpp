@@ -1,4 +1,5 @@
-// Sheets as SVG, in millimetres: groups with names, words as text, so that all can be edited. (cairo's SVG draws letters as shapes.)
+// Sheets as SVG, in millimetres: groups with names, words as text, so that all can be edited.
+// (cairo's SVG draws letters as shapes.)
 #include <sodium.h>
 
 #include <fstream>
@@ -30,7 +31,8 @@ std::string hex(const Rgba& color) {
 
 std::string base64(const std::vector<std::uint8_t>& bytes) {
   std::string text(sodium_base64_encoded_len(bytes.size(), sodium_base64_VARIANT_ORIGINAL), '\0');
-  sodium_bin2base64(text.data(), text.size(), bytes.data(), bytes.size(), sodium_base64_VARIANT_ORIGINAL);
+  sodium_bin2base64(text.data(), text.size(), bytes.data(), bytes.size(),
+                    sodium_base64_VARIANT_ORIGINAL);
   text.pop_back();  // its end
   return text;
 }
@@ -38,16 +40,19 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
 void write(std::ostream& out, const Path& path) {
   out << "<path d=\"";
   for (std::size_t i = 0; i < path.points.size(); ++i)
-    out << (i == 0 ? "M" : "L") << short_number(path.points[i].x) << ' ' << short_number(path.points[i].y);
+    out << (i == 0 ? "M" : "L") << short_number(path.points[i].x) << ' '
+        << short_number(path.points[i].y);
   out << (path.closed ? "Z" : "") << "\" fill=\"" << (path.fill ? hex(*path.fill) : "none") << '"';
-  if (path.fill && (*path.fill)[3] < 255) out << " fill-opacity=\"" << short_number((*path.fill)[3] / 255.0) << '"';
-  if (path.stroke_mm > 0) out << " stroke=\"#000\" stroke-width=\"" << short_number(path.stroke_mm) << '"';
+  if (path.fill && (*path.fill)[3] < 255)
+    out << " fill-opacity=\"" << short_number((*path.fill)[3] / 255.0) << '"';
+  if (path.stroke_mm > 0)
+    out << " stroke=\"#000\" stroke-width=\"" << short_number(path.stroke_mm) << '"';
   out << "/>\n";
 }
 
 void write(std::ostream& out, const Words& words) {
-  out << "<text x=\"" << short_number(words.at.x) << "\" y=\"" << short_number(words.at.y) << "\" font-size=\""
-      << short_number(words.size_mm) << '"';
+  out << "<text x=\"" << short_number(words.at.x) << "\" y=\"" << short_number(words.at.y)
+      << "\" font-size=\"" << short_number(words.size_mm) << '"';
   if (words.bold) out << " font-weight=\"bold\"";
   if (words.anchor != Anchor::start)
     out << " text-anchor=\"" << (words.anchor == Anchor::middle ? "middle" : "end") << '"';
@@ -67,19 +72,20 @@ Result<void> write_svg(const Sheet& sheet, const Picture& drawing, const Documen
   progress.report(0.7, "Writing the file");
   std::ofstream out(path, std::ios::binary);
   const std::string width = short_number(sheet.size.x), height = short_number(sheet.size.y);
-  out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << width
-      << "mm\" height=\"" << height << "mm\" viewBox=\"0 0 " << width << ' ' << height << "\" font-family=\""
-      << kTypeface << ", sans-serif\">\n<title>" << escaped(document.title) << "</title>\n<desc>"
-      << escaped(document.author) << "</desc>\n<rect width=\"" << width << "\" height=\"" << height
-      << "\" fill=\"#fff\"/>\n";
+  out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\""
+      << width << "mm\" height=\"" << height << "mm\" viewBox=\"0 0 " << width << ' ' << height
+      << "\" font-family=\"" << kTypeface << ", sans-serif\">\n<title>" << escaped(document.title)
+      << "</title>\n<desc>" << escaped(document.author) << "</desc>\n<rect width=\"" << width
+      << "\" height=\"" << height << "\" fill=\"#fff\"/>\n";
   out << "<image id=\"drawing\" x=\"" << short_number(sheet.drawing.corner.x) << "\" y=\""
-      << short_number(sheet.drawing.corner.y) << "\" width=\"" << short_number(sheet.drawing.size.x) << "\" height=\""
-      << short_number(sheet.drawing.size.y) << "\" preserveAspectRatio=\"none\" href=\"data:image/jpeg;base64," << jpeg
-      << "\"/>\n";
+      << short_number(sheet.drawing.corner.y) << "\" width=\"" << short_number(sheet.drawing.size.x)
+      << "\" height=\"" << short_number(sheet.drawing.size.y)
+      << "\" preserveAspectRatio=\"none\" href=\"data:image/jpeg;base64," << jpeg << "\"/>\n";
   for (const Group& group : sheet.groups) {
     if (group.items.empty()) continue;
     out << "<g id=\"" << group.id << "\">\n";
-    for (const Item& item : group.items) std::visit([&](const auto& each) { write(out, each); }, item);
+    for (const Item& item : group.items)
+      std::visit([&](const auto& each) { write(out, each); }, item);
     out << "</g>\n";
   }
   out << "</svg>\n";

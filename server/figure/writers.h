@@ -4,11 +4,14 @@
 
 namespace strata::figure {
 
-// One for each kind of file, as write_figure, which has left out of all words what files do not have.
-Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi, const Document& document,
-                       const std::filesystem::path& path, Progress& progress);
-Result<void> write_tiff(const Sheet& sheet, const Picture& drawing, int dpi, const Document& document,
-                        const std::filesystem::path& path, Progress& progress);
+// One for each kind of file, as write_figure, which has left out of all words what files do not
+// have.
+Result<void> write_png(const Sheet& sheet, const Picture& drawing, int dpi,
+                       const Document& document, const std::filesystem::path& path,
+                       Progress& progress);
+Result<void> write_tiff(const Sheet& sheet, const Picture& drawing, int dpi,
+                        const Document& document, const std::filesystem::path& path,
+                        Progress& progress);
 Result<void> write_svg(const Sheet& sheet, const Picture& drawing, const Document& document,
                        const std::filesystem::path& path, Progress& progress);
 Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Document& document,

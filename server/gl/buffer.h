@@ -32,7 +32,8 @@ class Buffer {
   void upload_values(std::size_t offset, std::span<const T> values) {
     upload(offset, std::as_bytes(values));
   }
-  // Ranges must lie inside the buffers and begin and end at multiples of 4. What shaders wrote needs a barrier before.
+  // Ranges must lie inside the buffers and begin and end at multiples of 4. What shaders wrote
+  // needs a barrier before.
   void clear(std::size_t offset, std::size_t bytes) const;                          // to zeros
   void copy_to(const Buffer& target, std::size_t offset, std::size_t bytes) const;  // to its start
   void bind_storage(GLuint binding) const;

@@ -9,15 +9,18 @@
 namespace strata::gl {
 namespace {
 
-void GLAPIENTRY on_message(GLenum, GLenum type, GLuint id, GLenum severity, GLsizei length, const GLchar* message,
-                           const void* user) {
-  if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR && severity != GL_DEBUG_SEVERITY_HIGH)
+void GLAPIENTRY on_message(GLenum, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                           const GLchar* message, const void* user) {
+  if (type != GL_DEBUG_TYPE_ERROR && type != GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR &&
+      severity != GL_DEBUG_SEVERITY_HIGH)
     return;
-  // An allocation that does not fit is told to its caller by check_memory; it is no mistake of ours.
+  // An allocation that does not fit is told to its caller by check_memory; it is no mistake of
+  // ours.
   if (id == GL_OUT_OF_MEMORY) return;
   auto* messages = static_cast<DebugMessages*>(const_cast<void*>(user));
   messages->count_error();
-  const std::size_t size = length < 0 ? std::string_view(message).size() : static_cast<std::size_t>(length);
+  const std::size_t size =
+      length < 0 ? std::string_view(message).size() : static_cast<std::size_t>(length);
   log::error("GL: " + std::string(message, size));
 }
 
@@ -37,7 +40,8 @@ Result<void> check_memory(std::string_view what, std::size_t bytes) {
   }
   if (!out_of_memory) return {};
   return fail(503, "GPU out of memory",
-              "The driver has no memory for '" + std::string(what) + "' (" + std::to_string(bytes >> 20) +
+              "The driver has no memory for '" + std::string(what) + "' (" +
+                  std::to_string(bytes >> 20) +
                   " MiB). Close models or layers, or lower --gpu-memory.");
 }
 

@@ -8,7 +8,8 @@
 
 namespace strata::gl {
 
-// Counts and logs KHR_debug errors of the current context from `install` on. Must outlive the context.
+// Counts and logs KHR_debug errors of the current context from `install` on. Must outlive the
+// context.
 class DebugMessages {
  public:
   void install();

@@ -48,14 +48,17 @@ std::vector<Candidate> candidates() {
   std::vector<Candidate> found;
   for (std::size_t i = 0; i < devices.size(); ++i) {
     if (is_software(devices[i])) continue;
-    found.push_back({platform_display(EGL_PLATFORM_DEVICE_EXT, devices[i]), "hardware device " + std::to_string(i)});
+    found.push_back({platform_display(EGL_PLATFORM_DEVICE_EXT, devices[i]),
+                     "hardware device " + std::to_string(i)});
   }
   if (has_extension(extensions, "EGL_MESA_platform_surfaceless")) {
-    found.push_back({platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY), "surfaceless"});
+    found.push_back(
+        {platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY), "surfaceless"});
   }
   for (std::size_t i = 0; i < devices.size(); ++i) {
     if (!is_software(devices[i])) continue;
-    found.push_back({platform_display(EGL_PLATFORM_DEVICE_EXT, devices[i]), "software device " + std::to_string(i)});
+    found.push_back({platform_display(EGL_PLATFORM_DEVICE_EXT, devices[i]),
+                     "software device " + std::to_string(i)});
   }
   return found;
 }
@@ -70,18 +73,21 @@ EGLContext create_context(EGLDisplay display, const EglOptions& options, bool ro
   // A context without surfaces needs no configuration where the display says so.
   EGLConfig config = EGL_NO_CONFIG_KHR;
   if (!has_extension(eglQueryString(display, EGL_EXTENSIONS), "EGL_KHR_no_config_context")) {
-    const std::array<EGLint, 5> wanted{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_PBUFFER_BIT,
-                                       EGL_NONE};
+    const std::array<EGLint, 5> wanted{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE,
+                                       EGL_PBUFFER_BIT, EGL_NONE};
     EGLint count = 0;
-    if (!eglChooseConfig(display, wanted.data(), &config, 1, &count) || count == 0) return EGL_NO_CONTEXT;
+    if (!eglChooseConfig(display, wanted.data(), &config, 1, &count) || count == 0)
+      return EGL_NO_CONTEXT;
   }
-  std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION,       4,
-                                 EGL_CONTEXT_MINOR_VERSION,       5,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+  std::vector<EGLint> attributes{
+      EGL_CONTEXT_MAJOR_VERSION,       4,
+      EGL_CONTEXT_MINOR_VERSION,       5,
+      EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
   if (options.debug) attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
   if (robust) {
-    attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE,
-                                         EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
+    attributes.insert(attributes.end(),
+                      {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE,
+                       EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
   }
   attributes.push_back(EGL_NONE);
   return eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
@@ -93,7 +99,8 @@ Result<EglContext> EglContext::create(const EglOptions& options) {
   std::string tried;
   for (const Candidate& candidate : candidates()) {
     const auto refuse = [&](const char* call) {
-      tried += (tried.empty() ? "" : "; ") + candidate.name + ": " + call + " failed with " + hex(eglGetError());
+      tried += (tried.empty() ? "" : "; ") + candidate.name + ": " + call + " failed with " +
+               hex(eglGetError());
     };
     EGLint major = 0, minor = 0;
     if (candidate.display == EGL_NO_DISPLAY || !eglInitialize(candidate.display, &major, &minor)) {
@@ -120,10 +127,12 @@ Result<EglContext> EglContext::create(const EglOptions& options) {
     }
     return context;
   }
-  return fail(503, "No GPU context",
-              "No OpenGL 4.5 context could be made. Tried: " + (tried.empty() ? "no EGL platform was found" : tried) +
-                  ". Install a driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri), and let this user open "
-                  "/dev/dri/renderD* or /dev/nvidia*.");
+  return fail(
+      503, "No GPU context",
+      "No OpenGL 4.5 context could be made. Tried: " +
+          (tried.empty() ? "no EGL platform was found" : tried) +
+          ". Install a driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri), and let this user open "
+          "/dev/dri/renderD* or /dev/nvidia*.");
 }
 
 EglContext::EglContext(EglContext&& other) noexcept
@@ -147,10 +156,12 @@ EglContext& EglContext::operator=(EglContext&& other) noexcept {
 
 EglContext::~EglContext() { destroy(); }
 
-// The display stays initialised: EGL shares it among all contexts of the process, and terminating would end theirs.
+// The display stays initialised: EGL shares it among all contexts of the process, and terminating
+// would end theirs.
 void EglContext::destroy() {
   if (context_ == EGL_NO_CONTEXT) return;
-  if (eglGetCurrentContext() == context_) eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  if (eglGetCurrentContext() == context_)
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, std::exchange(context_, EGL_NO_CONTEXT));
 }
 

@@ -12,9 +12,10 @@ struct EglOptions {
   bool debug = false;  // KHR_debug context
 };
 
-// A GL 4.5 core context without any window, current on the thread that created it until destroyed there. A hardware
-// device is taken where EGL offers one; then Mesa's surfaceless platform; then any device (software). Robust access and
-// reset notification are asked for where they are offered. Move-only.
+// A GL 4.5 core context without any window, current on the thread that created it until destroyed
+// there. A hardware device is taken where EGL offers one; then Mesa's surfaceless platform; then
+// any device (software). Robust access and reset notification are asked for where they are offered.
+// Move-only.
 class EglContext {
  public:
   // The error lists every platform that was tried and why it failed.

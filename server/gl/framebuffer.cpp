@@ -5,8 +5,8 @@
 
 namespace strata::gl {
 
-Result<Framebuffer> Framebuffer::create(std::initializer_list<const Texture*> colors, const Texture* depth,
-                                        std::string_view label) {
+Result<Framebuffer> Framebuffer::create(std::initializer_list<const Texture*> colors,
+                                        const Texture* depth, std::string_view label) {
   GLuint id = 0;
   glCreateFramebuffers(1, &id);
   Framebuffer framebuffer;

@@ -14,8 +14,8 @@ class Framebuffer {
  public:
   Framebuffer() = default;
   // `depth` may be null. A Problem 503 when the driver cannot draw into these together.
-  static Result<Framebuffer> create(std::initializer_list<const Texture*> colors, const Texture* depth,
-                                    std::string_view label);
+  static Result<Framebuffer> create(std::initializer_list<const Texture*> colors,
+                                    const Texture* depth, std::string_view label);
 
   GLuint id() const { return object_.id(); }
   explicit operator bool() const { return static_cast<bool>(object_); }

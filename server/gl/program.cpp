@@ -32,7 +32,8 @@ std::string log_of(GLuint id, Get get, Log log) {
 Result<Shader> compile(const std::filesystem::path& directory, const std::string& file,
                        const std::vector<std::string>& defines) {
   const GLenum stage = stage_of(file);
-  if (stage == GL_NONE) return fail(500, kTitle, file + ": the ending must be .vert, .frag or .comp.");
+  if (stage == GL_NONE)
+    return fail(500, kTitle, file + ": the ending must be .vert, .frag or .comp.");
   auto text = load_shader(directory, file, defines);
   if (!text) return tl::unexpected(text.error());
   Shader shader(glCreateShader(stage));
@@ -41,14 +42,16 @@ Result<Shader> compile(const std::filesystem::path& directory, const std::string
   glCompileShader(shader.id());
   GLint compiled = GL_FALSE;
   glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &compiled);
-  if (!compiled) return fail(500, kTitle, file + ": " + log_of(shader.id(), glGetShaderiv, glGetShaderInfoLog));
+  if (!compiled)
+    return fail(500, kTitle, file + ": " + log_of(shader.id(), glGetShaderiv, glGetShaderInfoLog));
   shader.label(file);
   return shader;
 }
 
 }  // namespace
 
-Result<Program> Program::load(const std::filesystem::path& directory, const std::vector<std::string>& files,
+Result<Program> Program::load(const std::filesystem::path& directory,
+                              const std::vector<std::string>& files,
                               const std::vector<std::string>& defines) {
   Program program;
   program.object_ = Object<Traits>(glCreateProgram());
@@ -64,7 +67,9 @@ Result<Program> Program::load(const std::filesystem::path& directory, const std:
   glLinkProgram(program.id());
   GLint linked = GL_FALSE;
   glGetProgramiv(program.id(), GL_LINK_STATUS, &linked);
-  if (!linked) return fail(500, kTitle, name + ": " + log_of(program.id(), glGetProgramiv, glGetProgramInfoLog));
+  if (!linked)
+    return fail(500, kTitle,
+                name + ": " + log_of(program.id(), glGetProgramiv, glGetProgramInfoLog));
   for (const Shader& shader : shaders) glDetachShader(program.id(), shader.id());
   program.object_.label(name);
   return program;

@@ -10,12 +10,14 @@
 
 namespace strata::gl {
 
-// A linked program from shader files; the stage is told by the file's ending (.vert, .frag, .comp). Move-only.
+// A linked program from shader files; the stage is told by the file's ending (.vert, .frag, .comp).
+// Move-only.
 class Program {
  public:
   Program() = default;
   // The error holds the compiler's message and the file.
-  static Result<Program> load(const std::filesystem::path& directory, const std::vector<std::string>& files,
+  static Result<Program> load(const std::filesystem::path& directory,
+                              const std::vector<std::string>& files,
                               const std::vector<std::string>& defines = {});
 
   GLuint id() const { return object_.id(); }

@@ -35,7 +35,8 @@ void Readback::release() {
 }
 
 void Readback::submit() {
-  glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  glMemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT |
+                  GL_BUFFER_UPDATE_BARRIER_BIT);
   fence_ = Fence::place();
 }
 
@@ -43,7 +44,8 @@ Result<Readback> ReadbackPool::begin(std::size_t bytes) {
   const std::size_t capacity = std::bit_ceil(std::max(bytes, kSmallest));
   Readback readback;
   readback.size_ = bytes;
-  const auto fitting = std::find_if(free_.begin(), free_.end(), [&](const Buffer& b) { return b.size() == capacity; });
+  const auto fitting = std::find_if(free_.begin(), free_.end(),
+                                    [&](const Buffer& b) { return b.size() == capacity; });
   if (fitting != free_.end()) {
     readback.buffer_ = std::move(*fitting);
     free_.erase(fitting);

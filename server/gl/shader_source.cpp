@@ -10,12 +10,15 @@ namespace {
 constexpr const char* kTitle = "Shader cannot be built";
 
 // Appends the text of `file` with its includes in place; `line` numbers stay those of the file.
-Result<void> append(const std::filesystem::path& directory, const std::string& file, std::set<std::string>& seen,
-                    std::string& text) {
-  if (file.find("..") != std::string::npos) return fail(500, kTitle, "'" + file + "' leaves the shader folder.");
+Result<void> append(const std::filesystem::path& directory, const std::string& file,
+                    std::set<std::string>& seen, std::string& text) {
+  if (file.find("..") != std::string::npos)
+    return fail(500, kTitle, "'" + file + "' leaves the shader folder.");
   std::ifstream stream(directory / file);
   if (!stream) {
-    return fail(500, kTitle, "'" + (directory / file).string() + "' cannot be read. Is the shader folder right?");
+    return fail(
+        500, kTitle,
+        "'" + (directory / file).string() + "' cannot be read. Is the shader folder right?");
   }
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
@@ -44,8 +47,10 @@ Result<std::string> load_shader(const std::filesystem::path& directory, const st
                                 const std::vector<std::string>& defines) {
   std::string text;
   std::set<std::string> seen;
-  if (auto loaded = append(directory, file, seen, text); !loaded) return tl::unexpected(loaded.error());
-  if (!text.starts_with("#version")) return fail(500, kTitle, file + ": the first line must be #version.");
+  if (auto loaded = append(directory, file, seen, text); !loaded)
+    return tl::unexpected(loaded.error());
+  if (!text.starts_with("#version"))
+    return fail(500, kTitle, file + ": the first line must be #version.");
   std::string head;
   for (const std::string& define : defines) head += "#define " + define + "\n";
   const auto after_version = text.find('\n') + 1;

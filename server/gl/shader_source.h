@@ -8,9 +8,9 @@
 
 namespace strata::gl {
 
-// Text of `file` in the folder `directory`, ready for the compiler: `#include "shared/…"` lines are replaced by those files
-// (each once), and `defines` ("NAME value") follow the #version line, which must be the first. Fails when a file is missing
-// or an include leaves the folder.
+// Text of `file` in the folder `directory`, ready for the compiler: `#include "shared/…"` lines are
+// replaced by those files (each once), and `defines` ("NAME value") follow the #version line, which
+// must be the first. Fails when a file is missing or an include leaves the folder.
 Result<std::string> load_shader(const std::filesystem::path& directory, const std::string& file,
                                 const std::vector<std::string>& defines = {});
 

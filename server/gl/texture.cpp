@@ -22,7 +22,8 @@ Result<Texture> Texture::create_2d(GLenum format, int width, int height, std::st
   return make_2d(format, width, height, 1, label);
 }
 
-Result<Texture> Texture::create_mipmapped(GLenum format, int width, int height, int levels, std::string_view label) {
+Result<Texture> Texture::create_mipmapped(GLenum format, int width, int height, int levels,
+                                          std::string_view label) {
   auto texture = make_2d(format, width, height, levels, label);
   if (!texture) return texture;
   glTextureParameteri(texture->id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
@@ -30,7 +31,8 @@ Result<Texture> Texture::create_mipmapped(GLenum format, int width, int height, 
   return texture;
 }
 
-Result<Texture> Texture::make_2d(GLenum format, int width, int height, int levels, std::string_view label) {
+Result<Texture> Texture::make_2d(GLenum format, int width, int height, int levels,
+                                 std::string_view label) {
   GLuint id = 0;
   glCreateTextures(GL_TEXTURE_2D, 1, &id);
   Texture texture;
@@ -44,7 +46,8 @@ Result<Texture> Texture::make_2d(GLenum format, int width, int height, int level
   return finish(std::move(texture), label);
 }
 
-Result<Texture> Texture::create_array(GLenum format, int width, int height, int layers, std::string_view label) {
+Result<Texture> Texture::create_array(GLenum format, int width, int height, int layers,
+                                      std::string_view label) {
   GLuint id = 0;
   glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &id);
   Texture texture;
@@ -72,7 +75,8 @@ std::size_t Texture::bytes() const {
   std::size_t texels = 0;
   for (int level = 0; level < levels_; ++level) {
     texels += static_cast<std::size_t>(std::max(1, width_ >> level)) *
-              static_cast<std::size_t>(std::max(1, height_ >> level)) * static_cast<std::size_t>(layers_);
+              static_cast<std::size_t>(std::max(1, height_ >> level)) *
+              static_cast<std::size_t>(layers_);
   }
   return bytes_per_texel(format_) * texels;
 }

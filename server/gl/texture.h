@@ -8,15 +8,17 @@
 
 namespace strata::gl {
 
-// Immutable-storage 2D texture or 2D texture array, clamped: with one level and nearest filter (integer formats, too), or with
-// mipmaps and filtered between texels and levels.
+// Immutable-storage 2D texture or 2D texture array, clamped: with one level and nearest filter
+// (integer formats, too), or with mipmaps and filtered between texels and levels.
 class Texture {
  public:
   Texture() = default;
   // A Problem 503 when the driver has no memory for it.
   static Result<Texture> create_2d(GLenum format, int width, int height, std::string_view label);
-  static Result<Texture> create_mipmapped(GLenum format, int width, int height, int levels, std::string_view label);
-  static Result<Texture> create_array(GLenum format, int width, int height, int layers, std::string_view label);
+  static Result<Texture> create_mipmapped(GLenum format, int width, int height, int levels,
+                                          std::string_view label);
+  static Result<Texture> create_array(GLenum format, int width, int height, int layers,
+                                      std::string_view label);
 
   GLuint id() const { return object_.id(); }
   explicit operator bool() const { return static_cast<bool>(object_); }
@@ -35,7 +37,8 @@ class Texture {
     static constexpr GLenum kIdentifier = GL_TEXTURE;
     static void destroy(GLuint id) { glDeleteTextures(1, &id); }
   };
-  static Result<Texture> make_2d(GLenum format, int width, int height, int levels, std::string_view label);
+  static Result<Texture> make_2d(GLenum format, int width, int height, int levels,
+                                 std::string_view label);
   static Result<Texture> finish(Texture texture, std::string_view label);
 
   Object<Traits> object_;

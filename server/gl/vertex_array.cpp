@@ -9,8 +9,9 @@ VertexArray::VertexArray(std::string_view label) {
   object_.label(label);
 }
 
-VertexArray::VertexArray(const Buffer& vertices, int stride, std::span<const VertexAttribute> attributes,
-                         const Buffer& indices, std::string_view label)
+VertexArray::VertexArray(const Buffer& vertices, int stride,
+                         std::span<const VertexAttribute> attributes, const Buffer& indices,
+                         std::string_view label)
     : VertexArray(label) {
   glVertexArrayVertexBuffer(id(), 0, vertices.id(), 0, stride);
   glVertexArrayElementBuffer(id(), indices.id());

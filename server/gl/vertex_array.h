@@ -21,8 +21,8 @@ struct VertexAttribute {
 class VertexArray {
  public:
   VertexArray() = default;
-  VertexArray(const Buffer& vertices, int stride, std::span<const VertexAttribute> attributes, const Buffer& indices,
-              std::string_view label);
+  VertexArray(const Buffer& vertices, int stride, std::span<const VertexAttribute> attributes,
+              const Buffer& indices, std::string_view label);
   // Without buffers, for passes that make their vertices themselves.
   explicit VertexArray(std::string_view label);
 

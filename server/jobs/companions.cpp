@@ -13,11 +13,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLargestText = std::size_t{64} << 20;  // of a material library, a glTF's JSON, a PLY's header
+// of a material library, a glTF's JSON, a PLY's header
+constexpr std::size_t kLargestText = std::size_t{64} << 20;
 
 std::string lower(std::string_view text) {
   std::string result(text);
-  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(result, result.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return result;
 }
 
@@ -58,7 +60,8 @@ void each_line(std::string_view text, const std::function<bool(const std::string
     const auto end = std::min(text.find('\n'), text.size());
     const std::string_view line = trimmed(text.substr(0, end));
     const auto word_end = std::min(line.find_first_of(" \t"), line.size());
-    if (word_end > 0 && word_end < 32 && wanted(lower(line.substr(0, word_end)))) take(line.substr(word_end));
+    if (word_end > 0 && word_end < 32 && wanted(lower(line.substr(0, word_end))))
+      take(line.substr(word_end));
     text.remove_prefix(std::min(end + 1, text.size()));
   }
 }
@@ -102,7 +105,8 @@ struct Collector {
   }
 
   void add_gltf(std::string_view text) {
-    const auto json = nlohmann::json::parse(text.substr(0, std::min(text.size(), kLargestText)), nullptr, false);
+    const auto json =
+        nlohmann::json::parse(text.substr(0, std::min(text.size(), kLargestText)), nullptr, false);
     if (!json.is_object()) return;
     for (const char* list : {"buffers", "images"}) {
       const auto entries = json.find(list);
@@ -138,13 +142,15 @@ std::vector<mesh::InputFile> with_companions(const fs::path& mesh) {
   std::vector<mesh::InputFile> files{{mesh.filename().string(), mesh}};
   Collector companions{mesh.has_parent_path() ? mesh.parent_path() : fs::path("."), {}};
   const auto kind = mesh::input_kind(files[0].filename);
-  if (kind != mesh::InputKind::obj && kind != mesh::InputKind::ply && kind != mesh::InputKind::gltf) return files;
+  if (kind != mesh::InputKind::obj && kind != mesh::InputKind::ply && kind != mesh::InputKind::gltf)
+    return files;
   const auto content = MappedFile::open(mesh);
   if (!content) return files;
   if (kind == mesh::InputKind::obj) companions.add_obj(content->view());
   if (kind == mesh::InputKind::ply) companions.add_ply(content->view());
   if (kind == mesh::InputKind::gltf) companions.add_gltf(content->view());
-  for (const fs::path& file : companions.found) files.push_back({file.generic_string(), companions.folder / file});
+  for (const fs::path& file : companions.found)
+    files.push_back({file.generic_string(), companions.folder / file});
   return files;
 }
 

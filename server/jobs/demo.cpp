@@ -24,9 +24,10 @@ constexpr const char* kAuthor = "Strata";
 Layer sherds_layer() {
   // Light and dark tones alternate, so that neighbours differ with every colour vision.
   static constexpr Rgba kColors[DemoRules::kSherds] = {
-      {230, 159, 0, 255},   {86, 180, 233, 255},  {0, 114, 178, 255},   {240, 228, 66, 255}, {213, 94, 0, 255},
-      {204, 121, 167, 255}, {120, 94, 240, 255},  {255, 176, 124, 255}, {51, 34, 136, 255},  {170, 221, 221, 255},
-      {136, 34, 85, 255},   {221, 204, 119, 255}, {153, 153, 153, 255}, {170, 68, 153, 255}};
+      {230, 159, 0, 255},   {86, 180, 233, 255},  {0, 114, 178, 255},  {240, 228, 66, 255},
+      {213, 94, 0, 255},    {204, 121, 167, 255}, {120, 94, 240, 255}, {255, 176, 124, 255},
+      {51, 34, 136, 255},   {170, 221, 221, 255}, {136, 34, 85, 255},  {221, 204, 119, 255},
+      {153, 153, 153, 255}, {170, 68, 153, 255}};
   Layer layer;
   layer.name = layer.slug = "pieces";
   layer.description = "The sherds that the pot was put together from, numbered.";
@@ -61,7 +62,8 @@ Result<Project> demo_project(store::Store& store) {
   return store.create_project(fresh);
 }
 
-Result<Model> create_pot(store::Store& store, const Project& project, double detail, Progress& progress) {
+Result<Model> create_pot(store::Store& store, const Project& project, double detail,
+                         Progress& progress) {
   progress.begin_stage(0, 0.05);
   progress.report(0, "Making the pot");
   const mesh::TriangleMesh pot = mesh::make_demo_pot(detail);
@@ -93,8 +95,8 @@ Result<Model> find_or_create_pot(store::Store& store, double detail, Progress& p
   if (!project) return tl::unexpected(project.error());
   const auto models = store.models(project->id);
   if (!models) return tl::unexpected(models.error());
-  const auto pot =
-      std::find_if(models->begin(), models->end(), [](const Model& model) { return model.name == kModel; });
+  const auto pot = std::find_if(models->begin(), models->end(),
+                                [](const Model& model) { return model.name == kModel; });
   return pot != models->end() ? *pot : create_pot(store, *project, detail, progress);
 }
 
@@ -107,10 +109,11 @@ Result<Layer> find_or_create_layer(store::Store& store, const Model& model, Laye
   return store.create_layer(wanted);
 }
 
-// One fill: every texel that the rule gives a value gets it. Tiles come in the order of their addresses.
+// One fill: every texel that the rule gives a value gets it. Tiles come in the order of their
+// addresses.
 template <class Rule>
-store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer, double metres_per_unit,
-                                 const Rule& rule) {
+store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer,
+                                 double metres_per_unit, const Rule& rule) {
   store::JournalEntry entry;
   const int tiles = map.resolution / kTileSize, blocks = kTileSize / kBlockSize;
   std::uint64_t texels = 0;
@@ -122,14 +125,16 @@ store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer
       TileMask written;
       for (int block = 0; block < blocks * blocks; ++block) {
         const int bx = block % blocks, by = block / blocks;
-        const auto slot = map.slot_of_block[std::size_t(ty * blocks + by) * map.blocks_per_side + tx * blocks + bx];
+        const auto slot = map.slot_of_block[std::size_t(ty * blocks + by) * map.blocks_per_side +
+                                            tx * blocks + bx];
         if (slot == mesh::kNoSlot) continue;
         for (int i = 0; i < kBlockSize * kBlockSize; ++i) {
           const std::size_t at = std::size_t(slot) * 64 + i;
           if (map.packed_position[at] == mesh::kNoPosition) continue;
           const std::uint8_t value = rule(map.position(slot, i));
           if (value == 0) continue;
-          const int texel = (by * kBlockSize + i / kBlockSize) * kTileSize + bx * kBlockSize + i % kBlockSize;
+          const int texel =
+              (by * kBlockSize + i / kBlockSize) * kTileSize + bx * kBlockSize + i % kBlockSize;
           tile.write(texel, value);
           written.set(texel);
           texels += map.surface_mask[slot] >> i & 1u;
@@ -138,14 +143,17 @@ store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer
       }
       if (!written.any()) continue;
       entry.revisions.push_back(
-          {address, encode_revision(make_revision(address, TileData(layer.type), tile, written)), {}});
+          {address,
+           encode_revision(make_revision(address, TileData(layer.type), tile, written)),
+           {}});
     }
-  entry.answer = {{"texels_changed", texels}, {"area_m2", area * metres_per_unit * metres_per_unit}};
+  entry.answer = {{"texels_changed", texels},
+                  {"area_m2", area * metres_per_unit * metres_per_unit}};
   return entry;
 }
 
-Result<void> write_entry(store::Store& store, const Model& model, const Layer& layer, const char* rule,
-                         store::JournalEntry entry) {
+Result<void> write_entry(store::Store& store, const Model& model, const Layer& layer,
+                         const char* rule, store::JournalEntry entry) {
   const auto last = store.last_sequence(model.id);
   if (!last) return tl::unexpected(last.error());
   entry.model_id = model.id;
@@ -159,7 +167,8 @@ Result<void> write_entry(store::Store& store, const Model& model, const Layer& l
   entry.time = std::chrono::system_clock::now();
   std::promise<Result<void>> saved;
   store::JournalWriter writer(store, {});
-  if (!writer.submit(std::move(entry), [&saved](Result<void> result) { saved.set_value(std::move(result)); }))
+  if (!writer.submit(std::move(entry),
+                     [&saved](Result<void> result) { saved.set_value(std::move(result)); }))
     return fail(503, "Database unavailable", "The demo's layers were not saved. Try again.");
   return saved.get_future().get();
 }
@@ -190,17 +199,23 @@ Result<Model> make_demo(store::Store& store, Progress& progress, double detail) 
     progress.begin_stage(0.75, 1);
     progress.report(0, "Painting the demo's layers");
     if (pieces->sequence == 0) {
-      auto entry = fill_by_rule(*map, *pieces, pot->metres(), [&](const glm::vec3& p) { return rules.at(p).sherd; });
+      auto entry = fill_by_rule(*map, *pieces, pot->metres(),
+                                [&](const glm::vec3& p) { return rules.at(p).sherd; });
       if (progress.cancelled()) return cancelled_problem();
-      if (auto saved = write_entry(store, *pot, *pieces, "sherds of the demo pot", std::move(entry)); !saved)
+      if (auto saved =
+              write_entry(store, *pot, *pieces, "sherds of the demo pot", std::move(entry));
+          !saved)
         return tl::unexpected(saved.error());
     }
     progress.report(0.5, "Painting the demo's layers");
     if (cracks->sequence == 0) {
-      auto entry = fill_by_rule(*map, *cracks, pot->metres(),
-                                [&](const glm::vec3& p) { return std::uint8_t(rules.at(p).crack); });
+      auto entry = fill_by_rule(*map, *cracks, pot->metres(), [&](const glm::vec3& p) {
+        return std::uint8_t(rules.at(p).crack);
+      });
       if (progress.cancelled()) return cancelled_problem();
-      if (auto saved = write_entry(store, *pot, *cracks, "cracks of the demo pot", std::move(entry)); !saved)
+      if (auto saved =
+              write_entry(store, *pot, *cracks, "cracks of the demo pot", std::move(entry));
+          !saved)
         return tl::unexpected(saved.error());
     }
   }

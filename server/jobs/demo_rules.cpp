@@ -17,7 +17,8 @@ constexpr std::size_t kCandidates = 4000;
 constexpr double kOpenWidth = 0.020, kCrackWidth = 0.013, kHairlineWidth = 0.0065;
 
 // Each new seed is the candidate farthest from all before it: cells of like size.
-std::vector<glm::dvec3> spread_seeds(const std::vector<glm::dvec3>& candidates, int count, std::size_t first) {
+std::vector<glm::dvec3> spread_seeds(const std::vector<glm::dvec3>& candidates, int count,
+                                     std::size_t first) {
   std::vector<glm::dvec3> seeds;
   std::vector<double> distance(candidates.size(), std::numeric_limits<double>::infinity());
   std::size_t next = first % candidates.size();
@@ -25,7 +26,8 @@ std::vector<glm::dvec3> spread_seeds(const std::vector<glm::dvec3>& candidates, 
     seeds.push_back(candidates[next]);
     for (std::size_t k = 0; k < candidates.size(); ++k)
       distance[k] = std::min(distance[k], glm::distance(candidates[k], seeds.back()));
-    next = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+    next = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) -
+                                    distance.begin());
   }
   return seeds;
 }
@@ -76,8 +78,8 @@ DemoRules::DemoRules(std::span<const glm::vec3> surface) {
   center_ = (low + high) / 2.0;
   const glm::dvec3 extent = high - low;
   radius_ = std::max({extent.x, extent.y, extent.z}) / 2;
-  // By height and each once, so that the demo is the same whatever order the mesh keeps its points in and however often:
-  // an atlas cuts it elsewhere.
+  // By height and each once, so that the demo is the same whatever order the mesh keeps its points
+  // in and however often: an atlas cuts it elsewhere.
   std::vector<glm::vec3> sorted(surface.begin(), surface.end());
   std::ranges::sort(sorted, [](const glm::vec3& a, const glm::vec3& b) {
     return std::tuple(a.z, a.y, a.x) < std::tuple(b.z, b.y, b.x);
@@ -111,7 +113,8 @@ DemoRules::Marks DemoRules::at(const glm::vec3& position) const {
     marks.crack = crack;
   } else {
     const Cell craze = cell_of(craze_seeds_, warp(warp(p, 4.0, 0.16, 2), 22.0, 0.03, 2));
-    const double tapered = kHairlineWidth * std::clamp(0.75 + 1.6 * mesh::fractal_noise(p * 4.5 + 3.0, 2), 0.0, 1.3);
+    const double tapered =
+        kHairlineWidth * std::clamp(0.75 + 1.6 * mesh::fractal_noise(p * 4.5 + 3.0, 2), 0.0, 1.3);
     if (chance_of(craze) < 0.30 && craze.to_border < tapered) marks.crack = hairline;
   }
   return marks;

@@ -7,15 +7,18 @@
 
 namespace strata::jobs {
 
-// What the demo's two layers say of a point of the pot. The pot is broken along the borders of cells around seeds: sherds are cells
-// with borders made rough by noise, seen from the pot's middle, so that a sherd goes through the wall. Cracks are bands along some of
-// these borders; hairlines are borders of smaller cells, drawn in part, so that they branch and end. Deterministic.
+// What the demo's two layers say of a point of the pot. The pot is broken along the borders of
+// cells around seeds: sherds are cells with borders made rough by noise, seen from the pot's
+// middle, so that a sherd goes through the wall. Cracks are bands along some of these borders;
+// hairlines are borders of smaller cells, drawn in part, so that they branch and end.
+// Deterministic.
 class DemoRules {
  public:
   static constexpr int kSherds = 14;
   enum Crack : std::uint8_t { none = 0, hairline = 1, crack = 2, open_crack = 3 };
 
-  // Points of the surface in any order, model units, from which the seeds are chosen evenly; at least kSherds of them.
+  // Points of the surface in any order, model units, from which the seeds are chosen evenly; at
+  // least kSherds of them.
   explicit DemoRules(std::span<const glm::vec3> surface);
 
   struct Marks {

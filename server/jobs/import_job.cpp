@@ -36,7 +36,8 @@ std::string stem(const std::string& filename) {
 bool is_crs(const std::string& crs) {
   constexpr std::string_view kPrefix = "EPSG:";
   const std::size_t digits = crs.size() - std::min(crs.size(), kPrefix.size());
-  return crs.starts_with(kPrefix) && digits >= 1 && digits <= 7 && is_all_digits(crs.substr(kPrefix.size()));
+  return crs.starts_with(kPrefix) && digits >= 1 && digits <= 7 &&
+         is_all_digits(crs.substr(kPrefix.size()));
 }
 
 std::vector<std::string> names_of(std::span<const ImportFile> files) {
@@ -65,18 +66,22 @@ Result<void> refuse_faults(const std::vector<Repair>& repairs) {
       list += (list.empty() ? "" : ", ") + repair.what + " (" + std::to_string(repair.count) + ")";
   if (list.empty()) return {};
   return fail(422, "File needs repair",
-              "It would be imported only after this: " + list + ". Mend the file, or import it without `strict`.",
+              "It would be imported only after this: " + list +
+                  ". Mend the file, or import it without `strict`.",
               "strict");
 }
 
-// The file's own texture coordinates where they can carry layers; otherwise an unfolding of our own, and a note why.
-Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair>& repairs, Progress& progress) {
+// The file's own texture coordinates where they can carry layers; otherwise an unfolding of our
+// own, and a note why.
+Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair>& repairs,
+                              Progress& progress) {
   if (!mesh.corner_uvs.empty()) {
     progress.report(0, "Checking the texture coordinates");
     auto kept = mesh::keep_uvs(mesh, kLowestResolution, progress);
     if (kept) repairs.insert(repairs.end(), kept->repairs.begin(), kept->repairs.end());
     if (kept || kept.error().status == 499) return kept;
-    repairs.push_back({"texture coordinates not kept: " + kept.error().detail, mesh.triangle_count()});
+    repairs.push_back(
+        {"texture coordinates not kept: " + kept.error().detail, mesh.triangle_count()});
   }
   progress.report(0, "Unfolding the surface");
   return mesh::make_atlas(mesh, kLowestResolution, progress);
@@ -85,19 +90,23 @@ Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair
 }  // namespace
 
 Result<void> check(const ImportRequest& request) {
-  if (request.name.size() > kLongestName) return fail(422, "Name too long", "A name has at most 200 bytes.", "name");
+  if (request.name.size() > kLongestName)
+    return fail(422, "Name too long", "A name has at most 200 bytes.", "name");
   if (!request.up.empty() && !is_up(request.up))
     return fail(422, "Unknown direction", "`up` is one of x, y, z, -x, -y and -z.", "up");
   if (!request.crs.empty() && !is_crs(request.crs))
-    return fail(422, "Unknown coordinate system", "A coordinate system is given as EPSG:n, for example EPSG:25830.",
-                "crs");
+    return fail(422, "Unknown coordinate system",
+                "A coordinate system is given as EPSG:n, for example EPSG:25830.", "crs");
   if (!(request.weld_distance >= 0 && request.weld_distance < 1e15))
-    return fail(422, "Distance not usable", "The distance to weld within is a number of 0 or more.", "weld");
+    return fail(422, "Distance not usable", "The distance to weld within is a number of 0 or more.",
+                "weld");
   const int resolution = request.resolution;
-  if (resolution != 0 &&
-      (resolution < kLowestResolution || resolution > kHighestResolution || !std::has_single_bit(unsigned(resolution))))
-    return fail(422, "Resolution not usable", "The resolution of layers is 2048, 4096, 8192 or 16384.", "resolution");
-  if (auto scan = mesh::pick_scan(names_of(request.files)); !scan) return tl::unexpected(scan.error());
+  if (resolution != 0 && (resolution < kLowestResolution || resolution > kHighestResolution ||
+                          !std::has_single_bit(unsigned(resolution))))
+    return fail(422, "Resolution not usable",
+                "The resolution of layers is 2048, 4096, 8192 or 16384.", "resolution");
+  if (auto scan = mesh::pick_scan(names_of(request.files)); !scan)
+    return tl::unexpected(scan.error());
   return {};
 }
 
@@ -137,8 +146,8 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   auto base_color = mesh::bake_base_color(loaded->mesh, *atlas, loaded->repairs, progress, memory);
   if (!base_color) return tl::unexpected(base_color.error());
   if (auto& color = *base_color)
-    fresh.looks.push_back(
-        {"Base colour", std::string(media_type(color->format)), std::move(color->bytes), color->width, color->height});
+    fresh.looks.push_back({"Base colour", std::string(media_type(color->format)),
+                           std::move(color->bytes), color->width, color->height});
 
   progress.begin_stage(kPainted, kBuilt);
   progress.report(0, "Building the model");

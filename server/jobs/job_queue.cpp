@@ -27,10 +27,11 @@ Problem lost_problem(JobKind kind) {
   constexpr const char* kTitle = "Server was restarted";
   switch (kind) {
     case JobKind::import:
-      return {503,
-              kTitle,
-              "The server was restarted before this import was finished; nothing of it was kept. Start it again.",
-              {}};
+      return {
+          503,
+          kTitle,
+          "The server was restarted before this import was finished; nothing of it was kept. Start it again.",
+          {}};
     case JobKind::layers:
       return {
           503,
@@ -39,13 +40,15 @@ Problem lost_problem(JobKind kind) {
           "them and start it again.",
           {}};
     case JobKind::look:
-      return {503,
-              kTitle,
-              "The server was restarted before this picture was finished; nothing of it was kept. Start it again.",
-              {}};
+      return {
+          503,
+          kTitle,
+          "The server was restarted before this picture was finished; nothing of it was kept. Start it again.",
+          {}};
     case JobKind::figure: break;
   }
-  return {503, kTitle, "The server was restarted before this figure was finished. Start it again.", {}};
+  return {
+      503, kTitle, "The server was restarted before this figure was finished. Start it again.", {}};
 }
 
 JobStatus status_of(const store::StoredJob& stored) {
@@ -60,24 +63,30 @@ JobStatus status_of(const store::StoredJob& stored) {
                                                : JobState::failed;
   if (stored.state == "lost") status.problem = lost_problem(status.kind);
   if (stored.problem.is_object())
-    status.problem =
-        Problem{stored.problem.value("status", 500), stored.problem.value("title", std::string("Job failed")),
-                stored.problem.value("detail", std::string()), stored.problem.value("field", std::string())};
+    status.problem = Problem{stored.problem.value("status", 500),
+                             stored.problem.value("title", std::string("Job failed")),
+                             stored.problem.value("detail", std::string()),
+                             stored.problem.value("field", std::string())};
   status.message = status.problem ? status.problem->title : "Done";
   if (status.state == JobState::done) status.progress = 1;
   if (stored.result.is_object()) {
     status.result.emplace(stored.result.value("model", std::int64_t{0}));
     status.result->layers = stored.result.value("layers", std::vector<std::int64_t>());
-    if (stored.result.contains("look")) status.result->look = stored.result["look"].get<std::int64_t>();
+    if (stored.result.contains("look"))
+      status.result->look = stored.result["look"].get<std::int64_t>();
     status.result->report = stored.result.value("report", nlohmann::json());
   }
   return status;
 }
 
 store::StoredJob stored_of(const JobStatus& status) {
-  store::StoredJob stored{
-      status.id, status.project, status.user, std::string(kKinds[static_cast<int>(status.kind)]), {}, {}, {}};
-  stored.state = status.state == JobState::done ? "done" : status.state == JobState::cancelled ? "cancelled" : "failed";
+  store::StoredJob stored{status.id,   status.project,
+                          status.user, std::string(kKinds[static_cast<int>(status.kind)]),
+                          {},          {},
+                          {}};
+  stored.state = status.state == JobState::done        ? "done"
+                 : status.state == JobState::cancelled ? "cancelled"
+                                                       : "failed";
   if (status.problem)
     stored.problem = {{"status", status.problem->status},
                       {"title", status.problem->title},
@@ -114,12 +123,14 @@ Result<JobResult> run(const JobQueue::Work& work, Progress& progress) {
   try {
     return work(progress);
   } catch (const std::bad_alloc&) {
-    return fail(507, "Not enough memory",
-                "The server has not enough memory for this. Make the file smaller, or give the server more.");
+    return fail(
+        507, "Not enough memory",
+        "The server has not enough memory for this. Make the file smaller, or give the server more.");
   } catch (const std::exception& error) {
     log::error(std::string("A job failed unexpectedly: ") + error.what());
-    return fail(500, "Job failed",
-                "The server could not finish this because of a fault of its own; its log says more.");
+    return fail(
+        500, "Job failed",
+        "The server could not finish this because of a fault of its own; its log says more.");
   }
 }
 
@@ -132,9 +143,9 @@ struct JobQueue::Impl {
   std::deque<std::int64_t> waiting;
   std::size_t coming = 0;  // those that are being kept, before they wait
   // In milliseconds: nobody asks for a thousand jobs a second, second after second.
-  std::int64_t last_id =
-      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
-          .count();
+  std::int64_t last_id = std::chrono::duration_cast<std::chrono::milliseconds>(
+                             std::chrono::system_clock::now().time_since_epoch())
+                             .count();
   bool stopping = false;
   store::Jobs* store = nullptr;
   std::thread thread;
@@ -162,8 +173,9 @@ struct JobQueue::Impl {
   Result<void> may_add() const {
     if (stopping) return fail(503, "Server stops", "The server is stopping and takes no new work.");
     if (waiting.size() + coming >= kMaxWaiting)
-      return fail(503, "Too much waiting work",
-                  std::to_string(kMaxWaiting) + " jobs wait already. Try again when some are done.");
+      return fail(
+          503, "Too much waiting work",
+          std::to_string(kMaxWaiting) + " jobs wait already. Try again when some are done.");
     return {};
   }
 
@@ -188,7 +200,8 @@ struct JobQueue::Impl {
       it = is_over(it->second.status.state) ? jobs.erase(it) : std::next(it);
     int files = 0;
     for (auto it = jobs.rbegin(); it != jobs.rend(); ++it)
-      if (auto& result = it->second.status.result; result && result->file && ++files > kFilesKept) result->file.reset();
+      if (auto& result = it->second.status.result; result && result->file && ++files > kFilesKept)
+        result->file.reset();
   }
 
   void work_on_jobs() {
@@ -196,7 +209,8 @@ struct JobQueue::Impl {
     for (;;) {
       changed.wait(lock, [&] { return stopping || !waiting.empty(); });
       if (stopping) return;
-      Job& job = jobs.at(waiting.front());  // stays where it is while it runs: only finished jobs are forgotten
+      // stays where it is while it runs: only finished jobs are forgotten
+      Job& job = jobs.at(waiting.front());
       waiting.pop_front();
       job.status.state = JobState::running;
       const auto progress = job.progress;
@@ -237,7 +251,8 @@ JobQueue::~JobQueue() {
   impl_->thread.join();
 }
 
-Result<std::int64_t> JobQueue::add(std::int64_t project, Work work, std::string user, JobKind kind) {
+Result<std::int64_t> JobQueue::add(std::int64_t project, Work work, std::string user,
+                                   JobKind kind) {
   JobStatus status;
   {
     std::lock_guard lock(impl_->mutex);
@@ -253,7 +268,8 @@ Result<std::int64_t> JobQueue::add(std::int64_t project, Work work, std::string 
   std::lock_guard lock(impl_->mutex);
   --impl_->coming;
   if (!kept) return tl::unexpected(kept.error());
-  if (impl_->stopping) return fail(503, "Server stops", "The server is stopping and takes no new work.");
+  if (impl_->stopping)
+    return fail(503, "Server stops", "The server is stopping and takes no new work.");
   const std::int64_t id = status.id;
   Job& job = impl_->jobs[id];
   job.work = std::move(work);
@@ -274,7 +290,8 @@ std::optional<JobStatus> JobQueue::status(std::int64_t id) const {
 std::vector<JobStatus> JobQueue::all() const {
   std::lock_guard lock(impl_->mutex);
   std::vector<JobStatus> all;
-  for (auto job = impl_->jobs.rbegin(); job != impl_->jobs.rend(); ++job) all.push_back(snapshot(job->second));
+  for (auto job = impl_->jobs.rbegin(); job != impl_->jobs.rend(); ++job)
+    all.push_back(snapshot(job->second));
   return all;
 }
 

@@ -35,11 +35,13 @@ struct JobFile {
 
 // What a job made.
 struct JobResult {
-  JobResult(std::int64_t the_model) : model(the_model) {}  // NOLINT(google-explicit-constructor): most make only that
+  JobResult(std::int64_t the_model)
+      : model(the_model) {}  // NOLINT(google-explicit-constructor): most make only that
   std::int64_t model = 0;
   std::vector<std::int64_t> layers;  // new ones on it
   std::optional<std::int64_t> look;  // a new one on it
-  nlohmann::json report;             // what else is to be told, see the schema `TransferReport`; null: nothing
+  // what else is to be told, see the schema `TransferReport`; null: nothing
+  nlohmann::json report;
   std::shared_ptr<const JobFile> file;
 };
 
@@ -55,18 +57,21 @@ struct JobStatus {
   std::optional<JobResult> result;
 };
 
-// Long work, one at a time on a thread of its own, in order of asking. Finished jobs are remembered: the newest 1000; their files, of the newest
-// kFilesKept that made one, until the queue goes. Ids are higher than those of every queue before, so that an id of then is never another job now.
+// Long work, one at a time on a thread of its own, in order of asking. Finished jobs are
+// remembered: the newest 1000; their files, of the newest kFilesKept that made one, until the queue
+// goes. Ids are higher than those of every queue before, so that an id of then is never another job
+// now.
 class JobQueue {
  public:
   static constexpr int kFilesKept = 16;
-  // With `store` jobs outlive the queue for store::Jobs::kDaysKept days, without their files: what a queue before did not finish has failed.
-  // `store` outlives the queue. Blocks.
+  // With `store` jobs outlive the queue for store::Jobs::kDaysKept days, without their files: what
+  // a queue before did not finish has failed. `store` outlives the queue. Blocks.
   explicit JobQueue(store::Jobs* store = nullptr);
   ~JobQueue();  // cancels what runs, joins
   using Work = std::function<Result<JobResult>(Progress&)>;
   // Refused (503) when 64 wait, or as the store refuses. Blocks while the store is written.
-  Result<std::int64_t> add(std::int64_t project, Work work, std::string user = {}, JobKind kind = JobKind::import);
+  Result<std::int64_t> add(std::int64_t project, Work work, std::string user = {},
+                           JobKind kind = JobKind::import);
   std::optional<JobStatus> status(std::int64_t id) const;
   std::vector<JobStatus> all() const;  // newest first
   bool cancel(std::int64_t id);

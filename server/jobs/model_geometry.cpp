@@ -4,7 +4,8 @@
 
 namespace strata::jobs {
 
-Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress, store::Store::NewModel& fresh) {
+Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress,
+                          store::Store::NewModel& fresh) {
   Model& model = fresh.model;
   model.origin = geometry.origin;
   model.triangles = geometry.triangle_count();
@@ -17,7 +18,8 @@ Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress, st
   }
   const auto levels = mesh::make_detail_levels(geometry, progress);
   if (!levels) return tl::unexpected(levels.error());
-  for (const mesh::Geometry& level : *levels) fresh.detail_levels.push_back(mesh::encode_geometry(level));
+  for (const mesh::Geometry& level : *levels)
+    fresh.detail_levels.push_back(mesh::encode_geometry(level));
   fresh.geometry = mesh::encode_geometry(geometry);
   return {};
 }

@@ -6,8 +6,9 @@
 
 namespace strata::jobs {
 
-// Puts a geometry into a new model, with what follows from it: its stored form and that of its coarser copies, counts, box and
-// area. Refused only when cancelled.
-Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress, store::Store::NewModel& fresh);
+// Puts a geometry into a new model, with what follows from it: its stored form and that of its
+// coarser copies, counts, box and area. Refused only when cancelled.
+Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress,
+                          store::Store::NewModel& fresh);
 
 }  // namespace strata::jobs

@@ -31,7 +31,8 @@ Picture empty_picture(int resolution) {
   return {resolution, resolution, std::vector<std::uint8_t>(4 * side * side)};
 }
 
-// What is covered, as a picture that goes on around the islands as the colours do: off the surface there is no cover of its own.
+// What is covered, as a picture that goes on around the islands as the colours do: off the surface
+// there is no cover of its own.
 Picture cover_of(const TileMap& colors, const mesh::SurfaceMap& map) {
   Picture cover = empty_picture(map.resolution);
   const int tiles = map.resolution / kTileSize;
@@ -42,7 +43,8 @@ Picture cover_of(const TileMap& colors, const mesh::SurfaceMap& map) {
                         [&](std::size_t at, int) { cover.rgba[at + 3] = 255; });
     }
   for (const auto& [address, tile] : colors)
-    for_each_pixel_of(address, tile->valid, map.resolution, [&](std::size_t at, int) { cover.rgba[at] = 255; });
+    for_each_pixel_of(address, tile->valid, map.resolution,
+                      [&](std::size_t at, int) { cover.rgba[at] = 255; });
   mesh::fill_gutter(cover, kGutterRing);
   return cover;
 }
@@ -51,18 +53,22 @@ Picture cover_of(const TileMap& colors, const mesh::SurfaceMap& map) {
 
 int orthophoto_resolution(const Model& model, const query::WorldFile& world) {
   int resolution = model.atlas.lowest_resolution;
-  double texel_area =
-      model.area / (std::max(model.atlas.coverage, 1e-6) * std::pow(static_cast<double>(resolution), 2));
-  for (; resolution < kLargestOrthophotoLook && texel_area > pixel_area(world); texel_area /= 4) resolution *= 2;
+  double texel_area = model.area / (std::max(model.atlas.coverage, 1e-6) *
+                                    std::pow(static_cast<double>(resolution), 2));
+  for (; resolution < kLargestOrthophotoLook && texel_area > pixel_area(world); texel_area /= 4)
+    resolution *= 2;
   return resolution;
 }
 
-OrthophotoSampler::OrthophotoSampler(Picture picture, const query::WorldFile& world, double texel_area)
+OrthophotoSampler::OrthophotoSampler(Picture picture, const query::WorldFile& world,
+                                     double texel_area)
     : finder_(picture.width, picture.height, world), height_(picture.height), scale_(1) {
   const int side = std::max(picture.width, picture.height);
-  auto image = render::make_look_image(std::move(picture.rgba), picture.width, picture.height, side);
+  auto image =
+      render::make_look_image(std::move(picture.rgba), picture.width, picture.height, side);
   std::size_t level = 0;
-  for (double area = 4 * pixel_area(world); area <= texel_area && level + 1 < image.levels.size(); area *= 4) {
+  for (double area = 4 * pixel_area(world); area <= texel_area && level + 1 < image.levels.size();
+       area *= 4) {
     ++level;
     scale_ /= 2;
   }
@@ -73,13 +79,16 @@ std::optional<std::uint32_t> OrthophotoSampler::color_at(const glm::dvec2& place
   if (!finder_.pixel_at(place)) return std::nullopt;
   glm::dvec2 pixel = finder_.place_of(place);
   pixel.y = height_ - 1 - pixel.y;
-  pixel = glm::clamp((pixel + 0.5) * scale_ - 0.5, glm::dvec2(0), glm::dvec2(level_.width - 1, level_.height - 1));
+  pixel = glm::clamp((pixel + 0.5) * scale_ - 0.5, glm::dvec2(0),
+                     glm::dvec2(level_.width - 1, level_.height - 1));
   const glm::dvec2 whole = glm::floor(pixel), part = pixel - whole;
   std::array<double, 4> sum{};
   for (int corner = 0; corner < 4; ++corner) {
     const int dx = corner & 1, dy = corner >> 1;
-    const auto x = static_cast<std::size_t>(std::min(static_cast<int>(whole.x) + dx, level_.width - 1));
-    const auto y = static_cast<std::size_t>(std::min(static_cast<int>(whole.y) + dy, level_.height - 1));
+    const auto x =
+        static_cast<std::size_t>(std::min(static_cast<int>(whole.x) + dx, level_.width - 1));
+    const auto y =
+        static_cast<std::size_t>(std::min(static_cast<int>(whole.y) + dy, level_.height - 1));
     const std::uint8_t* rgba = &level_.rgba[4 * (y * static_cast<std::size_t>(level_.width) + x)];
     const double weight = (dx ? part.x : 1 - part.x) * (dy ? part.y : 1 - part.y) * rgba[3];
     for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * rgba[c];
@@ -87,18 +96,21 @@ std::optional<std::uint32_t> OrthophotoSampler::color_at(const glm::dvec2& place
   }
   if (sum[3] < 127.5) return std::nullopt;
   std::uint32_t bits = 0xff000000u;
-  for (std::size_t c = 0; c < 3; ++c) bits |= static_cast<std::uint32_t>(std::lround(sum[c] / sum[3])) << (8 * c);
+  for (std::size_t c = 0; c < 3; ++c)
+    bits |= static_cast<std::uint32_t>(std::lround(sum[c] / sum[3])) << (8 * c);
   return bits;
 }
 
 Picture orthophoto_look(const TileMap& colors, const mesh::SurfaceMap& map) {
   Picture picture = empty_picture(map.resolution);
   for (const auto& [address, tile] : colors)
-    for_each_pixel_of(address, tile->valid, map.resolution, [&, &tile = *tile](std::size_t at, int texel) {
-      const std::uint32_t bits = tile.bits(texel);
-      for (int c = 0; c < 4; ++c)
-        picture.rgba[at + static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(bits >> (8 * c));
-    });
+    for_each_pixel_of(address, tile->valid, map.resolution,
+                      [&, &tile = *tile](std::size_t at, int texel) {
+                        const std::uint32_t bits = tile.bits(texel);
+                        for (int c = 0; c < 4; ++c)
+                          picture.rgba[at + static_cast<std::size_t>(c)] =
+                              static_cast<std::uint8_t>(bits >> (8 * c));
+                      });
   mesh::fill_gutter(picture, kGutterRing);
   const Picture cover = cover_of(colors, map);
   for (std::size_t at = 0; at < picture.rgba.size(); at += 4) picture.rgba[at + 3] = cover.rgba[at];

@@ -31,23 +31,24 @@ constexpr float kFlat = 0.02f;
 
 // Clockwise from north as seen from above, 0…360 degrees.
 float azimuth(const Compass& compass, const glm::vec3& normal) {
-  const float x = glm::dot(normal, glm::vec3(compass.east)), y = glm::dot(normal, glm::vec3(compass.north));
+  const float x = glm::dot(normal, glm::vec3(compass.east)),
+              y = glm::dot(normal, glm::vec3(compass.north));
   if (x * x + y * y < kFlat * kFlat) return kNone;
   const double degrees = glm::degrees(std::atan2(double{x}, double{y})) - compass.turned_degrees;
   return static_cast<float>(degrees - 360 * std::floor(degrees / 360));
 }
 
 SurfaceValue at_vertices(GeometryPtr geometry, std::vector<double> values, ValueType type) {
-  return [geometry = std::move(geometry), values = std::move(values), is_key = !is_float(type)](std::uint32_t triangle,
-                                                                                                const glm::vec3& w) {
+  return [geometry = std::move(geometry), values = std::move(values), is_key = !is_float(type)](
+             std::uint32_t triangle, const glm::vec3& w) {
     return mesh::value_in_triangle(*geometry, values, triangle, w, is_key);
   };
 }
 
 class Measure {
  public:
-  Measure(store::Store& store, const Model& model, GeometryPtr geometry, const ShapeRecipe& recipe, ValueType type,
-          Progress& progress)
+  Measure(store::Store& store, const Model& model, GeometryPtr geometry, const ShapeRecipe& recipe,
+          ValueType type, Progress& progress)
       : store_(store),
         model_(model),
         geometry_(std::move(geometry)),
@@ -82,7 +83,9 @@ class Measure {
     for (int k = 0; k < 3; ++k)
       point +=
           double{weights[k]} *
-          geometry_->positions[geometry_->vertices[geometry_->indices[3 * std::size_t{triangle} + k]].position_index];
+          geometry_
+              ->positions[geometry_->vertices[geometry_->indices[3 * std::size_t{triangle} + k]]
+                              .position_index];
     return point;
   }
   // Points about as close as those of a scan of a million triangles, whatever this mesh has.
@@ -95,16 +98,19 @@ class Measure {
     auto field = mesh::SampledField::make(geometry_, normals, spacing, function, progress_);
     if (!field) return tl::unexpected(field.error());
     auto shared = std::make_shared<const mesh::SampledField>(std::move(*field));
-    return SurfaceValue([shared](std::uint32_t triangle, const glm::vec3& w) { return shared->at(triangle, w); });
+    return SurfaceValue(
+        [shared](std::uint32_t triangle, const glm::vec3& w) { return shared->at(triangle, w); });
   }
 
   Result<SurfaceValue> height() {
     const glm::dvec3 up = up_frame(model_.up).up;
     // `up` has one component: the lowest corner of the box is as high as the lowest point.
-    const double zero =
-        recipe_.absolute ? 0 : std::min(glm::dot(up, model_.bounds_min), glm::dot(up, model_.bounds_max));
-    return SurfaceValue(
-        [this, up, zero](std::uint32_t t, const glm::vec3& w) { return glm::dot(world(t, w), up) - zero; });
+    const double zero = recipe_.absolute ? 0
+                                         : std::min(glm::dot(up, model_.bounds_min),
+                                                    glm::dot(up, model_.bounds_max));
+    return SurfaceValue([this, up, zero](std::uint32_t t, const glm::vec3& w) {
+      return glm::dot(world(t, w), up) - zero;
+    });
   }
 
   Result<SurfaceValue> slope() {
@@ -137,11 +143,14 @@ class Measure {
     };
     const float spacing = std::max(radius / 3, even_spacing(1e6));
     switch (recipe_.kind) {
-      case ShapeKind::mean_curvature: return sampled(spacing, curvature([](const auto& c) { return c.mean(); }));
+      case ShapeKind::mean_curvature:
+        return sampled(spacing, curvature([](const auto& c) { return c.mean(); }));
       case ShapeKind::gaussian_curvature:
         return sampled(spacing, curvature([](const auto& c) { return c.gaussian(); }));
-      case ShapeKind::max_curvature: return sampled(spacing, curvature([](const auto& c) { return c.max; }));
-      case ShapeKind::min_curvature: return sampled(spacing, curvature([](const auto& c) { return c.min; }));
+      case ShapeKind::max_curvature:
+        return sampled(spacing, curvature([](const auto& c) { return c.max; }));
+      case ShapeKind::min_curvature:
+        return sampled(spacing, curvature([](const auto& c) { return c.min; }));
       default: break;
     }
     return sampled(spacing, [&samples](const glm::vec3& p, const glm::vec3& n) {
@@ -152,27 +161,31 @@ class Measure {
 
   Result<SurfaceValue> openness() {
     progress_.begin_stage(0, kPrepared);
-    auto rays =
-        mesh::Openness::make(geometry_, static_cast<float>(in_units(*recipe_.distance_mm)), *recipe_.rays, progress_);
+    auto rays = mesh::Openness::make(geometry_, static_cast<float>(in_units(*recipe_.distance_mm)),
+                                     *recipe_.rays, progress_);
     if (!rays) return tl::unexpected(rays.error());
     progress_.begin_stage(kPrepared, kMeasured);
-    return sampled(even_spacing(5e5), [&](const glm::vec3& p, const glm::vec3& n) { return (*rays)->at(p, n); });
+    return sampled(even_spacing(5e5),
+                   [&](const glm::vec3& p, const glm::vec3& n) { return (*rays)->at(p, n); });
   }
 
   Result<SurfaceValue> to_boundary() {
     progress_.report(0, "Looking for open edges");
     const mesh::BoundaryDistance distance(*geometry_);
     if (distance.is_closed())
-      return fail(422, "No boundary", "This model is closed: it has no open edge that a distance could be measured to.",
+      return fail(422, "No boundary",
+                  "This model is closed: it has no open edge that a distance could be measured to.",
                   "compute.kind");
-    return sampled(even_spacing(1e6), [&](const glm::vec3& p, const glm::vec3&) { return distance.at(p); });
+    return sampled(even_spacing(1e6),
+                   [&](const glm::vec3& p, const glm::vec3&) { return distance.at(p); });
   }
 
   Result<SurfaceValue> to_model() {
     auto other = store_.model(recipe_.model);
     if (!other) return refuse_model(other.error());
     if (other->id == model_.id)
-      return fail(422, "The same model", "A model has no distance to itself; name another one.", "compute.model");
+      return fail(422, "The same model", "A model has no distance to itself; name another one.",
+                  "compute.model");
     if (!other->crs.empty() && !model_.crs.empty() && other->crs != model_.crs)
       return fail(422, "Other coordinates",
                   "This model lies in " + model_.crs + ", the other one in " + other->crs +
@@ -185,9 +198,10 @@ class Measure {
     auto there = mesh::decode_geometry(*bytes);
     if (!there) return tl::unexpected(there.error());
     const mesh::ModelDistance distance(geometry_->origin, model_.metres(),
-                                       std::make_shared<const mesh::Geometry>(std::move(*there)), other->metres(),
-                                       in_units(*recipe_.distance_mm));
-    return sampled(even_spacing(1e6), [&](const glm::vec3& p, const glm::vec3&) { return distance.at(p); });
+                                       std::make_shared<const mesh::Geometry>(std::move(*there)),
+                                       other->metres(), in_units(*recipe_.distance_mm));
+    return sampled(even_spacing(1e6),
+                   [&](const glm::vec3& p, const glm::vec3&) { return distance.at(p); });
   }
   static tl::unexpected<Problem> refuse_model(Problem problem) {
     if (problem.status == 404) problem.field = "compute.model";
@@ -200,19 +214,22 @@ class Measure {
     for (const SourceFile& source : model_.source_files) {
       if (!recipe_.source.empty() && source.name != recipe_.source) continue;
       std::vector<std::uint8_t> beginning;
-      auto read = store_.read_source(model_.id, source.name, [&](std::span<const std::uint8_t> chunk) {
-        beginning.assign(chunk.begin(), chunk.end());
-        return false;
-      });
+      auto read =
+          store_.read_source(model_.id, source.name, [&](std::span<const std::uint8_t> chunk) {
+            beginning.assign(chunk.begin(), chunk.end());
+            return false;
+          });
       if (!read) return tl::unexpected(read.error());
       const auto names = mesh::vertex_property_names(beginning);
-      if (std::find(names.begin(), names.end(), recipe_.property) != names.end()) having.push_back(source.name);
+      if (std::find(names.begin(), names.end(), recipe_.property) != names.end())
+        having.push_back(source.name);
     }
     if (having.size() != 1)
       return fail(422, having.empty() ? "No such property" : "Several files have it",
-                  having.empty()
-                      ? "No source file of this model has vertices with a number \"" + recipe_.property + "\"."
-                      : "Name the source file whose property \"" + recipe_.property + "\" is meant.",
+                  having.empty() ? "No source file of this model has vertices with a number \"" +
+                                       recipe_.property + "\"."
+                                 : "Name the source file whose property \"" + recipe_.property +
+                                       "\" is meant.",
                   having.empty() ? "compute.property" : "compute.source");
     source_ = having.front();
     progress_.report(0, "Reading the scan");
@@ -220,7 +237,8 @@ class Measure {
     if (!file) return tl::unexpected(file.error());
     auto column = mesh::read_vertex_property(*file, recipe_.property);
     if (!column) return tl::unexpected(column.error());
-    return at_vertices(geometry_, mesh::values_at_positions(*geometry_, *column, !is_float(type_)), type_);
+    return at_vertices(geometry_, mesh::values_at_positions(*geometry_, *column, !is_float(type_)),
+                       type_);
   }
 
   store::Store& store_;
@@ -248,16 +266,18 @@ ValueRange range_of(const TileMap& tiles, ValueType type) {
     }
   if (values.empty()) return {};
   const auto quantile = [&](double share) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    const auto at = values.begin() +
+                    static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), at, values.end());
     return double{*at};
   };
   return {least, quantile(0.02), quantile(0.98), most};
 }
 
-// `rounds`: measures become whole numbers where the type wants them; given numbers must be. `from`: share of the work already done.
-Result<TileMap> paint(const mesh::Geometry& geometry, const SurfaceValue& value, ValueType type, int resolution,
-                      bool rounds, double from, Progress& progress) {
+// `rounds`: measures become whole numbers where the type wants them; given numbers must be. `from`:
+// share of the work already done.
+Result<TileMap> paint(const mesh::Geometry& geometry, const SurfaceValue& value, ValueType type,
+                      int resolution, bool rounds, double from, Progress& progress) {
   progress.begin_stage(from, (1 + from) / 2);
   const auto owners = mesh::bake_texel_owners(geometry, resolution, progress);
   if (!owners) return tl::unexpected(owners.error());
@@ -282,8 +302,8 @@ Result<TileMap> paint(const mesh::Geometry& geometry, const SurfaceValue& value,
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& model, const std::string& source,
-                                              Progress& progress) {
+Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& model,
+                                              const std::string& source, Progress& progress) {
   std::vector<std::uint8_t> file;
   auto read = store.read_source(model.id, source, [&](std::span<const std::uint8_t> chunk) {
     file.insert(file.end(), chunk.begin(), chunk.end());
@@ -294,8 +314,8 @@ Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& 
   return file;
 }
 
-Result<TileMap> paint_normals(const std::shared_ptr<const mesh::Geometry>& geometry, int axis, int resolution,
-                              Progress& progress) {
+Result<TileMap> paint_normals(const std::shared_ptr<const mesh::Geometry>& geometry, int axis,
+                              int resolution, Progress& progress) {
   const mesh::SurfaceNormals normals(geometry);
   const auto component = [&](std::uint32_t triangle, const glm::vec3& weights) {
     return normals.at(triangle, weights)[axis];
@@ -303,14 +323,17 @@ Result<TileMap> paint_normals(const std::shared_ptr<const mesh::Geometry>& geome
   return paint(*geometry, component, ValueType::f32, resolution, false, 0, progress);
 }
 
-Result<TileMap> paint_vertex_values(const std::shared_ptr<const mesh::Geometry>& geometry, std::vector<double> values,
-                                    ValueType type, int resolution, Progress& progress) {
-  return paint(*geometry, at_vertices(geometry, std::move(values), type), type, resolution, false, 0, progress);
+Result<TileMap> paint_vertex_values(const std::shared_ptr<const mesh::Geometry>& geometry,
+                                    std::vector<double> values, ValueType type, int resolution,
+                                    Progress& progress) {
+  return paint(*geometry, at_vertices(geometry, std::move(values), type), type, resolution, false,
+               0, progress);
 }
 
 Result<ShapeLayer> compute_shape_layer(store::Store& store, const Model& model,
-                                       const std::shared_ptr<const mesh::Geometry>& geometry, const ShapeRecipe& recipe,
-                                       ValueType type, int resolution, Progress& progress) {
+                                       const std::shared_ptr<const mesh::Geometry>& geometry,
+                                       const ShapeRecipe& recipe, ValueType type, int resolution,
+                                       Progress& progress) {
   progress.begin_stage(0, kMeasured);
   Measure measure(store, model, geometry, recipe, type, progress);
   const auto value = measure.value();

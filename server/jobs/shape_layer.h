@@ -18,25 +18,29 @@ struct ShapeLayer {
   nlohmann::json recipe;  // complete: the same again from the same mesh gives the same texels
 };
 
-// Computes what the recipe says on the whole surface of the model, as values of `type` at `resolution`. `recipe` is completed;
-// `store` is read for the other model and for source files. Refused (422, 404, naming the member) where the other model or the
-// property cannot be used, where the model is closed and the distance to its boundary is asked for, and where values do not fit
+// Computes what the recipe says on the whole surface of the model, as values of `type` at
+// `resolution`. `recipe` is completed; `store` is read for the other model and for source files.
+// Refused (422, 404, naming the member) where the other model or the property cannot be used, where
+// the model is closed and the distance to its boundary is asked for, and where values do not fit
 // the type. Long: reports progress, honours cancel. Thread: any that may block.
 Result<ShapeLayer> compute_shape_layer(store::Store& store, const Model& model,
-                                       const std::shared_ptr<const mesh::Geometry>& geometry, const ShapeRecipe& recipe,
-                                       ValueType type, int resolution, Progress& progress);
+                                       const std::shared_ptr<const mesh::Geometry>& geometry,
+                                       const ShapeRecipe& recipe, ValueType type, int resolution,
+                                       Progress& progress);
 
 // One component (0…2) of the surface's normal at each texel, as f32.
-Result<TileMap> paint_normals(const std::shared_ptr<const mesh::Geometry>& geometry, int axis, int resolution,
-                              Progress& progress);
+Result<TileMap> paint_normals(const std::shared_ptr<const mesh::Geometry>& geometry, int axis,
+                              int resolution, Progress& progress);
 
 // A source file of the model, whole, in memory.
-Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& model, const std::string& source,
-                                              Progress& progress);
+Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& model,
+                                              const std::string& source, Progress& progress);
 
-// Paints values of a geometry's welded positions (NaN: none): between them for float types, that of the nearest position for whole
-// numbers, which are keys or classes. 422 naming `type` where one does not fit. Otherwise as above.
-Result<TileMap> paint_vertex_values(const std::shared_ptr<const mesh::Geometry>& geometry, std::vector<double> values,
-                                    ValueType type, int resolution, Progress& progress);
+// Paints values of a geometry's welded positions (NaN: none): between them for float types, that of
+// the nearest position for whole numbers, which are keys or classes. 422 naming `type` where one
+// does not fit. Otherwise as above.
+Result<TileMap> paint_vertex_values(const std::shared_ptr<const mesh::Geometry>& geometry,
+                                    std::vector<double> values, ValueType type, int resolution,
+                                    Progress& progress);
 
 }  // namespace strata::jobs

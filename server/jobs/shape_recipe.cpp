@@ -10,24 +10,31 @@ namespace strata::jobs {
 namespace {
 
 constexpr std::array<std::string_view, 12> kNames{
-    "height",        "slope",     "azimuth",           "mean_curvature",    "gaussian_curvature", "max_curvature",
-    "min_curvature", "roughness", "ambient_occlusion", "boundary_distance", "model_distance",     "vertex_property"};
+    "height",         "slope",          "azimuth",   "mean_curvature",    "gaussian_curvature",
+    "max_curvature",  "min_curvature",  "roughness", "ambient_occlusion", "boundary_distance",
+    "model_distance", "vertex_property"};
 
 constexpr double kEdgesPerRadius = 4;
 constexpr int kDefaultRays = 64;
 constexpr int kFewestRays = 16, kMostRays = 1024;
 
-bool takes_radius(ShapeKind kind) { return kind >= ShapeKind::mean_curvature && kind <= ShapeKind::roughness; }
+bool takes_radius(ShapeKind kind) {
+  return kind >= ShapeKind::mean_curvature && kind <= ShapeKind::roughness;
+}
 bool takes_distance(ShapeKind kind) {
   return kind == ShapeKind::ambient_occlusion || kind == ShapeKind::model_distance;
 }
 
 double millimetres(double units, const Model& model) { return units * model.metres() * 1000; }
-double diagonal_mm(const Model& model) { return millimetres(glm::length(model.bounds_max - model.bounds_min), model); }
+double diagonal_mm(const Model& model) {
+  return millimetres(glm::length(model.bounds_max - model.bounds_min), model);
+}
 
-// A little more than the mean: a mesh of equal equilateral triangles has edges of 1.52 √(area of one).
+// A little more than the mean: a mesh of equal equilateral triangles has edges of 1.52 √(area of
+// one).
 double edge_mm(const Model& model) {
-  return millimetres(1.52 * std::sqrt(model.area / static_cast<double>(std::max<std::uint64_t>(1, model.triangles))),
+  return millimetres(1.52 * std::sqrt(model.area / static_cast<double>(std::max<std::uint64_t>(
+                                                       1, model.triangles))),
                      model);
 }
 
@@ -40,10 +47,10 @@ double rounded(double value) {
 
 Result<void> refuse_foreign(bool is_set, bool takes, const char* member, ShapeKind kind) {
   if (!is_set || takes) return {};
-  return fail(
-      422, "Not of this kind",
-      "`" + std::string(member) + "` has no meaning for the kind " + std::string(name(kind)) + "; leave it out.",
-      "compute." + std::string(member));
+  return fail(422, "Not of this kind",
+              "`" + std::string(member) + "` has no meaning for the kind " +
+                  std::string(name(kind)) + "; leave it out.",
+              "compute." + std::string(member));
 }
 
 Result<void> check_members(const ShapeRecipe& r) {
@@ -61,15 +68,17 @@ Result<void> check_members(const ShapeRecipe& r) {
   for (const auto& [is_set, takes, member] : members)
     if (auto good = refuse_foreign(is_set, takes, member, kind); !good) return good;
   if (kind == ShapeKind::model_distance && r.model.empty())
-    return fail(422, "Model missing", "Name the model whose surface the distance is measured to.", "compute.model");
+    return fail(422, "Model missing", "Name the model whose surface the distance is measured to.",
+                "compute.model");
   if (kind == ShapeKind::vertex_property && r.property.empty())
-    return fail(422, "Property missing", "Name the property of the scan's vertices, such as quality.",
-                "compute.property");
+    return fail(422, "Property missing",
+                "Name the property of the scan's vertices, such as quality.", "compute.property");
   return {};
 }
 
 double least_radius_mm(const Model& model) {
-  return millimetres(mesh::SurfaceSamples::least_radius(model.area, model.bounds_max - model.bounds_min), model);
+  return millimetres(
+      mesh::SurfaceSamples::least_radius(model.area, model.bounds_max - model.bounds_min), model);
 }
 
 Result<void> check_length(double value, double least, double most, const char* member) {
@@ -85,7 +94,8 @@ Palette linear(double low, double high, std::initializer_list<Rgba> colors) {
   Palette palette{PaletteMode::linear, low, high, {}, {}};
   const double last = static_cast<double>(colors.size() - 1);
   for (const Rgba& color : colors)
-    palette.points.push_back({low + (high - low) * static_cast<double>(palette.points.size()) / last, color, {}});
+    palette.points.push_back(
+        {low + (high - low) * static_cast<double>(palette.points.size()) / last, color, {}});
   return palette;
 }
 
@@ -100,9 +110,12 @@ Palette viridis(double low, double high) {
 
 // Blue is hollow or behind, red bulges or stands in front: told apart with every colour vision.
 Palette diverging(double limit) {
-  return linear(
-      -limit, limit,
-      {{33, 102, 172, 255}, {103, 169, 207, 255}, {247, 247, 247, 255}, {239, 138, 98, 255}, {178, 24, 43, 255}});
+  return linear(-limit, limit,
+                {{33, 102, 172, 255},
+                 {103, 169, 207, 255},
+                 {247, 247, 247, 255},
+                 {239, 138, 98, 255},
+                 {178, 24, 43, 255}});
 }
 
 Palette compass() {
@@ -127,18 +140,23 @@ std::string sentence(const ShapeRecipe& r, const Model& model, const std::string
     case ShapeKind::azimuth:
       return "Direction that the surface faces, clockwise from north as seen from above; none where it lies flat.";
     case ShapeKind::mean_curvature:
-      return "Mean curvature: positive where the surface bulges, negative where it is hollow." + fit;
+      return "Mean curvature: positive where the surface bulges, negative where it is hollow." +
+             fit;
     case ShapeKind::gaussian_curvature:
       return "Gaussian curvature: positive in bumps and hollows, negative in saddles, 0 where it could be unrolled." +
              fit;
-    case ShapeKind::max_curvature: return "Largest principal curvature: high on ridges and edges." + fit;
-    case ShapeKind::min_curvature: return "Smallest principal curvature: low in grooves and cracks." + fit;
-    case ShapeKind::roughness: return "Distance of the surface to the plane that fits it best within " + within + ".";
+    case ShapeKind::max_curvature:
+      return "Largest principal curvature: high on ridges and edges." + fit;
+    case ShapeKind::min_curvature:
+      return "Smallest principal curvature: low in grooves and cracks." + fit;
+    case ShapeKind::roughness:
+      return "Distance of the surface to the plane that fits it best within " + within + ".";
     case ShapeKind::ambient_occlusion:
       return "Share of the light from all around that reaches the surface: 1 in the open, 0 in deep cavities. " +
-             std::to_string(r.rays.value_or(kDefaultRays)) + " rays of " + short_number(r.distance_mm.value_or(0)) +
-             " mm.";
-    case ShapeKind::boundary_distance: return "Straight distance to the nearest open edge of the mesh.";
+             std::to_string(r.rays.value_or(kDefaultRays)) + " rays of " +
+             short_number(r.distance_mm.value_or(0)) + " mm.";
+    case ShapeKind::boundary_distance:
+      return "Straight distance to the nearest open edge of the mesh.";
     case ShapeKind::model_distance:
       return "Distance to the surface of " + other +
              ": positive where this one lies in front of it (material was added), negative behind it. Looked for up to " +
@@ -163,14 +181,20 @@ Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model) {
   if (auto good = check_members(recipe); !good) return tl::unexpected(good.error());
   const double diagonal = diagonal_mm(model), least = least_radius_mm(model);
   if (takes_radius(recipe.kind)) {
-    if (!recipe.radius_mm) recipe.radius_mm = rounded(std::max(kEdgesPerRadius * edge_mm(model), least * 1.05));
-    if (auto good = check_length(*recipe.radius_mm, least, std::max(diagonal, 2 * least), "radius_mm"); !good)
+    if (!recipe.radius_mm)
+      recipe.radius_mm = rounded(std::max(kEdgesPerRadius * edge_mm(model), least * 1.05));
+    if (auto good =
+            check_length(*recipe.radius_mm, least, std::max(diagonal, 2 * least), "radius_mm");
+        !good)
       return tl::unexpected(good.error());
   }
   if (takes_distance(recipe.kind)) {
     if (!recipe.distance_mm)
-      recipe.distance_mm = rounded(diagonal / (recipe.kind == ShapeKind::ambient_occlusion ? 4 : 10));
-    if (auto good = check_length(*recipe.distance_mm, diagonal * 1e-6, diagonal * 100, "distance_mm"); !good)
+      recipe.distance_mm =
+          rounded(diagonal / (recipe.kind == ShapeKind::ambient_occlusion ? 4 : 10));
+    if (auto good =
+            check_length(*recipe.distance_mm, diagonal * 1e-6, diagonal * 100, "distance_mm");
+        !good)
       return tl::unexpected(good.error());
   }
   if (recipe.kind == ShapeKind::ambient_occlusion) {
@@ -208,9 +232,10 @@ std::string unit_of(const ShapeRecipe& recipe, const Model& model) {
   }
 }
 
-std::string description_of(const ShapeRecipe& recipe, const Model& model, const std::string& other_model) {
-  return sentence(recipe, model, other_model) + " Computed from the mesh of " + std::to_string(model.triangles) +
-         " triangles.";
+std::string description_of(const ShapeRecipe& recipe, const Model& model,
+                           const std::string& other_model) {
+  return sentence(recipe, model, other_model) + " Computed from the mesh of " +
+         std::to_string(model.triangles) + " triangles.";
 }
 
 Palette palette_of(ShapeKind kind, const ValueRange& range) {

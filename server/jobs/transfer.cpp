@@ -23,8 +23,12 @@ struct Side {
   mesh::SurfaceNormals normals;
   double metres;
 
-  Side(GeometryPtr the_geometry, std::shared_ptr<const mesh::SearchTree> the_tree, double the_metres)
-      : geometry(std::move(the_geometry)), tree(std::move(the_tree)), normals(geometry), metres(the_metres) {}
+  Side(GeometryPtr the_geometry, std::shared_ptr<const mesh::SearchTree> the_tree,
+       double the_metres)
+      : geometry(std::move(the_geometry)),
+        tree(std::move(the_tree)),
+        normals(geometry),
+        metres(the_metres) {}
 
   struct Spot {
     glm::dvec3 world;
@@ -35,7 +39,8 @@ struct Side {
     const glm::vec3 w = owners.weights_of(texel);
     glm::vec3 position(0);
     for (int k = 0; k < 3; ++k)
-      position += w[k] * geometry->vertices[geometry->indices[3 * std::size_t{triangle} + k]].position;
+      position +=
+          w[k] * geometry->vertices[geometry->indices[3 * std::size_t{triangle} + k]].position;
     return {geometry->origin + glm::dvec3(position), normals.at(triangle, w)};
   }
 };
@@ -45,14 +50,15 @@ struct Tolerance {
   float least_cos;
 };
 
-std::optional<mesh::SearchTree::Hit> counterpart(const Side& from, const Side::Spot& spot, const Side& to,
-                                                 const Tolerance& tolerance) {
+std::optional<mesh::SearchTree::Hit> counterpart(const Side& from, const Side::Spot& spot,
+                                                 const Side& to, const Tolerance& tolerance) {
   const glm::vec3 point(spot.world * (from.metres / to.metres) - to.geometry->origin);
-  return to.tree->nearest_facing(point, static_cast<float>(tolerance.metres / to.metres), spot.normal,
-                                 tolerance.least_cos);
+  return to.tree->nearest_facing(point, static_cast<float>(tolerance.metres / to.metres),
+                                 spot.normal, tolerance.least_cos);
 }
 
-// Sums of texels' areas by parts that are one thread's each: no lock, and the same sum on any number of threads.
+// Sums of texels' areas by parts that are one thread's each: no lock, and the same sum on any
+// number of threads.
 class AreaSum {
  public:
   explicit AreaSum(std::size_t texels) : parts_(texels / mesh::kTexelsAtOnce + 1) {}
@@ -66,8 +72,8 @@ class AreaSum {
 // The layers of one resolution.
 class Group {
  public:
-  Group(const TransferTarget& target, const Side& here, const Side& there, const Tolerance& tolerance,
-        int source_resolution, Progress& progress)
+  Group(const TransferTarget& target, const Side& here, const Side& there,
+        const Tolerance& tolerance, int source_resolution, Progress& progress)
       : target_(target),
         here_(here),
         there_(there),
@@ -118,16 +124,19 @@ class Group {
       std::optional<bool> is_lost;
       for (std::size_t i = 0; i < layers.size(); ++i) {
         if (!is_valid(layers[i], *owners, texel)) continue;
-        if (!is_lost) is_lost = !counterpart(there_, there_.spot(*owners, texel), here_, tolerance_);
+        if (!is_lost)
+          is_lost = !counterpart(there_, there_.spot(*owners, texel), here_, tolerance_);
         painted[i].add(texel, map->area[texel]);
         if (*is_lost) lost[i].add(texel, map->area[texel]);
       }
     };
-    if (auto done = mesh::for_each_texel(*owners, weigh, "Looking for what is lost", progress_); !done)
+    if (auto done = mesh::for_each_texel(*owners, weigh, "Looking for what is lost", progress_);
+        !done)
       return tl::unexpected(done.error());
     std::vector<Balance> balances;
     const double m2 = there_.metres * there_.metres;
-    for (std::size_t i = 0; i < layers.size(); ++i) balances.push_back({painted[i].total() * m2, lost[i].total() * m2});
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      balances.push_back({painted[i].total() * m2, lost[i].total() * m2});
     return balances;
   }
 
@@ -141,20 +150,25 @@ class Group {
     };
     auto painted = mesh::paint_texels(owners_, layer.type, bits, progress_);
     if (!painted) return tl::unexpected(painted.error());
-    return TransferredLayer{
-        &layer,         resolution_, std::move(*painted), balance.source_m2, area.total() * here_.metres * here_.metres,
-        balance.lost_m2};
+    return TransferredLayer{&layer,
+                            resolution_,
+                            std::move(*painted),
+                            balance.source_m2,
+                            area.total() * here_.metres * here_.metres,
+                            balance.lost_m2};
   }
 
  private:
   static bool is_valid(const TileMap& tiles, const mesh::TexelOwners& owners, std::size_t texel) {
     const auto block = owners.block_of_slot[texel / 64];
-    const int x = static_cast<int>(block % owners.blocks_per_side) * kBlockSize + static_cast<int>(texel % kBlockSize);
-    const int y =
-        static_cast<int>(block / owners.blocks_per_side) * kBlockSize + static_cast<int>(texel % 64) / kBlockSize;
-    const auto tile =
-        tiles.find({static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)});
-    return tile != tiles.end() && tile->second->valid.test(y % kTileSize * kTileSize + x % kTileSize);
+    const int x = static_cast<int>(block % owners.blocks_per_side) * kBlockSize +
+                  static_cast<int>(texel % kBlockSize);
+    const int y = static_cast<int>(block / owners.blocks_per_side) * kBlockSize +
+                  static_cast<int>(texel % 64) / kBlockSize;
+    const auto tile = tiles.find(
+        {static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)});
+    return tile != tiles.end() &&
+           tile->second->valid.test(y % kTileSize * kTileSize + x % kTileSize);
   }
 
   const TransferTarget& target_;
@@ -171,7 +185,8 @@ class Group {
 }  // namespace
 
 Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarget& target,
-                                        const TransferRequest& request, const Deliver& deliver, Progress& progress) {
+                                        const TransferRequest& request, const Deliver& deliver,
+                                        Progress& progress) {
   progress.report(0, "Reading the other model");
   auto bytes = store.geometry(request.source.id);
   if (!bytes) return tl::unexpected(bytes.error());
@@ -179,7 +194,8 @@ Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarge
   if (!decoded) return tl::unexpected(decoded.error());
   bytes->clear();
   const auto source = std::make_shared<const mesh::Geometry>(std::move(*decoded));
-  const Side there(source, std::make_shared<const mesh::SearchTree>(source), request.source.metres());
+  const Side there(source, std::make_shared<const mesh::SearchTree>(source),
+                   request.source.metres());
   const Side here(target.geometry, target.tree, target.model.metres());
   const Tolerance tolerance{request.tolerance_mm / 1000,
                             static_cast<float>(std::cos(glm::radians(request.max_angle_degrees)))};
@@ -188,10 +204,12 @@ Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarge
   for (const Layer& layer : request.layers) by_resolution[layer.resolution].push_back(&layer);
   TransferSummary summary{target.model.area_m2(), 0};
   double start = 0.02;
-  const double share = (1 - start) / static_cast<double>(std::max<std::size_t>(1, by_resolution.size()));
+  const double share =
+      (1 - start) / static_cast<double>(std::max<std::size_t>(1, by_resolution.size()));
   for (const auto& [resolution, layers] : by_resolution) {
     Group group(target, here, there, tolerance, resolution, progress);
-    if (auto matched = group.match(start, start + 0.5 * share); !matched) return tl::unexpected(matched.error());
+    if (auto matched = group.match(start, start + 0.5 * share); !matched)
+      return tl::unexpected(matched.error());
     std::vector<TileMap> contents;
     for (const Layer* layer : layers) {
       auto tiles = store.load_tiles(*layer);

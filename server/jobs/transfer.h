@@ -42,12 +42,14 @@ struct TransferSummary {
   double area_m2 = 0, matched_m2 = 0;  // surface of the target; of that with a counterpart
 };
 
-// For every texel of the target the nearest place of the source within the tolerance whose triangle faces within the angle of it,
-// and what each layer has there: one texel, no mixing, so that keys stay keys. Both models' world coordinates are taken to be of
-// one system, in their own units. What is not yet durable on the source is not seen. `deliver` gets one layer after the other
-// and may refuse, which ends it. Long: reports progress, honours cancel. Thread: any that may block.
+// For every texel of the target the nearest place of the source within the tolerance whose triangle
+// faces within the angle of it, and what each layer has there: one texel, no mixing, so that keys
+// stay keys. Both models' world coordinates are taken to be of one system, in their own units. What
+// is not yet durable on the source is not seen. `deliver` gets one layer after the other and may
+// refuse, which ends it. Long: reports progress, honours cancel. Thread: any that may block.
 using Deliver = std::function<Result<void>(TransferredLayer layer)>;
 Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarget& target,
-                                        const TransferRequest& request, const Deliver& deliver, Progress& progress);
+                                        const TransferRequest& request, const Deliver& deliver,
+                                        Progress& progress);
 
 }  // namespace strata::jobs

@@ -2,8 +2,8 @@
 
 namespace strata::jobs {
 
-TransferredMarks transfer_marks(std::span<const Mark> marks, const Model& source, const TransferTarget& target,
-                                double tolerance_mm) {
+TransferredMarks transfer_marks(std::span<const Mark> marks, const Model& source,
+                                const TransferTarget& target, double tolerance_mm) {
   const double scale = source.metres() / target.model.metres();
   const auto farthest = static_cast<float>(tolerance_mm / 1000 / target.model.metres());
   const glm::dvec3& origin = target.geometry->origin;
@@ -13,7 +13,8 @@ TransferredMarks transfer_marks(std::span<const Mark> marks, const Model& source
     Mark part{target.model.id, {}};
     bool is_whole = true;
     const auto end_part = [&] {
-      if (part.places.size() >= least && (least == 1 || length_of(part) > 0)) found.marks.push_back(part);
+      if (part.places.size() >= least && (least == 1 || length_of(part) > 0))
+        found.marks.push_back(part);
       part.places.clear();
     };
     for (const glm::dvec3& place : mark.places) {

@@ -9,13 +9,15 @@
 namespace strata::jobs {
 
 struct TransferredMarks {
-  std::vector<Mark> marks;     // on the target
-  std::size_t lost_marks = 0;  // of those given: at least a part has no counterpart within the tolerance
+  std::vector<Mark> marks;  // on the target
+  // of those given: at least a part has no counterpart within the tolerance
+  std::size_t lost_marks = 0;
 };
 
-// Lines and points of the source as they lie on the target: each place becomes the nearest one of its surface. A line is parted
-// where that is farther than the tolerance. Both models' world coordinates are taken to be of one system, in their own units.
-TransferredMarks transfer_marks(std::span<const Mark> marks, const Model& source, const TransferTarget& target,
-                                double tolerance_mm);
+// Lines and points of the source as they lie on the target: each place becomes the nearest one of
+// its surface. A line is parted where that is farther than the tolerance. Both models' world
+// coordinates are taken to be of one system, in their own units.
+TransferredMarks transfer_marks(std::span<const Mark> marks, const Model& source,
+                                const TransferTarget& target, double tolerance_mm);
 
 }  // namespace strata::jobs

@@ -21,30 +21,35 @@ namespace {
 
 constexpr int kThreads = 2;
 constexpr double kExpectedCoverage = 0.66;
-// A narrow cone stretches least. Rugged surfaces fall into many small charts by it, whose margins fill the atlas: where
-// less than kGoodCoverage is used, a wider cone is tried and the denser of the two atlases taken.
+// A narrow cone stretches least. Rugged surfaces fall into many small charts by it, whose margins
+// fill the atlas: where less than kGoodCoverage is used, a wider cone is tried and the denser of
+// the two atlases taken.
 constexpr std::array<float, 2> kCones{55, 65};
 constexpr double kGoodCoverage = 0.61, kWantedCoverage = 0.72;
-// Texels between charts: the gutter rings of neighbours (2 texels each) stay apart at the lowest resolution by the wide one.
+// Texels between charts: the gutter rings of neighbours (2 texels each) stay apart at the lowest
+// resolution by the wide one.
 constexpr int kWideGap = 4, kNarrowGap = 2;
-// Hollow charts are cut from so many triangles on: smaller meshes have texels enough, and rather as few seams as possible.
+// Hollow charts are cut from so many triangles on: smaller meshes have texels enough, and rather as
+// few seams as possible.
 constexpr std::size_t kCutsFrom = 5000;
 constexpr double kLeastHollow = 0.003;  // box of a chart worth cutting, of the atlas
-// Faces that keep less than 1 / kMostStretch of their area get charts of their own, if they are worth as many texels; the
-// footprint of faces in those charts is at least kStraightFootprint. None has kNoFootprint: each is a chart then.
+// Faces that keep less than 1 / kMostStretch of their area get charts of their own, if they are
+// worth as many texels; the footprint of faces in those charts is at least kStraightFootprint. None
+// has kNoFootprint: each is a chart then.
 constexpr float kMostStretch = 2.6f, kStraightFootprint = 0.45f, kNoFootprint = 2;
 constexpr double kSmallestSqueezed = 0.1;
 // Laplacian rounds: scanner noise is gone after two, and more would only add stretch.
 constexpr int kSmoothing = 2;
-// No texel has two owners at the lowest resolution, nor at twice and four times that: layers are usually so fine.
+// No texel has two owners at the lowest resolution, nor at twice and four times that: layers are
+// usually so fine.
 constexpr int kVerifiedResolutions = 3;
 constexpr int kMostMendingRounds = 20;
 // Density is lowered by this factor, so often, before a new one is searched for.
 constexpr double kRepackingStep = 0.995;
 constexpr int kMostRepackings = 8;
 constexpr int kLargestResolution = 16384;
-// 1/8192 texel at the lowest resolution: a multiple of 2^-24 of the atlas at 2048, so that float UVs hold it exactly
-// and every GPU snaps the same vertex to the same place.
+// 1/8192 texel at the lowest resolution: a multiple of 2^-24 of the atlas at 2048, so that float
+// UVs hold it exactly and every GPU snaps the same vertex to the same place.
 constexpr double kUvSteps = 8192;
 
 // What unwrapping makes of a surface on the way to an atlas.
@@ -52,7 +57,8 @@ struct Unwrap {
   std::vector<Chart> charts;
   std::vector<glm::vec2> plane;  // of each corner, in its chart's plane
   std::vector<Outline> outlines;
-  float longest = 0;   // side of a chart, in units of the plane: longer ones are squeezed; 0: none are
+  // side of a chart, in units of the plane: longer ones are squeezed; 0: none are
+  float longest = 0;
   int gap = kWideGap;  // texels between charts
   PackingStart start;
   double expected_coverage = 0;  // of the atlas, by area
@@ -65,9 +71,11 @@ std::vector<glm::vec2> lay_out(const Unwrap& unwrap, int resolution) {
     const Placement& placement = unwrap.packing.placements[c];
     for (const auto face : unwrap.charts[c].faces)
       for (std::size_t k = 0; k < 3; ++k) {
-        const glm::vec2 local = unwrap.outlines[c].from_chart(unwrap.plane[3 * std::size_t{face} + k]);
+        const glm::vec2 local =
+            unwrap.outlines[c].from_chart(unwrap.plane[3 * std::size_t{face} + k]);
         glm::dvec2 texels = glm::dvec2(local) * unwrap.packing.texels_per_unit + kNear;
-        texels = glm::clamp(glm::round(texels * kUvSteps) / kUvSteps, glm::dvec2(0), glm::dvec2(placement.box));
+        texels = glm::clamp(glm::round(texels * kUvSteps) / kUvSteps, glm::dvec2(0),
+                            glm::dvec2(placement.box));
         uvs[3 * std::size_t{face} + k] = glm::vec2(placement.to_atlas(texels) / double(resolution));
       }
   });
@@ -83,15 +91,18 @@ std::vector<int> verified_resolutions(int lowest_resolution) {
 }
 
 tl::unexpected<Problem> no_room(std::size_t charts, int resolution) {
-  return fail(422, "Cannot unwrap",
-              "The surface falls into " + std::to_string(charts) + " separate pieces, more than " +
-                  std::to_string(resolution) + " × " + std::to_string(resolution) +
-                  " texels can hold apart. Weld or clean the mesh, or import it with a higher lowest resolution.",
-              "lowest_resolution");
+  return fail(
+      422, "Cannot unwrap",
+      "The surface falls into " + std::to_string(charts) + " separate pieces, more than " +
+          std::to_string(resolution) + " × " + std::to_string(resolution) +
+          " texels can hold apart. Weld or clean the mesh, or import it with a higher lowest resolution.",
+      "lowest_resolution");
 }
 
-// The surface of a face over its area in the plane: how much more a texel there holds than elsewhere.
-float stretch_of(const ChartSurface& surface, std::span<const glm::vec2> plane, std::uint32_t face) {
+// The surface of a face over its area in the plane: how much more a texel there holds than
+// elsewhere.
+float stretch_of(const ChartSurface& surface, std::span<const glm::vec2> plane,
+                 std::uint32_t face) {
   const glm::vec2* p = &plane[3 * std::size_t{face}];
   const glm::vec2 ab = p[1] - p[0], ac = p[2] - p[0];
   const float area = std::abs(ab.x * ac.y - ab.y * ac.x) / 2;
@@ -152,7 +163,8 @@ Result<void> begin_pack_somehow(int resolution, const Progress& progress, Unwrap
 }
 
 Result<void> finish_pack(int resolution, const Progress& progress, Unwrap& unwrap) {
-  auto packing = finish_packing(unwrap.outlines, resolution, unwrap.gap, std::move(unwrap.start), progress, kThreads);
+  auto packing = finish_packing(unwrap.outlines, resolution, unwrap.gap, std::move(unwrap.start),
+                                progress, kThreads);
   if (progress.cancelled()) return cancelled_problem();
   if (!packing) return no_room(unwrap.outlines.size(), resolution);
   unwrap.packing = std::move(*packing);
@@ -162,14 +174,16 @@ Result<void> finish_pack(int resolution, const Progress& progress, Unwrap& unwra
 ChartOptions chart_options(const ChartSurface& surface, int lowest_resolution) {
   const double side = lowest_resolution;
   ChartOptions options;
-  options.texels_per_unit = std::sqrt(kExpectedCoverage * side * side / surface.smoothed_frames.total_area);
+  options.texels_per_unit =
+      std::sqrt(kExpectedCoverage * side * side / surface.smoothed_frames.total_area);
   options.largest_half_side = lowest_resolution / 5;
   return options;
 }
 
 // Gives the faces charts of their own and flattens these.
-Result<void> split(const ChartSurface& surface, std::span<const std::uint32_t> faces, float smallest_footprint,
-                   int lowest_resolution, const Progress& progress, Unwrap& unwrap) {
+Result<void> split(const ChartSurface& surface, std::span<const std::uint32_t> faces,
+                   float smallest_footprint, int lowest_resolution, const Progress& progress,
+                   Unwrap& unwrap) {
   if (faces.empty()) return {};
   ChartOptions options = chart_options(surface, lowest_resolution);
   options.smallest_footprint = smallest_footprint;
@@ -180,7 +194,8 @@ Result<void> split(const ChartSurface& surface, std::span<const std::uint32_t> f
   return {};
 }
 
-Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_resolution, Progress& progress) {
+Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_resolution,
+                           Progress& progress) {
   ChartOptions options = chart_options(surface, lowest_resolution);
   options.cone_degrees = kCones[attempt];
   options.progress_from = 0.1 + 0.35 * attempt;
@@ -194,7 +209,8 @@ Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_
   const auto smallest_area =
       static_cast<float>(kSmallestSqueezed / (options.texels_per_unit * options.texels_per_unit));
   const auto squeezed = squeezed_faces(surface, unwrap.plane, kMostStretch, smallest_area);
-  if (auto done = split(surface, squeezed, kStraightFootprint, lowest_resolution, progress, unwrap); !done)
+  if (auto done = split(surface, squeezed, kStraightFootprint, lowest_resolution, progress, unwrap);
+      !done)
     return tl::unexpected(done.error());
   if (progress.cancelled()) return cancelled_problem();
   progress.report(options.progress_to + 0.05, "Packing the charts");
@@ -205,14 +221,16 @@ Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_
 }
 
 // Takes `changed` where it is denser.
-Result<void> take_denser(int lowest_resolution, const Progress& progress, Unwrap changed, Unwrap& unwrap) {
+Result<void> take_denser(int lowest_resolution, const Progress& progress, Unwrap changed,
+                         Unwrap& unwrap) {
   auto begun = begin_pack(lowest_resolution, progress, changed);
   if (progress.cancelled()) return begun;
   if (begun && changed.expected_coverage > unwrap.expected_coverage) unwrap = std::move(changed);
   return {};
 }
 
-// Squeezes the charts that are longer than the atlas would be if as much of it were used as is wanted.
+// Squeezes the charts that are longer than the atlas would be if as much of it were used as is
+// wanted.
 void squeeze_long(const ChartSurface& surface, int lowest_resolution, Unwrap& unwrap) {
   // What is squeezed is smaller, so that a little more must be.
   for (int round = 0; round < 3; ++round) {
@@ -222,33 +240,38 @@ void squeeze_long(const ChartSurface& surface, int lowest_resolution, Unwrap& un
   }
 }
 
-// Where little of the atlas is used: charts whose length keeps all others small are squeezed, hollow ones cut, and the gaps
-// made narrow, until enough is used.
-Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const Progress& progress, Unwrap& unwrap) {
+// Where little of the atlas is used: charts whose length keeps all others small are squeezed,
+// hollow ones cut, and the gaps made narrow, until enough is used.
+Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const Progress& progress,
+                      Unwrap& unwrap) {
   const auto is_poor = [&] { return unwrap.expected_coverage < kGoodCoverage; };
   const double area = area_in_planes(unwrap);
   const double longest = std::sqrt(area / kWantedCoverage);
-  const bool is_long = std::any_of(unwrap.outlines.begin(), unwrap.outlines.end(), [&](const auto& some) {
-    return double{std::max(some.size.x, some.size.y)} > longest;
-  });
+  const bool is_long = std::any_of(
+      unwrap.outlines.begin(), unwrap.outlines.end(),
+      [&](const auto& some) { return double{std::max(some.size.x, some.size.y)} > longest; });
   if (is_long) {
     Unwrap shorter = unwrap;
     squeeze_long(surface, lowest_resolution, shorter);
-    if (auto done = take_denser(lowest_resolution, progress, std::move(shorter), unwrap); !done) return done;
+    if (auto done = take_denser(lowest_resolution, progress, std::move(shorter), unwrap); !done)
+      return done;
   }
   if (is_poor() && surface.mesh.triangle_count() >= kCutsFrom) {
     Unwrap cut = unwrap;
-    if (cut_hollow_charts(surface, cut.plane, static_cast<float>(kLeastHollow * area / kWantedCoverage), cut.charts)) {
+    if (cut_hollow_charts(surface, cut.plane,
+                          static_cast<float>(kLeastHollow * area / kWantedCoverage), cut.charts)) {
       cut.longest = 0;
       outline(surface, cut);
       squeeze_long(surface, lowest_resolution, cut);
-      if (auto done = take_denser(lowest_resolution, progress, std::move(cut), unwrap); !done) return done;
+      if (auto done = take_denser(lowest_resolution, progress, std::move(cut), unwrap); !done)
+        return done;
     }
   }
   if (is_poor() && unwrap.gap > kNarrowGap) {
     Unwrap nearer = unwrap;
     nearer.gap = kNarrowGap;
-    if (auto done = take_denser(lowest_resolution, progress, std::move(nearer), unwrap); !done) return done;
+    if (auto done = take_denser(lowest_resolution, progress, std::move(nearer), unwrap); !done)
+      return done;
   }
   return {};
 }
@@ -285,14 +308,16 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     if (is_dense) break;
   }
   if (best->expected_coverage < kGoodCoverage)
-    if (auto done = use_more(surface, lowest_resolution, progress, *best); !done) return tl::unexpected(done.error());
+    if (auto done = use_more(surface, lowest_resolution, progress, *best); !done)
+      return tl::unexpected(done.error());
 
-  if (auto packed = finish_pack(lowest_resolution, progress, *best); !packed) return tl::unexpected(packed.error());
+  if (auto packed = finish_pack(lowest_resolution, progress, *best); !packed)
+    return tl::unexpected(packed.error());
 
   Atlas atlas;
   const auto resolutions = verified_resolutions(lowest_resolution);
-  // Each round sends the later of two faces that share a texel to a chart of its own, so two or three rounds end it;
-  // should one ever not, the report says what overlaps.
+  // Each round sends the later of two faces that share a texel to a chart of its own, so two or
+  // three rounds end it; should one ever not, the report says what overlaps.
   for (int round = 0; round < kMostMendingRounds; ++round) {
     if (progress.cancelled()) return cancelled_problem();
     progress.report(0.85, "Checking that nothing overlaps");
@@ -303,7 +328,8 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     if (auto done = split(surface, conflicts, footprint, lowest_resolution, progress, *best); !done)
       return tl::unexpected(done.error());
     outline(surface, *best);
-    if (auto packed = pack_again(lowest_resolution, progress, *best); !packed) return tl::unexpected(packed.error());
+    if (auto packed = pack_again(lowest_resolution, progress, *best); !packed)
+      return tl::unexpected(packed.error());
   }
   progress.report(0.95, "Measuring the unfolded surface");
   TexelCounts owners;
@@ -317,8 +343,8 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
   atlas.report = make_report(mesh, atlas.corner_uvs, lowest_resolution, owners, measure);
   atlas.report.source = "made";
   atlas.report.charts = static_cast<int>(best->charts.size());
-  atlas.report.limits =
-      limits_of_packing(best->outlines, best->packing, lowest_resolution, best->gap, atlas.report.coverage);
+  atlas.report.limits = limits_of_packing(best->outlines, best->packing, lowest_resolution,
+                                          best->gap, atlas.report.coverage);
   progress.report(1, "Surface unfolded");
   return atlas;
 }

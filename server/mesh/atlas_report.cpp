@@ -12,8 +12,8 @@ namespace {
 
 double area_of(const TriangleMesh& mesh, std::size_t f) {
   const auto a = mesh.positions[mesh.triangles[3 * f]];
-  return glm::length(
-             glm::cross(mesh.positions[mesh.triangles[3 * f + 1]] - a, mesh.positions[mesh.triangles[3 * f + 2]] - a)) /
+  return glm::length(glm::cross(mesh.positions[mesh.triangles[3 * f + 1]] - a,
+                                mesh.positions[mesh.triangles[3 * f + 2]] - a)) /
          2;
 }
 
@@ -22,7 +22,8 @@ struct Stretch {
   float area;
 };
 
-// Stretch beyond this factor of the mean counts as this factor: a sliver's ratio says nothing about the atlas.
+// Stretch beyond this factor of the mean counts as this factor: a sliver's ratio says nothing about
+// the atlas.
 constexpr double kLargestStretch = 50;
 constexpr int kLargestMeasured = 8192;                     // finer grids would take seconds
 constexpr std::size_t kBandTexels = std::size_t{1} << 22;  // measured at a time
@@ -36,7 +37,8 @@ void sum_stretch(std::vector<Stretch> faces, double area, double uv_area, AtlasM
     sum += double{face.ratio} * face.area;
   }
   measure.stretch_mean = sum / area;
-  std::sort(faces.begin(), faces.end(), [](const Stretch& a, const Stretch& b) { return a.ratio < b.ratio; });
+  std::sort(faces.begin(), faces.end(),
+            [](const Stretch& a, const Stretch& b) { return a.ratio < b.ratio; });
   double below = 0;
   for (const auto& face : faces) {
     below += face.area;
@@ -45,7 +47,8 @@ void sum_stretch(std::vector<Stretch> faces, double area, double uv_area, AtlasM
   }
 }
 
-// What areas are multiplied with so that the mean triangle has 1: nanometre and megametre models stay inside float.
+// What areas are multiplied with so that the mean triangle has 1: nanometre and megametre models
+// stay inside float.
 double scale_of(const TriangleMesh& mesh, double area) {
   return area > 0 ? static_cast<double>(mesh.triangle_count()) / area : 1;
 }
@@ -60,18 +63,21 @@ AtlasMeasure measure_areas(const TriangleMesh& mesh, std::span<const glm::vec2> 
   faces.reserve(mesh.triangle_count());
   for (std::size_t f = 0; f < mesh.triangle_count(); ++f) {
     const double area = area_of(mesh, f);
-    const glm::dvec2 a = uvs[3 * f], ab = glm::dvec2(uvs[3 * f + 1]) - a, ac = glm::dvec2(uvs[3 * f + 2]) - a;
+    const glm::dvec2 a = uvs[3 * f], ab = glm::dvec2(uvs[3 * f + 1]) - a,
+                     ac = glm::dvec2(uvs[3 * f + 2]) - a;
     const double uv_area = std::abs(ab.x * ac.y - ab.y * ac.x) / 2;
     if (uv_area == 0) measure.area_without_uv += area;
     if (area == 0) continue;
     measure.uv_area += uv_area;
-    faces.push_back({static_cast<float>(area * scale / std::max(uv_area, 1e-18)), static_cast<float>(area * scale)});
+    faces.push_back({static_cast<float>(area * scale / std::max(uv_area, 1e-18)),
+                     static_cast<float>(area * scale)});
   }
   sum_stretch(std::move(faces), measure.area * scale, measure.uv_area, measure);
   return measure;
 }
 
-double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> uvs, int resolution) {
+double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> uvs,
+                          int resolution) {
   const auto side = static_cast<std::size_t>(resolution);
   const double scale = scale_of(mesh, surface_area(mesh));
   // Band by band: the whole atlas at 8192² would take 268 MB.
@@ -100,8 +106,9 @@ double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> u
           texel(static_cast<int>(pieces.centroid().x), row) += static_cast<float>(area);
       } else {
         const double area_per_texel = area / pieces.area();
-        pieces.for_each(row_begin, row_end,
-                        [&](int x, int y, double piece) { texel(x, y) += static_cast<float>(piece * area_per_texel); });
+        pieces.for_each(row_begin, row_end, [&](int x, int y, double piece) {
+          texel(x, y) += static_cast<float>(piece * area_per_texel);
+        });
       }
     }
     largest = std::max(largest, *std::max_element(texel_areas.begin(), texel_areas.end()));
@@ -135,8 +142,9 @@ TexelCounts count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> uv
   return result;
 }
 
-AtlasReport make_report(const TriangleMesh& mesh, std::span<const glm::vec2> uvs, int lowest_resolution,
-                        const TexelCounts& owners, const AtlasMeasure& measure) {
+AtlasReport make_report(const TriangleMesh& mesh, std::span<const glm::vec2> uvs,
+                        int lowest_resolution, const TexelCounts& owners,
+                        const AtlasMeasure& measure) {
   AtlasReport report;
   report.lowest_resolution = lowest_resolution;
   const auto covered = static_cast<double>(owners.covered);
@@ -144,8 +152,8 @@ AtlasReport make_report(const TriangleMesh& mesh, std::span<const glm::vec2> uvs
   report.overlap = covered > 0 ? static_cast<double>(owners.shared) / covered : 0;
   report.stretch_mean = measure.stretch_mean;
   report.stretch_p99 = measure.stretch_p99;
-  for (int resolution = lowest_resolution; resolution <= std::min(4 * lowest_resolution, kLargestMeasured);
-       resolution *= 2) {
+  for (int resolution = lowest_resolution;
+       resolution <= std::min(4 * lowest_resolution, kLargestMeasured); resolution *= 2) {
     const double texels = measure.uv_area * resolution * resolution;
     report.texel_sizes.push_back({resolution, texels > 0 ? measure.area / texels : 0, 0});
   }

@@ -11,8 +11,9 @@ namespace strata::mesh {
 // Whom the texels of an atlas belong to at one resolution, found by rasterising it as OpenGL does.
 struct TexelCounts {
   std::uint64_t covered = 0;
-  std::uint64_t shared = 0;              // covered by more than one triangle
-  std::vector<std::uint32_t> shared_by;  // triangles that cover a texel which one before them covers
+  std::uint64_t shared = 0;  // covered by more than one triangle
+  // triangles that cover a texel which one before them covers
+  std::vector<std::uint32_t> shared_by;
 };
 
 // What an atlas does to areas.
@@ -24,15 +25,19 @@ struct AtlasMeasure {
 };
 
 // `corner_uvs` must lie in [0,1]², everywhere here.
-TexelCounts count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution);
+TexelCounts count_owners(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs,
+                         int resolution);
 AtlasMeasure measure_areas(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs);
 
-// The surface that lies in the texel that holds most, unit²: triangles are clipped against the texels.
-double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution);
+// The surface that lies in the texel that holds most, unit²: triangles are clipped against the
+// texels.
+double largest_texel_area(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs,
+                          int resolution);
 
-// All of the report but `source` and `charts`, from what was found at `lowest_resolution`; texel sizes are measured there and at
-// twice and four times that, on two threads.
-AtlasReport make_report(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int lowest_resolution,
-                        const TexelCounts& owners, const AtlasMeasure& measure);
+// All of the report but `source` and `charts`, from what was found at `lowest_resolution`; texel
+// sizes are measured there and at twice and four times that, on two threads.
+AtlasReport make_report(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs,
+                        int lowest_resolution, const TexelCounts& owners,
+                        const AtlasMeasure& measure);
 
 }  // namespace strata::mesh

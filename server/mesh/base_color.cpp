@@ -17,7 +17,8 @@ namespace strata::mesh {
 namespace {
 
 constexpr int kSmallestBaseColor = 256, kPlainColors = 2048;
-constexpr int kLargestPower = 2048, kSideStep = 1024;  // sides are powers of two up to there, then multiples
+// sides are powers of two up to there, then multiples
+constexpr int kLargestPower = 2048, kSideStep = 1024;
 constexpr int kGutterRing = 8, kRingsPerSide = 1024;
 constexpr int kJpegQuality = 92;
 constexpr double kRounding = 1 - 1e-3;     // of a side, before the next larger one is taken
@@ -25,14 +26,22 @@ constexpr double kMostMinification = 1.5;  // that mixing four texels bears
 constexpr double kLost = 0.02;             // of a texture's pixels: less is rounding
 constexpr double kBytesPerTexel = 6;       // the picture, its coarser levels and what is encoded
 
-std::string size_text(int width, int height) { return std::to_string(width) + " × " + std::to_string(height); }
+std::string size_text(int width, int height) {
+  return std::to_string(width) + " × " + std::to_string(height);
+}
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
 class Baker {
  public:
-  Baker(TriangleMesh& mesh, const Atlas& atlas, std::vector<Repair>& repairs, Progress& progress, MemoryLedger* memory)
-      : mesh_(mesh), atlas_(atlas), repairs_(repairs), progress_(progress), memory_(memory), paint_(mesh, atlas) {}
+  Baker(TriangleMesh& mesh, const Atlas& atlas, std::vector<Repair>& repairs, Progress& progress,
+        MemoryLedger* memory)
+      : mesh_(mesh),
+        atlas_(atlas),
+        repairs_(repairs),
+        progress_(progress),
+        memory_(memory),
+        paint_(mesh, atlas) {}
 
   Result<std::optional<BaseColor>> run() {
     look_at_materials();
@@ -78,7 +87,8 @@ class Baker {
 
   // The texture whose pixels can stay as they are, or −1. Triangles that were moved may lack one.
   int only_texture() const {
-    if (atlas_.report.source != "file" || atlas_.kept_scale < 1 || several_colors_ || !is_white(first_color_))
+    if (atlas_.report.source != "file" || atlas_.kept_scale < 1 || several_colors_ ||
+        !is_white(first_color_))
       return -1;
     if (mesh_.colors_tint_materials && !mesh_.vertex_colors.empty()) return -1;
     int texture = -1;
@@ -96,12 +106,16 @@ class Baker {
 
   // One colour for all: the vertices carry it.
   void color_vertices() {
-    if (is_white(first_color_) || (!mesh_.vertex_colors.empty() && !mesh_.colors_tint_materials)) return;
-    if (mesh_.vertex_colors.empty()) mesh_.vertex_colors.assign(mesh_.positions.size(), 0xffffffffu);
+    if (is_white(first_color_) || (!mesh_.vertex_colors.empty() && !mesh_.colors_tint_materials))
+      return;
+    if (mesh_.vertex_colors.empty())
+      mesh_.vertex_colors.assign(mesh_.positions.size(), 0xffffffffu);
     for (std::uint32_t& color : mesh_.vertex_colors) {
-      std::uint8_t rgb[3] = {std::uint8_t(color), std::uint8_t(color >> 8), std::uint8_t(color >> 16)};
+      std::uint8_t rgb[3] = {std::uint8_t(color), std::uint8_t(color >> 8),
+                             std::uint8_t(color >> 16)};
       multiply_light(rgb, first_color_);
-      color = (color & 0xff000000u) | rgb[0] | std::uint32_t{rgb[1]} << 8 | std::uint32_t{rgb[2]} << 16;
+      color =
+          (color & 0xff000000u) | rgb[0] | std::uint32_t{rgb[1]} << 8 | std::uint32_t{rgb[2]} << 16;
     }
   }
 
@@ -134,7 +148,8 @@ class Baker {
     if (stays) return BaseColor{info->format, info->width, info->height, std::move(texture.bytes)};
     texture.bytes = {};
     progress_.report(0.3, "Painting the base colour");
-    if (!atlas_.moved.empty()) paint_.paint_moved(index, std::max(1, whole->width / kRingsPerSide), *whole);
+    if (!atlas_.moved.empty())
+      paint_.paint_moved(index, std::max(1, whole->width / kRingsPerSide), *whole);
     if (progress_.cancelled()) return cancelled_problem();
     return encoded(*whole, info->format == PictureFormat::jpeg);
   }
@@ -146,9 +161,12 @@ class Baker {
                     : encode_png(picture.rgba, picture.width, picture.height)};
   }
 
-  glm::dvec2 atlas_uv(std::size_t triangle, int k) const { return atlas_.corner_uvs[3 * triangle + k]; }
+  glm::dvec2 atlas_uv(std::size_t triangle, int k) const {
+    return atlas_.corner_uvs[3 * triangle + k];
+  }
   glm::dvec2 texture_uv(std::size_t triangle, int k) const {
-    return mesh_.corner_uvs.empty() ? glm::dvec2(0) : glm::dvec2(mesh_.corner_uvs[3 * triangle + k]);
+    return mesh_.corner_uvs.empty() ? glm::dvec2(0)
+                                    : glm::dvec2(mesh_.corner_uvs[3 * triangle + k]);
   }
   template <class Uv>
   double uv_area(std::size_t triangle, Uv uv) const {
@@ -156,7 +174,8 @@ class Baker {
     return std::abs(cross((this->*uv)(triangle, 1) - a, (this->*uv)(triangle, 2) - a)) / 2;
   }
 
-  // Pixels of a texture, and share of the atlas, that its triangles take. The first one is of those without.
+  // Pixels of a texture, and share of the atlas, that its triangles take. The first one is of those
+  // without.
   struct Share {
     PictureInfo info;
     double texture_pixels = 0, atlas = 0;
@@ -166,12 +185,14 @@ class Baker {
   std::vector<Share> shares_of_textures() const {
     std::vector<Share> shares(mesh_.textures.size() + 1);
     for (std::size_t i = 0; i < mesh_.textures.size(); ++i)
-      if (const auto info = inspect_picture(mesh_.textures[i].bytes); info) shares[i + 1].info = *info;
+      if (const auto info = inspect_picture(mesh_.textures[i].bytes); info)
+        shares[i + 1].info = *info;
     for (std::size_t t = 0; t < mesh_.triangle_count(); ++t) {
       const int texture = material_of(t).texture;
       Share& share = shares[texture + 1];
       share.atlas += uv_area(t, &Baker::atlas_uv);
-      const double pixels = uv_area(t, &Baker::texture_uv) * double(share.info.width) * double(share.info.height);
+      const double pixels =
+          uv_area(t, &Baker::texture_uv) * double(share.info.width) * double(share.info.height);
       if (texture >= 0 && std::isfinite(pixels)) share.texture_pixels += pixels;
     }
     return shares;
@@ -180,7 +201,8 @@ class Baker {
   // The largest picture up to the one that keeps all pixels for which there is memory.
   Result<MemoryLedger::Share> reserve_picture(const std::vector<Share>& shares, int& side) {
     double source = 0;
-    for (const Share& share : shares) source = std::max(source, 4.0 * share.info.width * share.info.height);
+    for (const Share& share : shares)
+      source = std::max(source, 4.0 * share.info.width * share.info.height);
     for (side = resolution_for(shares);; side = std::max(kSmallestBaseColor, side / 2)) {
       auto share = reserved(kBytesPerTexel * side * side + source);
       if (share || side == kSmallestBaseColor) return share;
@@ -192,7 +214,8 @@ class Baker {
     const std::size_t textures = mesh_.textures.size();
     // Triangles by their textures; those without come first.
     const auto place_of = [&](std::uint32_t t) { return material_of(t).texture + 1; };
-    const Buckets by_texture(static_cast<int>(textures) + 1, static_cast<std::uint32_t>(mesh_.triangle_count()),
+    const Buckets by_texture(static_cast<int>(textures) + 1,
+                             static_cast<std::uint32_t>(mesh_.triangle_count()),
                              [&](std::uint32_t t) {
                                return std::pair{place_of(t), place_of(t)};
                              });
@@ -231,9 +254,10 @@ class Baker {
         atlas += share.atlas;
       }
     if (!(pixels > 0) || !(atlas > 0)) return kPlainColors;
-    const double wanted =
-        std::clamp(std::sqrt(pixels / atlas) * kRounding, double(kSmallestBaseColor), double(kLargestBaseColor));
-    if (wanted <= kLargestPower) return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(wanted))));
+    const double wanted = std::clamp(std::sqrt(pixels / atlas) * kRounding,
+                                     double(kSmallestBaseColor), double(kLargestBaseColor));
+    if (wanted <= kLargestPower)
+      return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(wanted))));
     return static_cast<int>(std::ceil(wanted / kSideStep)) * kSideStep;
   }
 
@@ -260,13 +284,15 @@ class Baker {
         came += ", …";
         break;
       }
-      came += (came.empty() ? "" : ", ") + std::to_string(count) + " of " + size_text(size.first, size.second);
+      came += (came.empty() ? "" : ", ") + std::to_string(count) + " of " +
+              size_text(size.first, size.second);
     }
     char share[16];
     std::snprintf(share, sizeof share, "%.0f %%", 100 * kept / used);
     note(repairs_,
-         "textures made smaller: " + came + " pixels became one picture of " + size_text(side, side) +
-             ", which keeps " + share + " of the pixels that the surface uses",
+         "textures made smaller: " + came + " pixels became one picture of " +
+             size_text(side, side) + ", which keeps " + share +
+             " of the pixels that the surface uses",
          smaller);
   }
 
@@ -276,8 +302,10 @@ class Baker {
     if (!picture) note_unreadable(texture, picture.error());
     texture.bytes = {};
     if (!picture) return {};
-    double minification = std::sqrt(share.texture_pixels / std::max(share.atlas * side * side, 1e-300));
-    for (; minification > kMostMinification && (picture->width > 1 || picture->height > 1); minification /= 2)
+    double minification =
+        std::sqrt(share.texture_pixels / std::max(share.atlas * side * side, 1e-300));
+    for (; minification > kMostMinification && (picture->width > 1 || picture->height > 1);
+         minification /= 2)
       picture = halve(*picture);
     return std::move(*picture);
   }
@@ -294,8 +322,9 @@ class Baker {
 
 }  // namespace
 
-Result<std::optional<BaseColor>> bake_base_color(TriangleMesh& mesh, const Atlas& atlas, std::vector<Repair>& repairs,
-                                                 Progress& progress, MemoryLedger* memory) {
+Result<std::optional<BaseColor>> bake_base_color(TriangleMesh& mesh, const Atlas& atlas,
+                                                 std::vector<Repair>& repairs, Progress& progress,
+                                                 MemoryLedger* memory) {
   return Baker(mesh, atlas, repairs, progress, memory).run();
 }
 

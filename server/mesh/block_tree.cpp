@@ -31,7 +31,8 @@ Box box_of(const glm::vec3* positions, std::uint64_t texels) {
   return box;
 }
 
-// The texels on the lower side of the widest gap along the box's longest axis, if that is wide enough; else all.
+// The texels on the lower side of the widest gap along the box's longest axis, if that is wide
+// enough; else all.
 std::uint64_t below_gap(const glm::vec3* positions, std::uint64_t texels, float least_gap) {
   const Box box = box_of(positions, texels);
   const int axis = longest_axis(box.high - box.low);
@@ -41,7 +42,8 @@ std::uint64_t below_gap(const glm::vec3* positions, std::uint64_t texels, float 
   for (std::uint64_t rest = texels; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
     const float place = (positions[i][axis] - box.low[axis]) / extent * kBins;
-    bins[static_cast<std::size_t>(std::clamp(static_cast<int>(place), 0, kBins - 1))] |= std::uint64_t{1} << i;
+    bins[static_cast<std::size_t>(std::clamp(static_cast<int>(place), 0, kBins - 1))] |=
+        std::uint64_t{1} << i;
   }
   std::uint64_t below = bins[0], best = texels;
   int widest = 0;
@@ -74,8 +76,8 @@ struct Range {
   std::size_t size() const { return last - first; }
 };
 
-// Halves a range across the longest axis of its centres, at a whole number of subtrees: so that eight neighbours in the final
-// order are a node's children.
+// Halves a range across the longest axis of its centres, at a whole number of subtrees: so that
+// eight neighbours in the final order are a node's children.
 std::size_t halve(std::vector<BoundedPart>& parts, Range range) {
   std::size_t subtree = 1;
   while (subtree * kChildren < range.size()) subtree *= kChildren;
@@ -85,9 +87,10 @@ std::size_t halve(std::vector<BoundedPart>& parts, Range range) {
   for (std::size_t i = range.first; i < range.last; ++i) box.add(parts[i].bounds.center);
   const int axis = longest_axis(box.high - box.low);
   const auto at = [&](std::size_t i) { return parts.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(range.first), at(middle), at(range.last), [axis](const BoundedPart& a, const BoundedPart& b) {
-    return a.bounds.center[axis] < b.bounds.center[axis];
-  });
+  std::nth_element(at(range.first), at(middle), at(range.last),
+                   [axis](const BoundedPart& a, const BoundedPart& b) {
+                     return a.bounds.center[axis] < b.bounds.center[axis];
+                   });
   return middle;
 }
 
@@ -106,7 +109,8 @@ std::vector<BoundingSphere> bound_runs(const std::vector<BoundingSphere>& childr
     for (std::size_t i = first; i < last; ++i) box.add(children[i].center, children[i].radius);
     BoundingSphere run{(box.low + box.high) * 0.5f, 0};
     for (std::size_t i = first; i < last; ++i)
-      run.radius = std::max(run.radius, glm::length(children[i].center - run.center) + children[i].radius + slack);
+      run.radius = std::max(
+          run.radius, glm::length(children[i].center - run.center) + children[i].radius + slack);
     runs.push_back(run);
   }
   return runs;
@@ -132,8 +136,8 @@ BoundingSphere bounds_of(const glm::vec3* positions, std::uint64_t owned, float 
   return bounds;
 }
 
-void add_parts_of_block(BoundedPart whole, const glm::vec3* positions, std::uint64_t owned, float least_gap,
-                        float slack, std::vector<BoundedPart>& parts) {
+void add_parts_of_block(BoundedPart whole, const glm::vec3* positions, std::uint64_t owned,
+                        float least_gap, float slack, std::vector<BoundedPart>& parts) {
   std::vector<std::uint64_t> found;
   cut(positions, owned, least_gap, kMostCuts, found);
   if (found.size() == 1) {
@@ -141,7 +145,8 @@ void add_parts_of_block(BoundedPart whole, const glm::vec3* positions, std::uint
     return;
   }
   whole.part.shares_block = true;
-  for (const std::uint64_t texels : found) parts.push_back({whole.part, bounds_of(positions, texels, slack)});
+  for (const std::uint64_t texels : found)
+    parts.push_back({whole.part, bounds_of(positions, texels, slack)});
 }
 
 BlockTree build_block_tree(std::vector<BoundedPart> parts, float slack, int threads) {
@@ -168,7 +173,8 @@ BlockTree build_block_tree(std::vector<BoundedPart> parts, float slack, int thre
     tree.parts.push_back(part.part);
     leaves.push_back(part.bounds);
   }
-  while (tree.levels.back().size() > 1) tree.levels.push_back(bound_runs(tree.levels.back(), slack));
+  while (tree.levels.back().size() > 1)
+    tree.levels.push_back(bound_runs(tree.levels.back(), slack));
   return tree;
 }
 

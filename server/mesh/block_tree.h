@@ -11,9 +11,10 @@ struct BoundingSphere {
   float radius = -1;  // -1: of nothing
 };
 
-// The occupied 8 × 8 blocks of a surface map by where they lie on the model. What lies in a small part of space is found by the
-// cost of that part, whatever the size of map and mesh: the atlas puts neighbours side by side, but also strangers. A block in
-// which islands meet that lie far apart on the model counts as several parts.
+// The occupied 8 × 8 blocks of a surface map by where they lie on the model. What lies in a small
+// part of space is found by the cost of that part, whatever the size of map and mesh: the atlas
+// puts neighbours side by side, but also strangers. A block in which islands meet that lie far
+// apart on the model counts as several parts.
 struct BlockTree {
   static constexpr std::size_t kChildren = 8;
 
@@ -24,7 +25,8 @@ struct BlockTree {
     bool shares_block = false;  // with other parts
   };
   std::vector<Part> parts;
-  // levels[0] bounds a part each, levels[i] each run of eight of levels[i - 1]; the last has one, or none where there is no part.
+  // levels[0] bounds a part each, levels[i] each run of eight of levels[i - 1]; the last has one,
+  // or none where there is no part.
   std::vector<std::vector<BoundingSphere>> levels;
 
   std::size_t bytes() const;
@@ -37,10 +39,11 @@ struct BoundedPart {
 };
 BlockTree build_block_tree(std::vector<BoundedPart> parts, float slack, int threads);
 
-// Adds the parts of a block, `whole` where it is one: texels between which there is nothing for `least_gap` are apart.
-// `positions` are its 64, of which those in `owned` count; every bound is wider by `slack`.
-void add_parts_of_block(BoundedPart whole, const glm::vec3* positions, std::uint64_t owned, float least_gap,
-                        float slack, std::vector<BoundedPart>& parts);
+// Adds the parts of a block, `whole` where it is one: texels between which there is nothing for
+// `least_gap` are apart. `positions` are its 64, of which those in `owned` count; every bound is
+// wider by `slack`.
+void add_parts_of_block(BoundedPart whole, const glm::vec3* positions, std::uint64_t owned,
+                        float least_gap, float slack, std::vector<BoundedPart>& parts);
 
 // Around the texels of `owned`.
 BoundingSphere bounds_of(const glm::vec3* positions, std::uint64_t owned, float slack);

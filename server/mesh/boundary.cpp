@@ -19,17 +19,21 @@ std::vector<std::array<std::uint32_t, 2>> boundary_edges(const Geometry& geometr
     half_edges[c] = {std::min(a, b), std::max(a, b), c};
   }
   std::sort(half_edges.begin(), half_edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.corner < b.corner;
+    return a.low != b.low     ? a.low < b.low
+           : a.high != b.high ? a.high < b.high
+                              : a.corner < b.corner;
   });
   std::vector<HalfEdge> single;
   for (std::size_t i = 0; i < half_edges.size();) {
     std::size_t j = i + 1;
-    while (j < half_edges.size() && half_edges[j].low == half_edges[i].low && half_edges[j].high == half_edges[i].high)
+    while (j < half_edges.size() && half_edges[j].low == half_edges[i].low &&
+           half_edges[j].high == half_edges[i].high)
       ++j;
     if (j - i == 1 && half_edges[i].low != half_edges[i].high) single.push_back(half_edges[i]);
     i = j;
   }
-  std::sort(single.begin(), single.end(), [](const HalfEdge& a, const HalfEdge& b) { return a.corner < b.corner; });
+  std::sort(single.begin(), single.end(),
+            [](const HalfEdge& a, const HalfEdge& b) { return a.corner < b.corner; });
   std::vector<std::array<std::uint32_t, 2>> edges;
   edges.reserve(single.size());
   for (const HalfEdge& edge : single) edges.push_back({edge.low, edge.high});
@@ -39,7 +43,8 @@ std::vector<std::array<std::uint32_t, 2>> boundary_edges(const Geometry& geometr
 BoundaryDistance::BoundaryDistance(const Geometry& geometry) {
   const auto edges = boundary_edges(geometry);
   if (edges.empty()) return;
-  // The triangles' order runs along a curve through space, and so do their edges: the search tree needs no other.
+  // The triangles' order runs along a curve through space, and so do their edges: the search tree
+  // needs no other.
   auto rims = std::make_shared<Geometry>();
   rims->origin = geometry.origin;
   for (const auto& edge : edges)

@@ -12,8 +12,8 @@
 
 namespace strata::mesh {
 
-// Edges that belong to one triangle only: rims, breaks, holes. Pairs of indices of welded positions, in the triangles' order;
-// an edge of three triangles is none.
+// Edges that belong to one triangle only: rims, breaks, holes. Pairs of indices of welded
+// positions, in the triangles' order; an edge of three triangles is none.
 std::vector<std::array<std::uint32_t, 2>> boundary_edges(const Geometry& geometry);
 
 // Straight distance to the nearest boundary edge, in model space. Thread-safe.

@@ -11,14 +11,17 @@ namespace strata::mesh {
 class Buckets {
  public:
   Buckets() = default;
-  // reach_of(item) of 0 … items - 1 → pair of the first and the last bucket that it lies in. Asked twice.
+  // reach_of(item) of 0 … items - 1 → pair of the first and the last bucket that it lies in. Asked
+  // twice.
   template <class ReachOf>
-  Buckets(int count, std::uint32_t items, const ReachOf& reach_of) : first_(static_cast<std::size_t>(count) + 1, 0) {
+  Buckets(int count, std::uint32_t items, const ReachOf& reach_of)
+      : first_(static_cast<std::size_t>(count) + 1, 0) {
     for_each(items, reach_of, [&](std::uint32_t, std::size_t bucket) { ++first_[bucket + 1]; });
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     items_.resize(first_.back());
     auto cursor = first_;
-    for_each(items, reach_of, [&](std::uint32_t item, std::size_t bucket) { items_[cursor[bucket]++] = item; });
+    for_each(items, reach_of,
+             [&](std::uint32_t item, std::size_t bucket) { items_[cursor[bucket]++] = item; });
   }
 
   std::span<const std::uint32_t> operator[](int bucket) const {  // ascending
@@ -31,7 +34,8 @@ class Buckets {
   static void for_each(std::uint32_t items, const ReachOf& reach_of, const Visit& visit) {
     for (std::uint32_t item = 0; item < items; ++item) {
       const auto [low, high] = reach_of(item);
-      for (int bucket = low; bucket <= high; ++bucket) visit(item, static_cast<std::size_t>(bucket));
+      for (int bucket = low; bucket <= high; ++bucket)
+        visit(item, static_cast<std::size_t>(bucket));
     }
   }
 

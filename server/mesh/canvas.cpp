@@ -24,7 +24,8 @@ int longest_run(const ChartMask& mask, int row) {
   return length;
 }
 
-// The row with the longest run, then rows far apart, then those between them: a place that is not free shows it soon.
+// The row with the longest run, then rows far apart, then those between them: a place that is not
+// free shows it soon.
 void order_rows(const ChartMask& mask, std::vector<std::uint16_t>& order) {
   order.clear();
   int longest = 0, length = 0;
@@ -64,7 +65,8 @@ void Canvas::block(const ChartMask& mask, int row, int y) {
     std::size_t kept = 0;
     words_touched_ += open_.size();
     for (const auto word : open_) {
-      const Word now = blocked_[word] | shifted(line, word, run.begin) | shifted(line, word, second);
+      const Word now =
+          blocked_[word] | shifted(line, word, run.begin) | shifted(line, word, second);
       blocked_[word] = now;
       open_[kept] = word;
       kept += now != kAll;
@@ -97,19 +99,23 @@ Canvas::Spot Canvas::find(const ChartMask& mask, int lowest, int highest) {
   highest = std::min(highest, height_ - kEdgeMargin - mask.height + 1);
   if (last < first) return {};
   order_rows(mask, row_order_);
-  // The rows that are asked first whether they have a run of free texels that is long enough: most of a filled atlas has not.
+  // The rows that are asked first whether they have a run of free texels that is long enough: most
+  // of a filled atlas has not.
   struct Asked {
     int row, run;
   };
   std::array<Asked, 5> asked;
   for (std::size_t i = 0; i < asked.size(); ++i) {
-    const int row = i == 0 ? row_order_.front() : static_cast<int>(i) * mask.height / static_cast<int>(asked.size());
+    const int row = i == 0 ? row_order_.front()
+                           : static_cast<int>(i) * mask.height / static_cast<int>(asked.size());
     asked[i] = {row, longest_run(mask, row)};
   }
-  std::sort(asked.begin(), asked.end(), [](const Asked& a, const Asked& b) { return a.run > b.run; });
+  std::sort(asked.begin(), asked.end(),
+            [](const Asked& a, const Asked& b) { return a.run > b.run; });
   for (int y = std::max(lowest, kEdgeMargin); y < highest; ++y) {
     ++words_touched_;
-    if (std::any_of(asked.begin(), asked.end(), [&](const Asked& a) { return longest_free(y + a.row) < a.run; }))
+    if (std::any_of(asked.begin(), asked.end(),
+                    [&](const Asked& a) { return longest_free(y + a.row) < a.run; }))
       continue;
     open_.clear();
     for (int word = first / 64; word <= last / 64; ++word) {
@@ -129,9 +135,12 @@ void Canvas::put(const ChartMask& mask, Spot spot) {
   const int low = std::max(0, spot.y - gap_), high = std::min(height_, spot.y + mask.height + gap_);
   for (int row = 0; row < mask.height; ++row)
     for (const auto& run : mask.row(row)) {
-      const int begin = std::max(0, spot.x + run.begin - gap_), end = std::min(width_, spot.x + run.end + gap_);
-      for (int y = std::max(low, spot.y + row - gap_); y < std::min(high, spot.y + row + gap_ + 1); ++y)
-        for (int word = begin / 64; word <= (end - 1) / 64; ++word) words(0, y)[word] |= bits_between(word, begin, end);
+      const int begin = std::max(0, spot.x + run.begin - gap_),
+                end = std::min(width_, spot.x + run.end + gap_);
+      for (int y = std::max(low, spot.y + row - gap_); y < std::min(high, spot.y + row + gap_ + 1);
+           ++y)
+        for (int word = begin / 64; word <= (end - 1) / 64; ++word)
+          words(0, y)[word] |= bits_between(word, begin, end);
     }
   const int first_word = std::max(0, spot.x - gap_) / 64;
   const int last_word = std::min(width_ - 1, spot.x + mask.width + gap_) / 64;
@@ -146,7 +155,8 @@ void Canvas::rebuild(int y, int first_word, int last_word) {
     Word* to = words(static_cast<int>(level), y);
     const int begin = std::max(0, first_word - (2 * half) / 64 - 1);
     words_touched_ += static_cast<std::uint64_t>(last_word - begin + 1);
-    for (int word = begin; word <= last_word; ++word) to[word] = from[word] | shifted(from, word, half);
+    for (int word = begin; word <= last_word; ++word)
+      to[word] = from[word] | shifted(from, word, half);
   }
 }
 

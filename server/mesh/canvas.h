@@ -7,8 +7,8 @@
 
 namespace strata::mesh {
 
-// The texels of an atlas that are taken, as bits, with what is needed to find the lowest free place of a chart's exact
-// shape quickly: charts lie in each other's bays and holes.
+// The texels of an atlas that are taken, as bits, with what is needed to find the lowest free place
+// of a chart's exact shape quickly: charts lie in each other's bays and holes.
 class Canvas {
  public:
   Canvas(int side, int gap) : Canvas(side, side, gap) {}
@@ -17,8 +17,8 @@ class Canvas {
   struct Spot {
     int x = -1, y = 0;
   };
-  // The lowest place from row `lowest` on, of those the leftmost, whose texels are all free, with y below `highest`;
-  // x < 0 where there is none.
+  // The lowest place from row `lowest` on, of those the leftmost, whose texels are all free, with y
+  // below `highest`; x < 0 where there is none.
   Spot find(const ChartMask& mask, int lowest, int highest);
 
   // Takes the texels of the mask, and all within `gap` texels of them.
@@ -29,20 +29,24 @@ class Canvas {
 
  private:
   using Word = std::uint64_t;
-  const Word* words(int level, int y) const { return &levels_[level][static_cast<std::size_t>(y) * stride_]; }
+  const Word* words(int level, int y) const {
+    return &levels_[level][static_cast<std::size_t>(y) * stride_];
+  }
   Word* words(int level, int y) { return &levels_[level][static_cast<std::size_t>(y) * stride_]; }
   void block(const ChartMask& mask, int row, int y);
   void rebuild(int y, int first_word, int last_word);
   int longest_free(int y);
 
   const int width_, height_, gap_, word_count_, stride_;
-  // Bit x of a row of level j: whether any of texels x … x + 2^j - 1 is taken. Rows have words more than they need, so that
-  // reading beyond the end is reading free texels.
+  // Bit x of a row of level j: whether any of texels x … x + 2^j - 1 is taken. Rows have words more
+  // than they need, so that reading beyond the end is reading free texels.
   std::vector<std::vector<Word>> levels_;
-  // Of each row: the longest run of free texels between the margins. Measured when it is asked for; less than 0: not yet.
+  // Of each row: the longest run of free texels between the margins. Measured when it is asked for;
+  // less than 0: not yet.
   std::vector<std::int32_t> longest_free_;
   std::uint64_t words_touched_ = 0;
-  std::vector<Word> blocked_;             // of the row that is searched: places where the chart does not fit
+  // of the row that is searched: places where the chart does not fit
+  std::vector<Word> blocked_;
   std::vector<std::uint16_t> open_;       // words of it that are not yet all ones
   std::vector<std::uint16_t> row_order_;  // of the mask: those that block most first
 };

@@ -20,7 +20,8 @@ class Window {
   }
   bool is_free(int y, int begin, int end) const {
     for (int word = begin / 64; word <= (end - 1) / 64; ++word)
-      if (bits_[static_cast<std::size_t>(y) * stride_ + word] & bits_between(word, begin, end)) return false;
+      if (bits_[static_cast<std::size_t>(y) * stride_ + word] & bits_between(word, begin, end))
+        return false;
     return true;
   }
   void take(int y, int begin, int end) {
@@ -33,8 +34,8 @@ class Window {
   std::vector<std::uint64_t> bits_;
 };
 
-void find_conflicts(const Chart& chart, std::span<const glm::vec2> uvs, int resolution, Window& window,
-                    std::vector<std::uint8_t>& is_shared) {
+void find_conflicts(const Chart& chart, std::span<const glm::vec2> uvs, int resolution,
+                    Window& window, std::vector<std::uint8_t>& is_shared) {
   using Corners = std::array<SnappedPoint, 3>;
   const auto snapped = [&](std::uint32_t face) {
     const auto corner = [&](std::size_t k) {
@@ -53,11 +54,13 @@ void find_conflicts(const Chart& chart, std::span<const glm::vec2> uvs, int reso
     auto p = snapped(chart.faces[i]);
     for (auto& corner : p) corner -= origin * kSubtexels;
     const CoverageRaster raster(p[0], p[1], p[2]);
-    const bool is_free = raster.for_each_span(0, size.x, 0, size.y,
-                                              [&](int y, int begin, int end) { return window.is_free(y, begin, end); });
+    const bool is_free = raster.for_each_span(0, size.x, 0, size.y, [&](int y, int begin, int end) {
+      return window.is_free(y, begin, end);
+    });
     if (is_free)
-      raster.for_each_span(0, size.x, 0, size.y,
-                           [&](int y, int begin, int end) { return window.take(y, begin, end), true; });
+      raster.for_each_span(0, size.x, 0, size.y, [&](int y, int begin, int end) {
+        return window.take(y, begin, end), true;
+      });
     else
       is_shared[i] = 1;
   }
@@ -65,7 +68,8 @@ void find_conflicts(const Chart& chart, std::span<const glm::vec2> uvs, int reso
 
 }  // namespace
 
-std::vector<std::uint32_t> faces_in_conflict(std::span<const Chart> charts, std::span<const glm::vec2> uvs,
+std::vector<std::uint32_t> faces_in_conflict(std::span<const Chart> charts,
+                                             std::span<const glm::vec2> uvs,
                                              std::span<const int> resolutions, int threads) {
   std::vector<std::vector<std::uint32_t>> of_chart(charts.size());
   parallel_for(threads, static_cast<int>(charts.size()), [&](int c) {
@@ -73,7 +77,8 @@ std::vector<std::uint32_t> faces_in_conflict(std::span<const Chart> charts, std:
     if (chart.faces.size() == 1) return;
     Window window;
     std::vector<std::uint8_t> is_shared(chart.faces.size(), 0);
-    for (const int resolution : resolutions) find_conflicts(chart, uvs, resolution, window, is_shared);
+    for (const int resolution : resolutions)
+      find_conflicts(chart, uvs, resolution, window, is_shared);
     for (std::size_t i = 0; i < is_shared.size(); ++i)
       if (is_shared[i]) of_chart[c].push_back(chart.faces[i]);
   });

@@ -26,7 +26,8 @@ float area_in_plane(std::span<const glm::vec2> plane, const Chart& chart) {
 }
 
 // Many faces: those with their middles on either side of the middle of the longer side of the box.
-std::vector<Chart> halves_of(const Chart& chart, const Outline& outline, std::span<const glm::vec2> plane) {
+std::vector<Chart> halves_of(const Chart& chart, const Outline& outline,
+                             std::span<const glm::vec2> plane) {
   std::vector<Chart> halves{chart, chart};
   for (auto& half : halves) half.faces.clear();
   const int axis = outline.size.x >= outline.size.y ? 0 : 1;
@@ -38,8 +39,8 @@ std::vector<Chart> halves_of(const Chart& chart, const Outline& outline, std::sp
   return halves;
 }
 
-// A few faces, such as the eight of a frame, which no straight line cuts into its bars: joined again, one by one, to what fills its
-// box best.
+// A few faces, such as the eight of a frame, which no straight line cuts into its bars: joined
+// again, one by one, to what fills its box best.
 class Joiner {
  public:
   Joiner(const ChartSurface& surface, std::span<const glm::vec2> plane, const Chart& chart)
@@ -77,8 +78,8 @@ class Joiner {
 
  private:
   float fill_of(std::size_t a, std::size_t b) {
-    auto& known =
-        fills_[{parts_[a].faces.front(), parts_[a].faces.size(), parts_[b].faces.front(), parts_[b].faces.size()}];
+    auto& known = fills_[{parts_[a].faces.front(), parts_[a].faces.size(), parts_[b].faces.front(),
+                          parts_[b].faces.size()}];
     if (known > 0) return known;
     Chart joined = parts_[a];
     joined.faces.insert(joined.faces.end(), parts_[b].faces.begin(), parts_[b].faces.end());
@@ -91,13 +92,14 @@ class Joiner {
   std::vector<Chart> parts_;
   std::vector<std::size_t> part_of_;  // of the faces of the chart
   std::map<std::uint32_t, std::size_t> number_of_;
-  std::map<std::array<std::size_t, 4>, float> fills_;  // of joined parts, each told by its first face and its size
+  // of joined parts, each told by its first face and its size
+  std::map<std::array<std::size_t, 4>, float> fills_;
 };
 
 }  // namespace
 
-bool cut_hollow_charts(const ChartSurface& surface, std::span<const glm::vec2> plane, float least_box,
-                       std::vector<Chart>& charts) {
+bool cut_hollow_charts(const ChartSurface& surface, std::span<const glm::vec2> plane,
+                       float least_box, std::vector<Chart>& charts) {
   bool any = false;
   std::vector<std::uint8_t> pending(surface.mesh.triangle_count(), 0);
   for (int round = 0; round < kMostRounds; ++round) {
@@ -105,9 +107,11 @@ bool cut_hollow_charts(const ChartSurface& surface, std::span<const glm::vec2> p
     std::vector<Chart> parts;
     for (std::size_t c = 0; c < charts.size(); ++c) {
       const float box = outlines[c].size.x * outlines[c].size.y;
-      if (charts[c].faces.size() > 1 && box > least_box && area_in_plane(plane, charts[c]) < kLeastFill * box)
-        for (Chart& part : charts[c].faces.size() <= kFewFaces ? Joiner(surface, plane, charts[c]).join()
-                                                               : halves_of(charts[c], outlines[c], plane))
+      if (charts[c].faces.size() > 1 && box > least_box &&
+          area_in_plane(plane, charts[c]) < kLeastFill * box)
+        for (Chart& part : charts[c].faces.size() <= kFewFaces
+                               ? Joiner(surface, plane, charts[c]).join()
+                               : halves_of(charts[c], outlines[c], plane))
           append_connected_parts(surface, std::move(part), pending, parts);
       else
         parts.push_back(std::move(charts[c]));

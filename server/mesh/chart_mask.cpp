@@ -6,8 +6,8 @@
 namespace strata::mesh {
 namespace {
 
-// Collects what is touched in each row: by the rim itself, and between crossings of the row's middle line where the rim
-// winds around what lies there.
+// Collects what is touched in each row: by the rim itself, and between crossings of the row's
+// middle line where the rim winds around what lies there.
 class Rows {
  public:
   Rows(int width, int height) : width_(width), rim_(height), crossings_(height) {}
@@ -22,10 +22,12 @@ class Rows {
     for (int y = first; y <= last; ++y) {
       const double x0 = y - kNear <= a.y ? a.x : a.x + slope * (y - kNear - a.y);
       const double x1 = y + 1 + kNear >= b.y ? b.x : a.x + slope * (y + 1 + kNear - a.y);
-      const std::int16_t begin = column(std::min(x0, x1) - kNear), end = column(std::max(x0, x1) + kNear);
+      const std::int16_t begin = column(std::min(x0, x1) - kNear),
+                         end = column(std::max(x0, x1) + kNear);
       rim_[y].push_back({begin, static_cast<std::int16_t>(end + 1)});
       if (a.y <= y + 0.5 && y + 0.5 < b.y)
-        crossings_[y].push_back({column(a.x + slope * (y + 0.5 - a.y)), static_cast<std::int16_t>(direction)});
+        crossings_[y].push_back(
+            {column(a.x + slope * (y + 0.5 - a.y)), static_cast<std::int16_t>(direction)});
     }
   }
 
@@ -38,7 +40,8 @@ class Rows {
       add_inner(crossings_[y], runs);
       // Only rounding leaves a row untouched; it counts as full.
       if (runs.empty()) runs.push_back({0, static_cast<std::int16_t>(width_)});
-      std::sort(runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
+      std::sort(runs.begin(), runs.end(),
+                [](const auto& a, const auto& b) { return a.begin < b.begin; });
       ChartMask::Run open = runs.front();
       for (const auto& run : runs) {
         if (run.begin > open.end) mask.runs.push_back(std::exchange(open, run));
@@ -64,7 +67,9 @@ class Rows {
     int winding = 0;
     for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
       winding += crossings[i].direction;
-      if (winding != 0) runs.push_back({crossings[i].column, static_cast<std::int16_t>(crossings[i + 1].column + 1)});
+      if (winding != 0)
+        runs.push_back(
+            {crossings[i].column, static_cast<std::int16_t>(crossings[i + 1].column + 1)});
     }
   }
 
@@ -76,9 +81,11 @@ class Rows {
 ChartMask with_columns_reversed(ChartMask mask) {
   const auto width = static_cast<std::int16_t>(mask.width);
   for (int y = 0; y < mask.height; ++y) {
-    const auto begin = mask.runs.begin() + mask.first_run[y], end = mask.runs.begin() + mask.first_run[y + 1];
+    const auto begin = mask.runs.begin() + mask.first_run[y],
+               end = mask.runs.begin() + mask.first_run[y + 1];
     for (auto run = begin; run != end; ++run)
-      *run = {static_cast<std::int16_t>(width - run->end), static_cast<std::int16_t>(width - run->begin)};
+      *run = {static_cast<std::int16_t>(width - run->end),
+              static_cast<std::int16_t>(width - run->begin)};
     std::reverse(begin, end);
   }
   return mask;
@@ -103,12 +110,15 @@ ChartShape make_shape(const Outline& outline, double density) {
   Rows rows(shape.box.x, shape.box.y), columns(shape.box.y, shape.box.x);
   const glm::dvec2 largest = glm::dvec2(shape.box) - 1e-9;
   for (std::size_t i = 0; i + 1 < outline.segments.size(); i += 2) {
-    const glm::dvec2 a = glm::clamp(glm::dvec2(outline.segments[i]) * density + kNear, glm::dvec2(0), largest);
-    const glm::dvec2 b = glm::clamp(glm::dvec2(outline.segments[i + 1]) * density + kNear, glm::dvec2(0), largest);
+    const glm::dvec2 a =
+        glm::clamp(glm::dvec2(outline.segments[i]) * density + kNear, glm::dvec2(0), largest);
+    const glm::dvec2 b =
+        glm::clamp(glm::dvec2(outline.segments[i + 1]) * density + kNear, glm::dvec2(0), largest);
     rows.add(a, b);
     columns.add({a.y, a.x}, {b.y, b.x});
   }
-  // A quarter turn sends (x, y) to (height - y, x): its rows are the columns, read from the top down.
+  // A quarter turn sends (x, y) to (height - y, x): its rows are the columns, read from the top
+  // down.
   const ChartMask upright = rows.mask(), transposed = columns.mask();
   shape.turned[0] = upright;
   shape.turned[1] = with_columns_reversed(transposed);

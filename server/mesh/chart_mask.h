@@ -10,8 +10,9 @@
 
 namespace strata::mesh {
 
-// Texels between the rim of a chart's box and the chart: a texel counts as touched by all that comes as near. Rounding, the
-// steps of UVs and a GPU's grid move a point by less, so that what a mask does not hold stays empty in every quarter turn.
+// Texels between the rim of a chart's box and the chart: a texel counts as touched by all that
+// comes as near. Rounding, the steps of UVs and a GPU's grid move a point by less, so that what a
+// mask does not hold stays empty in every quarter turn.
 constexpr double kNear = 1.0 / 256;
 
 // The texels that a chart touches, row by row as runs.
@@ -24,7 +25,9 @@ struct ChartMask {
   std::vector<std::uint32_t> first_run;  // of each row, and one more
   std::vector<Run> runs;                 // of a row: apart, from left to right
 
-  std::span<const Run> row(int y) const { return {runs.data() + first_run[y], runs.data() + first_run[y + 1]}; }
+  std::span<const Run> row(int y) const {
+    return {runs.data() + first_run[y], runs.data() + first_run[y + 1]};
+  }
   std::int64_t area() const {
     std::int64_t sum = 0;
     for (const Run& run : runs) sum += run.end - run.begin;

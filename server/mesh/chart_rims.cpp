@@ -7,7 +7,9 @@
 namespace strata::mesh {
 namespace {
 
-std::uint64_t key_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
+std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
+  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+}
 
 // Edges with a triangle on one side alone, ascending.
 std::vector<std::uint64_t> rim_edges(const Geometry& geometry) {

@@ -7,7 +7,8 @@
 
 namespace strata::mesh {
 
-// The rims of a chart of a model's atlas: closed rings of vertices, each once, in the direction of the triangles. What they enclose is the chart.
+// The rims of a chart of a model's atlas: closed rings of vertices, each once, in the direction of
+// the triangles. What they enclose is the chart.
 struct ChartRims {
   std::vector<std::vector<std::uint32_t>> rings;
 };

@@ -17,9 +17,11 @@ namespace {
 
 constexpr std::uint32_t kNoChart = 0xffffffffu, kKept = 0xfffffffeu;
 constexpr std::size_t kWorthRegrowing = 16;  // faces
-constexpr std::size_t kTinyChart = 24;       // faces: smaller charts give their faces away where they can
+// faces: smaller charts give their faces away where they can
+constexpr std::size_t kTinyChart = 24;
 constexpr float kLikeTrend = 0.5f;
-constexpr double kWindow = 3;        // half sides of a chart that the window has: long faces stick out of a chart
+// half sides of a chart that the window has: long faces stick out of a chart
+constexpr double kWindow = 3;
 constexpr double kSeedPiece = 2048;  // texels: flat pieces from here on seed charts before all else
 
 void set_axis(Chart& chart, glm::vec3 axis) {
@@ -65,7 +67,8 @@ class Grower {
   std::vector<Chart> take() { return std::move(charts_); }
 
  private:
-  // Whether the faces of a flat piece go together, or by themselves; too_large: for the window in which charts grow.
+  // Whether the faces of a flat piece go together, or by themselves; too_large: for the window in
+  // which charts grow.
   enum class PieceKind : std::uint8_t { loose, whole, too_large };
 
   void measure_pieces();
@@ -93,7 +96,8 @@ class Grower {
     const auto half = static_cast<float>(options_.largest_half_side - 1);
     return std::any_of(faces.begin(), faces.end(), [&](auto face) {
       const auto p = texels_of(chart, face);
-      return std::any_of(p.begin(), p.end(), [&](auto q) { return std::max(std::abs(q.x), std::abs(q.y)) < half; });
+      return std::any_of(p.begin(), p.end(),
+                         [&](auto q) { return std::max(std::abs(q.x), std::abs(q.y)) < half; });
     });
   }
   bool claim(const Chart& chart, std::uint32_t face, Occupancy::Overlap overlap) {
@@ -105,7 +109,8 @@ class Grower {
     if (faces.size() == 1) return claim(chart, faces.front(), overlap);
     if (overlap == Occupancy::Overlap::refuse)
       for (const auto face : faces)
-        if (const auto p = texels_of(chart, face); !occupancy_.is_free(p[0], p[1], p[2])) return false;
+        if (const auto p = texels_of(chart, face); !occupancy_.is_free(p[0], p[1], p[2]))
+          return false;
     for (const auto face : faces) claim(chart, face, Occupancy::Overlap::allow);
     return true;
   }
@@ -144,7 +149,8 @@ void Grower::measure_pieces() {
         high = glm::max(high, surface_.mesh.corner(face, k));
       }
     }
-    piece_kinds_[piece] = double{glm::length(high - low)} > largest ? PieceKind::too_large : PieceKind::whole;
+    piece_kinds_[piece] =
+        double{glm::length(high - low)} > largest ? PieceKind::too_large : PieceKind::whole;
     if (area >= seed_area || piece_kinds_[piece] == PieceKind::too_large) seed_pieces_ = piece + 1;
   }
 }
@@ -165,13 +171,15 @@ void Grower::grow(std::uint32_t seed, glm::vec3 axis, std::uint32_t id, Chart& c
     queue.pop();
     if (chart_of_face_[face] == id) continue;  // came with its flat piece
     const bool is_seed = face == seed;
-    if (!is_seed && (glm::dot(surface_.trend_normals[face], axis) < smallest_cosine_ || !can_project(face, axis)))
+    if (!is_seed && (glm::dot(surface_.trend_normals[face], axis) < smallest_cosine_ ||
+                     !can_project(face, axis)))
       continue;
     const bool is_too_large = kind_of(face) == PieceKind::too_large;
     if (is_too_large && !is_seed) continue;
     const auto unit = unit_of(face);
     if (!is_seed && !begins_near(chart, unit)) continue;
-    if (!is_too_large && !claim(chart, unit, is_seed ? Occupancy::Overlap::allow : Occupancy::Overlap::refuse))
+    if (!is_too_large &&
+        !claim(chart, unit, is_seed ? Occupancy::Overlap::allow : Occupancy::Overlap::refuse))
       continue;
     chart.faces.insert(chart.faces.end(), unit.begin(), unit.end());
     for (const auto taken : unit) chart_of_face_[taken] = id;
@@ -179,7 +187,8 @@ void Grower::grow(std::uint32_t seed, glm::vec3 axis, std::uint32_t id, Chart& c
     for (const auto taken : unit)
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t next = surface_.neighbours[3 * taken + k];
-        if (next == kNoTriangle || chart_of_face_[next] != kNoChart || queued_at_[next] == growth_) continue;
+        if (next == kNoTriangle || chart_of_face_[next] != kNoChart || queued_at_[next] == growth_)
+          continue;
         queued_at_[next] = growth_;
         const float tilt = 1 - glm::dot(surface_.trend_normals[next], axis);
         const float texels = glm::length(surface_.corner(chart, next, 0) - chart.origin) * density_;
@@ -190,13 +199,15 @@ void Grower::grow(std::uint32_t seed, glm::vec3 axis, std::uint32_t id, Chart& c
 
 void Grower::add_chart(std::uint32_t seed) {
   const auto id = static_cast<std::uint32_t>(charts_.size());
-  const glm::vec3 trend = surface_.trend_normals[seed], own = surface_.smoothed_frames.normals[seed];
+  const glm::vec3 trend = surface_.trend_normals[seed],
+                  own = surface_.smoothed_frames.normals[seed];
   Chart chart;
   if (glm::vec3 axis = glm::dot(trend, own) > 0.3f ? trend : own; can_project(seed, axis)) {
     grow(seed, axis, id, chart);
     if (chart.faces.size() > kWorthRegrowing && kind_of(seed) != PieceKind::too_large) {
       glm::vec3 mean(0);
-      for (const auto face : chart.faces) mean += surface_.trend_normals[face] * surface_.smoothed_frames.areas[face];
+      for (const auto face : chart.faces)
+        mean += surface_.trend_normals[face] * surface_.smoothed_frames.areas[face];
       mean = glm::normalize(mean);
       if (glm::dot(trend, mean) > smallest_cosine_ && can_project(seed, mean)) {
         for (const auto face : chart.faces) chart_of_face_[face] = kNoChart;
@@ -216,8 +227,10 @@ void Grower::add_chart(std::uint32_t seed) {
 
 std::uint32_t Grower::next_seed() {
   for (; piece_cursor_ < seed_pieces_; ++piece_cursor_) {
-    const std::uint32_t face = surface_.flat.faces_of(static_cast<std::uint32_t>(piece_cursor_)).front();
-    if (piece_kinds_[piece_cursor_] != PieceKind::loose && chart_of_face_[face] == kNoChart) return face;
+    const std::uint32_t face =
+        surface_.flat.faces_of(static_cast<std::uint32_t>(piece_cursor_)).front();
+    if (piece_kinds_[piece_cursor_] != PieceKind::loose && chart_of_face_[face] == kNoChart)
+      return face;
   }
   for (; front_cursor_ < front_.size(); ++front_cursor_)
     if (chart_of_face_[front_[front_cursor_]] == kNoChart) return front_[front_cursor_];
@@ -236,7 +249,8 @@ bool Grower::grow_all(Progress* shown, const Progress& progress) {
     done += charts_.back().faces.size();
     if (shown && charts_.size() % 16 == 0)
       shown->report(options_.progress_from + (options_.progress_to - options_.progress_from) *
-                                                 static_cast<double>(done) / static_cast<double>(chart_of_face_.size()),
+                                                 static_cast<double>(done) /
+                                                 static_cast<double>(chart_of_face_.size()),
                     "Cutting the surface into charts");
   }
   return true;
@@ -262,16 +276,19 @@ std::uint32_t Grower::best_host(std::span<const std::uint32_t> unit) const {
 
 void Grower::absorb_tiny() {
   for (int pass = 0; pass < 4; ++pass) {
-    std::map<std::uint32_t, std::vector<std::uint32_t>> guests_of_host;  // the first face of each unit
+    // the first face of each unit
+    std::map<std::uint32_t, std::vector<std::uint32_t>> guests_of_host;
     for (const Chart& chart : charts_)
       if (chart.faces.size() < kTinyChart)
         for (const auto face : chart.faces)
           if (const auto unit = unit_of(face); unit.front() == face)
-            if (const auto host = best_host(unit); host != kNoChart) guests_of_host[host].push_back(face);
+            if (const auto host = best_host(unit); host != kNoChart)
+              guests_of_host[host].push_back(face);
     std::size_t moved = 0;
     for (const auto& [host, guests] : guests_of_host) {
       occupancy_.clear();
-      for (const auto face : charts_[host].faces) claim(charts_[host], face, Occupancy::Overlap::allow);
+      for (const auto face : charts_[host].faces)
+        claim(charts_[host], face, Occupancy::Overlap::allow);
       for (const auto& guest : guests) {
         const auto unit = unit_of(guest);
         if (!claim(charts_[host], unit, Occupancy::Overlap::refuse)) continue;
@@ -298,16 +315,20 @@ ChartSurface make_chart_surface(const UnitMesh& mesh, int smoothing) {
       surface.original_frames = face_frames(mesh.triangles, mesh.positions);
   });
   surface.flat = find_flat_pieces(mesh, surface.neighbours, surface.original_frames);
-  // What is flat has no noise; smoothing would round its edges off, and shrink a cube of twelve triangles to a ball.
+  // What is flat has no noise; smoothing would round its edges off, and shrink a cube of twelve
+  // triangles to a ball.
   std::vector<std::uint8_t> stays;
   if (surface.flat.count() > 0) stays.assign(mesh.positions.size(), 0);
   for (const auto face : surface.flat.faces)
     for (int k = 0; k < 3; ++k) stays[mesh.triangles[3 * std::size_t{face} + k]] = 1;
-  surface.smoothed = laplacian_smoothed(mesh.triangles, surface.neighbours, mesh.positions, smoothing, stays);
+  surface.smoothed =
+      laplacian_smoothed(mesh.triangles, surface.neighbours, mesh.positions, smoothing, stays);
   surface.smoothed_frames = face_frames(mesh.triangles, surface.smoothed);
-  surface.trend_normals = averaged_normals(mesh.triangles, mesh.positions.size(), surface.smoothed_frames, 3);
+  surface.trend_normals =
+      averaged_normals(mesh.triangles, mesh.positions.size(), surface.smoothed_frames, 3);
   for (std::uint32_t piece = 0; piece < surface.flat.count(); ++piece)
-    for (const auto face : surface.flat.faces_of(piece)) surface.trend_normals[face] = surface.flat.normals[piece];
+    for (const auto face : surface.flat.faces_of(piece))
+      surface.trend_normals[face] = surface.flat.normals[piece];
   // Around the ends of long faces the mean says nothing.
   for (std::size_t face = 0; face < mesh.triangle_count(); ++face)
     if (glm::dot(surface.trend_normals[face], surface.smoothed_frames.normals[face]) < kLikeTrend)
@@ -315,8 +336,8 @@ ChartSurface make_chart_surface(const UnitMesh& mesh, int smoothing) {
   return surface;
 }
 
-void append_connected_parts(const ChartSurface& surface, Chart chart, std::vector<std::uint8_t>& pending,
-                            std::vector<Chart>& charts) {
+void append_connected_parts(const ChartSurface& surface, Chart chart,
+                            std::vector<std::uint8_t>& pending, std::vector<Chart>& charts) {
   for (const auto face : chart.faces) pending[face] = 1;
   std::vector<std::uint32_t> part;
   for (const auto first : chart.faces) {
@@ -336,18 +357,20 @@ void append_connected_parts(const ChartSurface& surface, Chart chart, std::vecto
   }
 }
 
-std::optional<std::vector<Chart>> grow_charts(const ChartSurface& surface, const ChartOptions& options,
-                                              Progress& progress) {
+std::optional<std::vector<Chart>> grow_charts(const ChartSurface& surface,
+                                              const ChartOptions& options, Progress& progress) {
   Grower grower(surface, options);
   if (!grower.grow_all(&progress, progress)) return std::nullopt;
   grower.absorb_tiny();
   std::vector<Chart> connected;
   std::vector<std::uint8_t> pending(surface.mesh.triangle_count(), 0);
-  for (Chart& chart : grower.take()) append_connected_parts(surface, std::move(chart), pending, connected);
+  for (Chart& chart : grower.take())
+    append_connected_parts(surface, std::move(chart), pending, connected);
   return connected;
 }
 
-std::optional<std::size_t> split_off(const ChartSurface& surface, std::span<const std::uint32_t> faces,
+std::optional<std::size_t> split_off(const ChartSurface& surface,
+                                     std::span<const std::uint32_t> faces,
                                      const ChartOptions& options, const Progress& progress,
                                      std::vector<Chart>& charts) {
   std::vector<std::uint8_t> leaves(surface.mesh.triangle_count(), 0);
@@ -359,7 +382,8 @@ std::optional<std::size_t> split_off(const ChartSurface& surface, std::span<cons
   };
   for (const auto face : faces) {
     leave(face);
-    const std::uint32_t piece = options.keeps_flat_pieces ? surface.flat.piece_of(face) : FlatPieces::kNone;
+    const std::uint32_t piece =
+        options.keeps_flat_pieces ? surface.flat.piece_of(face) : FlatPieces::kNone;
     if (piece != FlatPieces::kNone)
       for (const auto other : surface.flat.faces_of(piece)) leave(other);
   }

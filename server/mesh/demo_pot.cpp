@@ -21,14 +21,15 @@ struct Ring {
   std::uint32_t first = 0;  // of its vertices
 };
 
-// Rings from the middle of the underside over the rim to the middle of the floor. Towards the poles a ring has half as
-// many columns each time its radius halves, so that triangles stay well-shaped.
+// Rings from the middle of the underside over the rim to the middle of the floor. Towards the poles
+// a ring has half as many columns each time its radius halves, so that triangles stay well-shaped.
 std::vector<Ring> make_rings(double detail) {
   const double scale = std::sqrt(detail);
   const int columns = 32 * std::max(2, static_cast<int>(std::lround(480 * scale / 32)));
   const auto columns_at = [&](Stretch stretch, double t) {
     int count = columns;
-    for (double full = 24; DemoPotShape::radius(stretch, t) < full && count % 2 == 0 && count / 2 >= 8; full /= 2)
+    for (double full = 24;
+         DemoPotShape::radius(stretch, t) < full && count % 2 == 0 && count / 2 >= 8; full /= 2)
       count /= 2;
     return count;
   };
@@ -80,7 +81,8 @@ class RingMesh {
     mesh_.triangles.insert(mesh_.triangles.end(), {a, b, c});
   }
 
-  // `a` comes before `b` on the way from the underside to the floor; seen from outside it is the lower one.
+  // `a` comes before `b` on the way from the underside to the floor; seen from outside it is the
+  // lower one.
   void stitch(const Ring& a, const Ring& b) {
     const int fewer = std::min(a.columns, b.columns);
     if (a.columns == 1) {
@@ -88,7 +90,8 @@ class RingMesh {
     } else if (b.columns == 1) {
       for (int j = 0; j < a.columns; ++j) triangle(vertex(a, j), vertex(a, j + 1), b.first);
     } else if (a.columns == b.columns) {
-      for (int j = 0; j < a.columns; ++j) quad(vertex(a, j), vertex(a, j + 1), vertex(b, j + 1), vertex(b, j));
+      for (int j = 0; j < a.columns; ++j)
+        quad(vertex(a, j), vertex(a, j + 1), vertex(b, j + 1), vertex(b, j));
     } else if (a.columns == 2 * fewer) {
       for (int j = 0; j < fewer; ++j) {
         triangle(vertex(a, 2 * j), vertex(a, 2 * j + 1), vertex(b, j));
@@ -134,11 +137,12 @@ void scale_to_size(TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh make_demo_pot(double detail) {
-  // Ring counts must at most double or halve from one to the next; so coarse a pot that they could not is never asked
-  // for.
+  // Ring counts must at most double or halve from one to the next; so coarse a pot that they could
+  // not is never asked for.
   std::vector<Ring> rings = make_rings(std::clamp(detail, 0.02, 100.0));
   for (std::size_t i = 2; i + 1 < rings.size(); ++i) {
-    rings[i].columns = std::clamp(rings[i].columns, rings[i - 1].columns / 2, rings[i - 1].columns * 2);
+    rings[i].columns =
+        std::clamp(rings[i].columns, rings[i - 1].columns / 2, rings[i - 1].columns * 2);
   }
   TriangleMesh mesh = RingMesh(std::move(rings)).build();
   scale_to_size(mesh);

@@ -8,7 +8,8 @@ namespace strata::mesh {
 
 // Smooth value noise in [-1,1], made from integer hashes so that it is the same everywhere.
 inline double lattice_noise(int x, int y, int z) {
-  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^ static_cast<std::uint32_t>(y) * 0xd8163841u ^
+  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^
+                    static_cast<std::uint32_t>(y) * 0xd8163841u ^
                     static_cast<std::uint32_t>(z) * 0xcb1ab31fu;
   h = (h ^ h >> 15) * 0x2c1b3c6du;
   h = (h ^ h >> 12) * 0x297a2d39u;
@@ -19,7 +20,8 @@ inline double lattice_noise(int x, int y, int z) {
 inline double noise(const glm::dvec3& p) {
   const glm::dvec3 cell = glm::floor(p);
   const glm::dvec3 f = p - cell, s = f * f * (3.0 - 2.0 * f);
-  const int x = static_cast<int>(cell.x), y = static_cast<int>(cell.y), z = static_cast<int>(cell.z);
+  const int x = static_cast<int>(cell.x), y = static_cast<int>(cell.y),
+            z = static_cast<int>(cell.z);
   const auto row = [&](int dy, int dz) {
     return glm::mix(lattice_noise(x, y + dy, z + dz), lattice_noise(x + 1, y + dy, z + dz), s.x);
   };

@@ -17,14 +17,19 @@ struct HalfEdge {
 };
 static_assert(sizeof(HalfEdge) == 8);
 
-// Calls visit(smaller vertex, half-edges) for every edge of the mesh, in ascending order of its vertices, with all sides of
-// triangles that lie on it in ascending order of corners. Fewer than 2³¹ corners; 8 bytes for each while it runs.
+// Calls visit(smaller vertex, half-edges) for every edge of the mesh, in ascending order of its
+// vertices, with all sides of triangles that lie on it in ascending order of corners. Fewer than
+// 2³¹ corners; 8 bytes for each while it runs.
 template <class Visit>
-void for_each_edge(std::span<const std::uint32_t> triangles, std::size_t vertex_count, Visit&& visit) {
-  const auto next_in_triangle = [](std::size_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; };
+void for_each_edge(std::span<const std::uint32_t> triangles, std::size_t vertex_count,
+                   Visit&& visit) {
+  const auto next_in_triangle = [](std::size_t corner) {
+    return corner % 3 == 2 ? corner - 2 : corner + 1;
+  };
   // Bucketed by their smaller vertex: a counting sort, then tiny sorts.
   std::vector<std::uint32_t> begin(vertex_count + 1, 0);
-  for (std::size_t c = 0; c < triangles.size(); ++c) ++begin[std::min(triangles[c], triangles[next_in_triangle(c)])];
+  for (std::size_t c = 0; c < triangles.size(); ++c)
+    ++begin[std::min(triangles[c], triangles[next_in_triangle(c)])];
   std::uint32_t sum = 0;
   for (auto& entry : begin) {
     const std::uint32_t count = entry;
@@ -34,19 +39,21 @@ void for_each_edge(std::span<const std::uint32_t> triangles, std::size_t vertex_
   std::vector<HalfEdge> half_edges(triangles.size());
   for (std::size_t c = 0; c < triangles.size(); ++c) {
     const std::uint32_t from = triangles[c], to = triangles[next_in_triangle(c)];
-    half_edges[begin[std::min(from, to)]++] = {std::max(from, to), static_cast<std::uint32_t>(c) & 0x7fffffffu,
-                                               from < to ? 1u : 0u};
+    half_edges[begin[std::min(from, to)]++] = {
+        std::max(from, to), static_cast<std::uint32_t>(c) & 0x7fffffffu, from < to ? 1u : 0u};
   }
   // The cursor of a vertex stands at the end of its bucket now, which is where the next one begins.
   for (std::size_t v = 0; v < vertex_count; ++v) {
-    const auto first = half_edges.begin() + (v == 0 ? 0 : begin[v - 1]), last = half_edges.begin() + begin[v];
+    const auto first = half_edges.begin() + (v == 0 ? 0 : begin[v - 1]),
+               last = half_edges.begin() + begin[v];
     std::sort(first, last, [](const HalfEdge& a, const HalfEdge& b) {
       return a.other_end != b.other_end ? a.other_end < b.other_end : a.corner < b.corner;
     });
     for (auto i = first; i != last;) {
       auto j = i;
       while (j != last && j->other_end == i->other_end) ++j;
-      visit(static_cast<std::uint32_t>(v), std::span<const HalfEdge>(&*i, static_cast<std::size_t>(j - i)));
+      visit(static_cast<std::uint32_t>(v),
+            std::span<const HalfEdge>(&*i, static_cast<std::size_t>(j - i)));
       i = j;
     }
   }

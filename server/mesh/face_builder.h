@@ -11,11 +11,12 @@
 
 namespace strata::mesh {
 
-// Collects polygons as triangles: shared by the formats. Texture coordinates are kept for all corners or for none; triangles
-// without them have no textured material.
+// Collects polygons as triangles: shared by the formats. Texture coordinates are kept for all
+// corners or for none; triangles without them have no textured material.
 class FaceBuilder {
  public:
-  FaceBuilder(TriangleMesh& mesh, std::size_t max_triangles) : mesh_(mesh), max_triangles_(max_triangles) {}
+  FaceBuilder(TriangleMesh& mesh, std::size_t max_triangles)
+      : mesh_(mesh), max_triangles_(max_triangles) {}
 
   struct Corner {
     std::uint32_t position = 0;  // in range: the caller has checked it
@@ -27,7 +28,8 @@ class FaceBuilder {
 
   // For readers, before they keep the corners of a face that has more than kMaxPolygonCorners.
   static tl::unexpected<Problem> too_many_corners(const std::string& place) {
-    return refuse_file("The face at " + place + " has more than " + std::to_string(kMaxPolygonCorners) +
+    return refuse_file("The face at " + place + " has more than " +
+                       std::to_string(kMaxPolygonCorners) +
                        " corners. Triangulate the mesh before importing it.");
   }
 
@@ -47,7 +49,8 @@ class FaceBuilder {
     for (const Corner& corner : corners) points_.push_back(mesh_.positions[corner.position]);
     triangulate_polygon(points_, split_);
     for (std::size_t i = 0; i + 2 < split_.size(); i += 3) {
-      auto added = add_triangle(corners[split_[i]], corners[split_[i + 1]], corners[split_[i + 2]], has_uv);
+      auto added =
+          add_triangle(corners[split_[i]], corners[split_[i + 1]], corners[split_[i + 2]], has_uv);
       if (!added) return added;
     }
     return {};
@@ -61,12 +64,14 @@ class FaceBuilder {
     mesh_.triangles.insert(mesh_.triangles.end(), {a.position, b.position, c.position});
     const bool finite = has_uv && finite_uv(a) && finite_uv(b) && finite_uv(c);
     if (!mesh_.materials.empty()) {
-      const bool usable = material_ < mesh_.materials.size() && (finite || mesh_.materials[material_].texture < 0);
+      const bool usable =
+          material_ < mesh_.materials.size() && (finite || mesh_.materials[material_].texture < 0);
       mesh_.triangle_materials.push_back(usable ? material_ : kNoMaterial);
     }
     if (!finite) {
       ++without_uv_;
-      if (!mesh_.corner_uvs.empty()) mesh_.corner_uvs.insert(mesh_.corner_uvs.end(), 3, glm::vec2(0));
+      if (!mesh_.corner_uvs.empty())
+        mesh_.corner_uvs.insert(mesh_.corner_uvs.end(), 3, glm::vec2(0));
       return {};
     }
     // The first triangle with coordinates: those before it get none.
@@ -81,11 +86,14 @@ class FaceBuilder {
   void report(std::vector<Repair>& repairs) const {
     note(repairs, "polygons split into triangles", polygons_);
     note(repairs, "dropped faces with fewer than three corners", too_few_corners_);
-    if (!mesh_.corner_uvs.empty()) note(repairs, "triangles without texture coordinates", without_uv_);
+    if (!mesh_.corner_uvs.empty())
+      note(repairs, "triangles without texture coordinates", without_uv_);
   }
 
  private:
-  static bool finite_uv(const Corner& corner) { return std::isfinite(corner.uv.x) && std::isfinite(corner.uv.y); }
+  static bool finite_uv(const Corner& corner) {
+    return std::isfinite(corner.uv.x) && std::isfinite(corner.uv.y);
+  }
 
   TriangleMesh& mesh_;
   const std::size_t max_triangles_;

@@ -48,7 +48,8 @@ void each_line(std::string_view head, Use&& use) {
 void read_ply(std::string_view head, Comments& comments) {
   each_line(head, [&](std::string_view line) {
     for (const std::string_view keyword : {"comment", "obj_info"})
-      if (line.starts_with(keyword) && line.size() > keyword.size() && is_blank_or_control(line[keyword.size()]))
+      if (line.starts_with(keyword) && line.size() > keyword.size() &&
+          is_blank_or_control(line[keyword.size()]))
         comments.add(line.substr(keyword.size()));
     return line != "end_header";
   });
@@ -57,7 +58,8 @@ void read_ply(std::string_view head, Comments& comments) {
 // Comments further down tell of groups.
 void read_obj(std::string_view head, Comments& comments) {
   each_line(head, [&](std::string_view line) {
-    if (line.starts_with('#')) comments.add(line.substr(std::min(line.find_first_not_of('#'), line.size())));
+    if (line.starts_with('#'))
+      comments.add(line.substr(std::min(line.find_first_not_of('#'), line.size())));
     return !line.starts_with("f ") && !line.starts_with("v ");
   });
 }
@@ -85,7 +87,9 @@ std::vector<std::string> words_of(std::string_view text) {
 }
 
 // A hyphen that joins two words is no sign.
-std::string unsigned_word(const std::string& word) { return word.starts_with('-') ? word.substr(1) : word; }
+std::string unsigned_word(const std::string& word) {
+  return word.starts_with('-') ? word.substr(1) : word;
+}
 
 struct UnitName {
   std::string_view name;
@@ -120,7 +124,8 @@ constexpr UnitName kUnitNames[] = {{"mm", Unit::mm},
 
 // What may stand between "unit" and its name.
 bool is_filler(std::string_view word) {
-  for (const std::string_view filler : {"is", "are", "of", "length", "lengths", "measure", "measurement", "name"})
+  for (const std::string_view filler :
+       {"is", "are", "of", "length", "lengths", "measure", "measurement", "name"})
     if (word == filler) return true;
   return false;
 }
@@ -160,7 +165,8 @@ std::optional<std::string> up_in(const std::vector<std::string>& words) {
 
 std::vector<std::string> file_comments(const InputFiles& files) {
   const auto bytes = files.scan().bytes;
-  const std::string_view head(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), kHead));
+  const std::string_view head(reinterpret_cast<const char*>(bytes.data()),
+                              std::min(bytes.size(), kHead));
   Comments comments;
   switch (input_kind(files.scan().name)) {
     case InputKind::ply: read_ply(head, comments); break;
@@ -181,7 +187,8 @@ std::optional<Stated<Unit>> stated_unit(std::span<const std::string> comments) {
       std::size_t after = i + 1;
       while (after < words.size() && is_filler(words[after])) ++after;
       if (after == words.size()) continue;
-      const auto* named = std::ranges::find(kUnitNames, std::string_view(words[after]), &UnitName::name);
+      const auto* named =
+          std::ranges::find(kUnitNames, std::string_view(words[after]), &UnitName::name);
       if (named == std::end(kUnitNames)) continue;
       return named->unit ? std::optional(Stated<Unit>{*named->unit, comment}) : std::nullopt;
     }

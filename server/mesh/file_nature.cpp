@@ -17,7 +17,8 @@ struct Nature {
 };
 
 // A download that went wrong is most often the page that should have led to it.
-constexpr std::string_view kUnpack = "Unpack it and import what is in it.", kFetch = "Download the mesh itself.",
+constexpr std::string_view kUnpack = "Unpack it and import what is in it.",
+                           kFetch = "Download the mesh itself.",
                            kExport = "Export the mesh as PLY, OBJ, STL or glTF.";
 constexpr std::array<Nature, 27> kNatures{{
     {"PK\3\4"sv, "a zip archive", "Unpack it, or let its name end in .zip.", InputKind::zip},
@@ -60,10 +61,13 @@ std::optional<std::string> other_nature(std::span<const std::uint8_t> bytes, Inp
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   for (const Nature& nature : kNatures) {
     if (!text.starts_with(nature.begins)) continue;
-    if (nature.kind == kind || (nature.kind == InputKind::glb && kind == InputKind::gltf)) return std::nullopt;
-    return "The file is " + std::string(nature.is) + " by its content. " + std::string(nature.advice);
+    if (nature.kind == kind || (nature.kind == InputKind::glb && kind == InputKind::gltf))
+      return std::nullopt;
+    return "The file is " + std::string(nature.is) + " by its content. " +
+           std::string(nature.advice);
   }
-  const bool json = text.starts_with('{') && text.substr(0, 65536).find("\"asset\"") != std::string_view::npos;
+  const bool json =
+      text.starts_with('{') && text.substr(0, 65536).find("\"asset\"") != std::string_view::npos;
   if (json && kind != InputKind::gltf && kind != InputKind::glb)
     return "The file is a glTF file by its content. Let its name end in .gltf.";
   return std::nullopt;

@@ -9,7 +9,8 @@
 namespace strata::mesh {
 namespace {
 
-// Of the largest side of the mesh: what text files with few digits and float positions leave of a plane.
+// Of the largest side of the mesh: what text files with few digits and float positions leave of a
+// plane.
 constexpr float kOffPlane = 1e-5f;
 constexpr float kFlatCosine = 0.99999f;    // 0.26°: between normals of faces of one piece
 constexpr float kCreaseCosine = 0.99985f;  // 1°: to a face beyond the edge of the piece
@@ -24,7 +25,8 @@ class Finder {
     std::vector<std::uint32_t> seeds = faces_with_a_flat_edge();
     if (seeds.empty()) return {};
     // A large face has the most exact normal.
-    std::stable_sort(seeds.begin(), seeds.end(), [&](auto a, auto b) { return frames_.areas[a] > frames_.areas[b]; });
+    std::stable_sort(seeds.begin(), seeds.end(),
+                     [&](auto a, auto b) { return frames_.areas[a] > frames_.areas[b]; });
     of_face_.assign(mesh_.triangle_count(), FlatPieces::kNone);
     was_tried_.assign(mesh_.triangle_count(), 0);
     for (const auto seed : seeds)
@@ -44,7 +46,9 @@ class Finder {
     for (std::uint32_t face = 0; face < mesh_.triangle_count(); ++face)
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t next = neighbours_[3 * std::size_t{face} + k];
-        if (next == kNoTriangle || glm::dot(frames_.normals[face], frames_.normals[next]) < kFlatCosine) continue;
+        if (next == kNoTriangle ||
+            glm::dot(frames_.normals[face], frames_.normals[next]) < kFlatCosine)
+          continue;
         faces.push_back(face);
         break;
       }
@@ -62,7 +66,8 @@ class Finder {
       const float cosine = glm::dot(frames_.normals[face], piece.normal);
       if (frames_.areas[face] > 0 && cosine < kFlatCosine) return false;
       for (int k = 0; k < 3; ++k)
-        if (std::abs(glm::dot(mesh_.corner(face, k) - origin, piece.normal)) > kOffPlane) return false;
+        if (std::abs(glm::dot(mesh_.corner(face, k) - origin, piece.normal)) > kOffPlane)
+          return false;
       return true;
     };
     piece.faces.push_back(seed);
@@ -71,7 +76,8 @@ class Finder {
       piece.area += double{frames_.areas[piece.faces[i]]};
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t next = neighbours_[3 * std::size_t{piece.faces[i]} + k];
-        if (next == kNoTriangle || of_face_[next] != FlatPieces::kNone || !lies_in_plane(next)) continue;
+        if (next == kNoTriangle || of_face_[next] != FlatPieces::kNone || !lies_in_plane(next))
+          continue;
         of_face_[next] = number;
         piece.faces.push_back(next);
       }
@@ -92,7 +98,8 @@ class Finder {
         if (next != kNoTriangle && of_face_[next] == number) continue;
         const double length = glm::length(mesh_.corner(face, (k + 1) % 3) - mesh_.corner(face, k));
         edge += length;
-        if (next != kNoTriangle && glm::dot(frames_.normals[next], piece.normal) > kCreaseCosine) smooth += length;
+        if (next != kNoTriangle && glm::dot(frames_.normals[next], piece.normal) > kCreaseCosine)
+          smooth += length;
       }
     return smooth <= kMostSmoothEdge * edge;
   }
@@ -100,13 +107,15 @@ class Finder {
   FlatPieces sorted() {
     std::vector<std::uint32_t> order(pieces_.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return pieces_[a].area > pieces_[b].area; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](auto a, auto b) { return pieces_[a].area > pieces_[b].area; });
     FlatPieces result;
     if (order.empty()) return result;
     result.of_face = std::move(of_face_);
     result.begin.push_back(0);
     for (const auto i : order) {
-      for (const auto face : pieces_[i].faces) result.of_face[face] = static_cast<std::uint32_t>(result.count());
+      for (const auto face : pieces_[i].faces)
+        result.of_face[face] = static_cast<std::uint32_t>(result.count());
       result.faces.insert(result.faces.end(), pieces_[i].faces.begin(), pieces_[i].faces.end());
       result.begin.push_back(static_cast<std::uint32_t>(result.faces.size()));
       result.normals.push_back(pieces_[i].normal);
@@ -124,7 +133,8 @@ class Finder {
 
 }  // namespace
 
-FlatPieces find_flat_pieces(const UnitMesh& mesh, std::span<const std::uint32_t> neighbours, const FaceFrames& frames) {
+FlatPieces find_flat_pieces(const UnitMesh& mesh, std::span<const std::uint32_t> neighbours,
+                            const FaceFrames& frames) {
   return Finder(mesh, neighbours, frames).find();
 }
 

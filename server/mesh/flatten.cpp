@@ -10,7 +10,8 @@
 namespace strata::mesh {
 namespace {
 
-constexpr float kBadArea = 0.4f;   // faces with less than this share of the area they should have are mended
+// faces with less than this share of the area they should have are mended
+constexpr float kBadArea = 0.4f;
 constexpr float kGoodArea = 0.5f;  // what mending aims at
 constexpr int kRings = 4;          // of faces around a bad one that may give way
 constexpr int kMostSweeps = 40;
@@ -24,7 +25,8 @@ float plane_area(std::span<const glm::vec2> plane, std::uint32_t face) {
 
 class Flattener {
  public:
-  Flattener(const ChartSurface& surface, std::span<const Chart> charts, std::vector<glm::vec2>& plane)
+  Flattener(const ChartSurface& surface, std::span<const Chart> charts,
+            std::vector<glm::vec2>& plane)
       : surface_(surface),
         charts_(charts),
         chart_of_face_(chart_of_faces(charts, surface.mesh.triangle_count())),
@@ -47,10 +49,12 @@ class Flattener {
   std::vector<glm::vec2>& plane_;
 };
 
-std::vector<std::uint32_t> Flattener::around_bad_faces(std::uint32_t chart, float plane_per_surface) {
+std::vector<std::uint32_t> Flattener::around_bad_faces(std::uint32_t chart,
+                                                       float plane_per_surface) {
   std::vector<std::uint32_t> patch;
   for (const auto face : charts_[chart].faces) {
-    if (area_of(face) >= kBadArea * plane_per_surface * surface_.original_frames.areas[face]) continue;
+    if (area_of(face) >= kBadArea * plane_per_surface * surface_.original_frames.areas[face])
+      continue;
     ring_of_face_[face] = 0;
     patch.push_back(face);
   }
@@ -59,7 +63,8 @@ std::vector<std::uint32_t> Flattener::around_bad_faces(std::uint32_t chart, floa
     if (ring == kRings) break;  // the list is in the order of rings
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t next = surface_.neighbours[3 * std::size_t{patch[i]} + k];
-      if (next == kNoTriangle || chart_of_face_[next] != chart || ring_of_face_[next] <= kRings) continue;
+      if (next == kNoTriangle || chart_of_face_[next] != chart || ring_of_face_[next] <= kRings)
+        continue;
       ring_of_face_[next] = static_cast<std::uint8_t>(ring + 1);
       patch.push_back(next);
     }
@@ -73,7 +78,8 @@ RelaxPatch Flattener::make_patch(std::span<const std::uint32_t> faces, float pla
   const auto& triangles = surface_.mesh.triangles;
   RelaxPatch patch;
   vertices.clear();
-  for (const auto face : faces) vertices.insert(vertices.end(), &triangles[3 * face], &triangles[3 * face] + 3);
+  for (const auto face : faces)
+    vertices.insert(vertices.end(), &triangles[3 * face], &triangles[3 * face] + 3);
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   patch.points.resize(vertices.size());
@@ -81,7 +87,8 @@ RelaxPatch Flattener::make_patch(std::span<const std::uint32_t> faces, float pla
   patch.faces.reserve(faces.size());
   const float scale = std::sqrt(plane_per_surface);
   const auto point_of = [&](std::uint32_t vertex) {
-    return static_cast<std::uint32_t>(std::lower_bound(vertices.begin(), vertices.end(), vertex) - vertices.begin());
+    return static_cast<std::uint32_t>(std::lower_bound(vertices.begin(), vertices.end(), vertex) -
+                                      vertices.begin());
   };
   for (const auto face : faces) {
     RelaxPatch::Face shape;
@@ -91,7 +98,8 @@ RelaxPatch Flattener::make_patch(std::span<const std::uint32_t> faces, float pla
     }
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t next = surface_.neighbours[3 * std::size_t{face} + k];
-      if (next != kNoTriangle && chart_of_face_[next] == chart_of_face_[face] && ring_of_face_[next] <= kRings)
+      if (next != kNoTriangle && chart_of_face_[next] == chart_of_face_[face] &&
+          ring_of_face_[next] <= kRings)
         continue;
       patch.is_fixed[shape.vertex[k]] = patch.is_fixed[shape.vertex[(k + 1) % 3]] = 1;
     }
@@ -109,7 +117,8 @@ void Flattener::flatten(std::uint32_t number) {
   const Chart& chart = charts_[number];
   double area = 0, plane = 0;
   for (const auto face : chart.faces) {
-    for (int k = 0; k < 3; ++k) plane_[3 * std::size_t{face} + k] = chart.project(surface_.corner(chart, face, k));
+    for (int k = 0; k < 3; ++k)
+      plane_[3 * std::size_t{face} + k] = chart.project(surface_.corner(chart, face, k));
     area += surface_.original_frames.areas[face];
     plane += std::abs(area_of(face));
   }
@@ -120,7 +129,8 @@ void Flattener::flatten(std::uint32_t number) {
     RelaxPatch patch = make_patch(faces, static_cast<float>(plane / area), vertices);
     relax(patch, kGoodArea, kMostSweeps);
     for (std::size_t i = 0; i < faces.size(); ++i)
-      for (int k = 0; k < 3; ++k) plane_[3 * std::size_t{faces[i]} + k] = patch.points[patch.faces[i].vertex[k]];
+      for (int k = 0; k < 3; ++k)
+        plane_[3 * std::size_t{faces[i]} + k] = patch.points[patch.faces[i].vertex[k]];
   }
   const auto scale = static_cast<float>(std::sqrt(area / plane));
   for (const auto face : chart.faces)
@@ -129,24 +139,27 @@ void Flattener::flatten(std::uint32_t number) {
 
 }  // namespace
 
-std::vector<std::uint32_t> chart_of_faces(std::span<const Chart> charts, std::size_t triangle_count) {
+std::vector<std::uint32_t> chart_of_faces(std::span<const Chart> charts,
+                                          std::size_t triangle_count) {
   std::vector<std::uint32_t> chart_of_face(triangle_count, 0);
   for (std::uint32_t c = 0; c < charts.size(); ++c)
     for (const auto face : charts[c].faces) chart_of_face[face] = c;
   return chart_of_face;
 }
 
-void flatten(const ChartSurface& surface, std::span<const Chart> charts, std::size_t first, const Progress& progress,
-             std::vector<glm::vec2>& plane, int threads) {
+void flatten(const ChartSurface& surface, std::span<const Chart> charts, std::size_t first,
+             const Progress& progress, std::vector<glm::vec2>& plane, int threads) {
   plane.resize(3 * surface.mesh.triangle_count());
   Flattener flattener(surface, charts, plane);
   parallel_for(threads, static_cast<int>(charts.size() - first), [&](int i) {
-    if (!progress.cancelled()) flattener.flatten(static_cast<std::uint32_t>(first + static_cast<std::size_t>(i)));
+    if (!progress.cancelled())
+      flattener.flatten(static_cast<std::uint32_t>(first + static_cast<std::size_t>(i)));
   });
 }
 
-std::vector<std::uint32_t> squeezed_faces(const ChartSurface& surface, std::span<const glm::vec2> plane,
-                                          float most_stretch, float least_area) {
+std::vector<std::uint32_t> squeezed_faces(const ChartSurface& surface,
+                                          std::span<const glm::vec2> plane, float most_stretch,
+                                          float least_area) {
   std::vector<std::uint32_t> faces;
   for (std::uint32_t face = 0; face < surface.mesh.triangle_count(); ++face) {
     const float area = surface.original_frames.areas[face];

@@ -43,13 +43,15 @@ std::uint64_t hilbert_code(std::array<std::uint32_t, 3> cell) {
   std::uint32_t turn = 0;
   for (std::uint32_t bit = 1u << (kCurveBits - 1); bit > 1; bit >>= 1)
     if ((cell[2] & bit) != 0) turn ^= bit - 1;
-  return spread_bits(cell[0] ^ turn) << 2 | spread_bits(cell[1] ^ turn) << 1 | spread_bits(cell[2] ^ turn);
+  return spread_bits(cell[0] ^ turn) << 2 | spread_bits(cell[1] ^ turn) << 1 |
+         spread_bits(cell[2] ^ turn);
 }
 
-// Triangle numbers along a Hilbert curve through their centroids: neighbours on the surface end up near each other, and a run of
-// triangles lies together, as the curve never jumps. It serves the caches of the GPU, clusters for culling, compression and the
-// search tree at once.
-std::vector<std::uint32_t> spatial_order(const TriangleMesh& mesh, const glm::dvec3& low, const glm::dvec3& extent) {
+// Triangle numbers along a Hilbert curve through their centroids: neighbours on the surface end up
+// near each other, and a run of triangles lies together, as the curve never jumps. It serves the
+// caches of the GPU, clusters for culling, compression and the search tree at once.
+std::vector<std::uint32_t> spatial_order(const TriangleMesh& mesh, const glm::dvec3& low,
+                                         const glm::dvec3& extent) {
   struct Entry {
     std::uint64_t code;
     std::uint32_t triangle;
@@ -59,7 +61,8 @@ std::vector<std::uint32_t> spatial_order(const TriangleMesh& mesh, const glm::dv
   for (std::uint32_t t = 0; t < entries.size(); ++t) {
     const std::uint32_t* corners = &mesh.triangles[3 * std::size_t{t}];
     const glm::dvec3 centroid =
-        (mesh.positions[corners[0]] + mesh.positions[corners[1]] + mesh.positions[corners[2]]) / 3.0;
+        (mesh.positions[corners[0]] + mesh.positions[corners[1]] + mesh.positions[corners[2]]) /
+        3.0;
     const glm::uvec3 cell(glm::clamp((centroid - low) * scale, 0.0, double{kCurveEnd}));
     entries[t] = {hilbert_code({cell.x, cell.y, cell.z}), t};
   }
@@ -67,7 +70,8 @@ std::vector<std::uint32_t> spatial_order(const TriangleMesh& mesh, const glm::dv
     return a.code != b.code ? a.code < b.code : a.triangle < b.triangle;
   });
   std::vector<std::uint32_t> order(entries.size());
-  std::transform(entries.begin(), entries.end(), order.begin(), [](const Entry& e) { return e.triangle; });
+  std::transform(entries.begin(), entries.end(), order.begin(),
+                 [](const Entry& e) { return e.triangle; });
   return order;
 }
 
@@ -86,7 +90,8 @@ std::vector<std::uint32_t> position_normals(const TriangleMesh& mesh) {
   std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0));
   for (std::size_t i = 0; i + 2 < mesh.triangles.size(); i += 3) {
     const std::uint32_t a = mesh.triangles[i], b = mesh.triangles[i + 1], c = mesh.triangles[i + 2];
-    const glm::dvec3 cross = glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
+    const glm::dvec3 cross =
+        glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
     sums[a] += cross;
     sums[b] += cross;
     sums[c] += cross;
@@ -112,16 +117,18 @@ class VertexSplitter {
 
   std::uint32_t vertex_for(std::size_t corner) {
     const std::uint32_t source = mesh_.triangles[corner];
-    const glm::vec2 uv = corner < atlas_.corner_uvs.size() ? atlas_.corner_uvs[corner] : glm::vec2(0);
+    const glm::vec2 uv =
+        corner < atlas_.corner_uvs.size() ? atlas_.corner_uvs[corner] : glm::vec2(0);
     const auto [index, is_new] = welder_.number(source, uv);
     if (!is_new) return index;
     if (position_of_[source] == kNone) {
       position_of_[source] = static_cast<std::uint32_t>(geometry_.positions.size());
       geometry_.positions.push_back(mesh_.positions[source]);
     }
-    geometry_.vertices.push_back({glm::vec3(mesh_.positions[source] - geometry_.origin), normals_[source], uv,
-                                  mesh_.vertex_colors.empty() ? kStoneGrey : mesh_.vertex_colors[source],
-                                  position_of_[source]});
+    geometry_.vertices.push_back(
+        {glm::vec3(mesh_.positions[source] - geometry_.origin), normals_[source], uv,
+         mesh_.vertex_colors.empty() ? kStoneGrey : mesh_.vertex_colors[source],
+         position_of_[source]});
     return index;
   }
 
@@ -184,13 +191,15 @@ Geometry build_geometry(const TriangleMesh& mesh, const Atlas& atlas) {
   }
   const glm::dvec3 extent = high - low;
   geometry.origin = low + extent / 2.0;
-  if (std::max({extent.x, extent.y, extent.z}) > kRoundOriginAbove) geometry.origin = glm::round(geometry.origin);
+  if (std::max({extent.x, extent.y, extent.z}) > kRoundOriginAbove)
+    geometry.origin = glm::round(geometry.origin);
 
   const std::vector<std::uint32_t> order = spatial_order(mesh, low, extent);
   VertexSplitter splitter(mesh, atlas, geometry);
   geometry.indices.reserve(mesh.triangles.size());
   for (std::uint32_t triangle : order) {
-    for (std::size_t k = 0; k < 3; ++k) geometry.indices.push_back(splitter.vertex_for(3 * std::size_t{triangle} + k));
+    for (std::size_t k = 0; k < 3; ++k)
+      geometry.indices.push_back(splitter.vertex_for(3 * std::size_t{triangle} + k));
   }
   find_boxes(geometry);
   return geometry;

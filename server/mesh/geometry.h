@@ -11,12 +11,14 @@
 
 namespace strata::mesh {
 
-// One vertex as the GPU reads it; 32 bytes. Positions are model space: world minus `Geometry::origin`, in file units.
+// One vertex as the GPU reads it; 32 bytes. Positions are model space: world minus
+// `Geometry::origin`, in file units.
 struct Vertex {
   glm::vec3 position;
   std::uint32_t normal;  // snorm 10:10:10:2 (GL_INT_2_10_10_10_REV), unit length
   glm::vec2 uv;
-  std::uint32_t color;           // RGBA8, red in the low byte; 0xffcfd3d6-like stone grey where the scan has no colour
+  // RGBA8, red in the low byte; 0xffcfd3d6-like stone grey where the scan has no colour
+  std::uint32_t color;
   std::uint32_t position_index;  // of the welded position: vertices split at seams share it
 };
 static_assert(sizeof(Vertex) == 32);
@@ -26,14 +28,17 @@ struct ClusterBox {
   glm::vec3 min{0}, max{0};
 };
 
-// What a model is once imported: the immutable input of rendering, of the surface map and of the search tree.
+// What a model is once imported: the immutable input of rendering, of the surface map and of the
+// search tree.
 struct Geometry {
-  glm::dvec3 origin{0};                // centre of the box, rounded to whole units where the box is larger than 16
+  // centre of the box, rounded to whole units where the box is larger than 16
+  glm::dvec3 origin{0};
   std::vector<glm::dvec3> positions;   // world, double, welded
   std::vector<Vertex> vertices;        // corners with equal position and uv share a vertex
   std::vector<std::uint32_t> indices;  // 3 a triangle, in an order that keeps neighbours together
   glm::vec3 box_min{0}, box_max{0};    // model space
-  std::vector<ClusterBox> clusters;    // of each kTrianglesPerCluster triangles in their order; the last has fewer
+  // of each kTrianglesPerCluster triangles in their order; the last has fewer
+  std::vector<ClusterBox> clusters;
 
   static constexpr std::size_t kTrianglesPerCluster = 1024;
 

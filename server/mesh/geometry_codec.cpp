@@ -12,9 +12,10 @@
 //   "SGEO" · version u8 · zstd frame (with content size and checksum) of
 //   u64 positions, vertices, indices · f64 origin[3] · planes(positions x, y, z as u64) ·
 //   planes(vertex normal, uv.x, uv.y, color, position index as u32) · planes(index codes as u32)
-// "planes" is a column of integers, each replaced by its zigzag difference to the one before, stored byte plane by byte
-// plane: neighbours in the order along the curve differ little, so the high planes are nearly all zero. Vertex positions and the
-// box follow from the rest and are not stored.
+// "planes" is a column of integers, each replaced by its zigzag difference to the one before,
+// stored byte plane by byte plane: neighbours in the order along the curve differ little, so the
+// high planes are nearly all zero. Vertex positions and the box follow from the rest and are not
+// stored.
 
 namespace strata::mesh {
 namespace {
@@ -27,7 +28,8 @@ constexpr std::size_t kPositionBytes = 3 * 8, kVertexBytes = 5 * 4, kIndexBytes 
 
 tl::unexpected<Problem> damaged(const std::string& what) {
   return fail(500, "Stored geometry is damaged",
-              "The stored geometry cannot be read: " + what + ". Restore it from a backup or import the model again.");
+              "The stored geometry cannot be read: " + what +
+                  ". Restore it from a backup or import the model again.");
 }
 
 template <class Bits>
@@ -70,8 +72,8 @@ void read_planes(const std::uint8_t*& in, std::size_t count, Take take) {
 std::vector<std::uint8_t> serialize(const Geometry& geometry) {
   const std::size_t positions = geometry.positions.size(), vertices = geometry.vertices.size(),
                     indices = geometry.indices.size();
-  std::vector<std::uint8_t> bytes(kHeaderBytes + positions * kPositionBytes + vertices * kVertexBytes +
-                                  indices * kIndexBytes);
+  std::vector<std::uint8_t> bytes(kHeaderBytes + positions * kPositionBytes +
+                                  vertices * kVertexBytes + indices * kIndexBytes);
   std::uint8_t* out = bytes.data();
   const std::uint64_t counts[3] = {positions, vertices, indices};
   std::memcpy(out, counts, sizeof counts);
@@ -79,13 +81,16 @@ std::vector<std::uint8_t> serialize(const Geometry& geometry) {
   std::memcpy(out + sizeof counts, origin, sizeof origin);
   out += kHeaderBytes;
   for (int axis = 0; axis < 3; ++axis) {
-    write_planes<std::uint64_t>(
-        out, positions, [&](std::size_t i) { return std::bit_cast<std::uint64_t>(geometry.positions[i][axis]); });
+    write_planes<std::uint64_t>(out, positions, [&](std::size_t i) {
+      return std::bit_cast<std::uint64_t>(geometry.positions[i][axis]);
+    });
   }
   const std::vector<Vertex>& v = geometry.vertices;
   write_planes<std::uint32_t>(out, vertices, [&](std::size_t i) { return v[i].normal; });
-  write_planes<std::uint32_t>(out, vertices, [&](std::size_t i) { return std::bit_cast<std::uint32_t>(v[i].uv.x); });
-  write_planes<std::uint32_t>(out, vertices, [&](std::size_t i) { return std::bit_cast<std::uint32_t>(v[i].uv.y); });
+  write_planes<std::uint32_t>(
+      out, vertices, [&](std::size_t i) { return std::bit_cast<std::uint32_t>(v[i].uv.x); });
+  write_planes<std::uint32_t>(
+      out, vertices, [&](std::size_t i) { return std::bit_cast<std::uint32_t>(v[i].uv.y); });
   write_planes<std::uint32_t>(out, vertices, [&](std::size_t i) { return v[i].color; });
   write_planes<std::uint32_t>(out, vertices, [&](std::size_t i) { return v[i].position_index; });
   write_planes<std::uint32_t>(out, indices, [&](std::size_t i) { return geometry.indices[i]; });
@@ -99,7 +104,8 @@ Result<Geometry> deserialize(const std::vector<std::uint8_t>& bytes) {
   const std::uint64_t positions = counts[0], vertices = counts[1], indices = counts[2];
   constexpr std::uint64_t kMost = 0xffffffffu;
   if (positions > kMost || vertices > kMost || indices > kMost || indices % 3 != 0 ||
-      bytes.size() != kHeaderBytes + positions * kPositionBytes + vertices * kVertexBytes + indices * kIndexBytes) {
+      bytes.size() != kHeaderBytes + positions * kPositionBytes + vertices * kVertexBytes +
+                          indices * kIndexBytes) {
     return damaged("its counts do not fit its size");
   }
   Geometry geometry;
@@ -120,12 +126,16 @@ Result<Geometry> deserialize(const std::vector<std::uint8_t>& bytes) {
   }
   std::vector<Vertex>& v = geometry.vertices;
   bool in_range = true;
-  read_planes<std::uint32_t>(in, vertices, [&](std::size_t i, std::uint32_t bits) { v[i].normal = bits; });
   read_planes<std::uint32_t>(in, vertices,
-                             [&](std::size_t i, std::uint32_t bits) { v[i].uv.x = std::bit_cast<float>(bits); });
+                             [&](std::size_t i, std::uint32_t bits) { v[i].normal = bits; });
+  read_planes<std::uint32_t>(in, vertices, [&](std::size_t i, std::uint32_t bits) {
+    v[i].uv.x = std::bit_cast<float>(bits);
+  });
+  read_planes<std::uint32_t>(in, vertices, [&](std::size_t i, std::uint32_t bits) {
+    v[i].uv.y = std::bit_cast<float>(bits);
+  });
   read_planes<std::uint32_t>(in, vertices,
-                             [&](std::size_t i, std::uint32_t bits) { v[i].uv.y = std::bit_cast<float>(bits); });
-  read_planes<std::uint32_t>(in, vertices, [&](std::size_t i, std::uint32_t bits) { v[i].color = bits; });
+                             [&](std::size_t i, std::uint32_t bits) { v[i].color = bits; });
   read_planes<std::uint32_t>(in, vertices, [&](std::size_t i, std::uint32_t bits) {
     v[i].position_index = bits;
     in_range = in_range && bits < positions;
@@ -138,7 +148,8 @@ Result<Geometry> deserialize(const std::vector<std::uint8_t>& bytes) {
   for (Vertex& vertex : v) {
     vertex.position = glm::vec3(geometry.positions[vertex.position_index] - geometry.origin);
     finite = finite && std::isfinite(vertex.position.x) && std::isfinite(vertex.position.y) &&
-             std::isfinite(vertex.position.z) && std::isfinite(vertex.uv.x) && std::isfinite(vertex.uv.y);
+             std::isfinite(vertex.position.z) && std::isfinite(vertex.uv.x) &&
+             std::isfinite(vertex.uv.y);
   }
   if (!finite) return damaged("a number in it is not finite");
   find_boxes(geometry);
@@ -153,11 +164,12 @@ std::vector<std::uint8_t> encode_geometry(const Geometry& geometry) {
   std::vector<std::uint8_t> result(prefix + ZSTD_compressBound(content.size()));
   std::copy(std::begin(kMagic), std::end(kMagic), result.begin());
   result[sizeof kMagic] = kVersion;
-  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), &ZSTD_freeCCtx);
+  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
+                                                                     &ZSTD_freeCCtx);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
-  const std::size_t size =
-      ZSTD_compress2(context.get(), result.data() + prefix, result.size() - prefix, content.data(), content.size());
+  const std::size_t size = ZSTD_compress2(context.get(), result.data() + prefix,
+                                          result.size() - prefix, content.data(), content.size());
   if (ZSTD_isError(size)) throw std::bad_alloc();  // with a bound-sized target only memory can fail
   result.resize(prefix + size);
   result.shrink_to_fit();
@@ -169,18 +181,22 @@ Result<Geometry> decode_geometry(std::span<const std::uint8_t> bytes) {
   if (bytes.size() <= prefix || std::memcmp(bytes.data(), kMagic, sizeof kMagic) != 0)
     return damaged("it does not begin as one");
   if (bytes[sizeof kMagic] != kVersion) {
-    return damaged("it has version " + std::to_string(bytes[sizeof kMagic]) + ", this server reads version 1");
+    return damaged("it has version " + std::to_string(bytes[sizeof kMagic]) +
+                   ", this server reads version 1");
   }
   const std::span<const std::uint8_t> frame = bytes.subspan(prefix);
   const unsigned long long size = ZSTD_getFrameContentSize(frame.data(), frame.size());
-  // Geometry never shrinks a thousandfold; a size beyond that is damage, and nothing is allocated for it.
-  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size / 1000 > frame.size() + 65536) {
+  // Geometry never shrinks a thousandfold; a size beyond that is damage, and nothing is allocated
+  // for it.
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN ||
+      size / 1000 > frame.size() + 65536) {
     return damaged("its size is wrong");
   }
   if (ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size())
     return damaged("it is cut short or has bytes too many");
   std::vector<std::uint8_t> content(size);
-  const std::size_t read = ZSTD_decompress(content.data(), content.size(), frame.data(), frame.size());
+  const std::size_t read =
+      ZSTD_decompress(content.data(), content.size(), frame.data(), frame.size());
   if (ZSTD_isError(read) || read != size) return damaged("its checksum does not match");
   return deserialize(content);
 }

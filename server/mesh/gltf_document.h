@@ -11,9 +11,11 @@
 
 namespace strata::mesh {
 
-// The parts of a glTF 2.0 file (Khronos, "glTF 2.0 Specification"): its JSON, and its buffers wherever they are — in the GLB,
-// in files of their own, in data URIs, compressed by EXT_meshopt_compression or KHR_meshopt_compression. Every offset, count and index is checked
-// here; nothing is copied that need not be. Refusals are as of `refuse_file`. Thread: any, one at a time.
+// The parts of a glTF 2.0 file (Khronos, "glTF 2.0 Specification"): its JSON, and its buffers
+// wherever they are — in the GLB, in files of their own, in data URIs, compressed by
+// EXT_meshopt_compression or KHR_meshopt_compression. Every offset, count and index is checked
+// here; nothing is copied that need not be. Refusals are as of `refuse_file`. Thread: any, one at a
+// time.
 class GltfDocument {
  public:
   static Result<GltfDocument> open(const InputFiles& files);
@@ -30,7 +32,8 @@ class GltfDocument {
   };
   Result<View> view(std::uint64_t index);
 
-  // What an accessor says of its values, wherever a compression extension keeps them. `what` names them in refusals.
+  // What an accessor says of its values, wherever a compression extension keeps them. `what` names
+  // them in refusals.
   struct Form {
     std::uint64_t count = 0;
     int component_type = 0, components = 0;
@@ -38,8 +41,8 @@ class GltfDocument {
   };
   Result<Form> form(std::uint64_t accessor, const std::string& what) const;
 
-  // The values of an accessor as real numbers, `components` each; normalised whole numbers become 0…1 or −1…1, those that are
-  // not, too, with `normalize`. Sparse values are put in.
+  // The values of an accessor as real numbers, `components` each; normalised whole numbers become
+  // 0…1 or −1…1, those that are not, too, with `normalize`. Sparse values are put in.
   struct Values {
     std::uint64_t count = 0;
     int components = 0;
@@ -71,9 +74,11 @@ class GltfDocument {
     std::uint64_t stride = 0;
   };
   Result<Layout> layout(std::uint64_t accessor, const std::string& what);
-  // Calls put(number of the element, its bytes) for those of the buffer view, then for the sparse ones.
+  // Calls put(number of the element, its bytes) for those of the buffer view, then for the sparse
+  // ones.
   template <class Put>
-  Result<void> for_each_element(std::uint64_t accessor, const std::string& what, const Layout& layout, Put&& put);
+  Result<void> for_each_element(std::uint64_t accessor, const std::string& what,
+                                const Layout& layout, Put&& put);
 
   const InputFiles* files_;
   nlohmann::json json_;
@@ -83,9 +88,12 @@ class GltfDocument {
   std::uint64_t decoded_bytes_ = 0;  // of decoded_views_
 };
 
-// Members of a JSON object, as glTF gives them. A missing one has the default; one of the wrong type is refused.
-Result<std::uint64_t> whole_number(const nlohmann::json& object, const char* name, std::uint64_t otherwise);
-Result<std::uint64_t> whole_number(const nlohmann::json& object, const char* name);  // refused where it is missing
+// Members of a JSON object, as glTF gives them. A missing one has the default; one of the wrong
+// type is refused.
+Result<std::uint64_t> whole_number(const nlohmann::json& object, const char* name,
+                                   std::uint64_t otherwise);
+// refused where it is missing
+Result<std::uint64_t> whole_number(const nlohmann::json& object, const char* name);
 Result<std::vector<double>> real_numbers(const nlohmann::json& object, const char* name,
                                          const std::vector<double>& otherwise);
 std::string text_of(const nlohmann::json& object, const char* name);

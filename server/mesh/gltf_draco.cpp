@@ -37,28 +37,36 @@ double raw_number(const std::uint8_t* at, draco::DataType type) {
 Result<GltfDocument::Values> read_attribute(const draco::Mesh& mesh, const std::string& name,
                                             const DracoRequest& request) {
   const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(request.id);
-  if (attribute == nullptr) return refuse_file("The Draco data of the glTF has no attribute " + name + ".");
+  if (attribute == nullptr)
+    return refuse_file("The Draco data of the glTF has no attribute " + name + ".");
   const draco::DataType stored = attribute->data_type();
   const int components = attribute->num_components(), size = draco::DataTypeLength(stored);
   if (components < 1 || components > 4 || size < 1 || attribute->buffer() == nullptr)
-    return refuse_file("The Draco data of the glTF keeps " + name + " in numbers that glTF does not have.");
+    return refuse_file("The Draco data of the glTF keeps " + name +
+                       " in numbers that glTF does not have.");
   if (request.form && request.form->components != components)
-    return refuse_file("The Draco data of the glTF has " + std::to_string(components) + " numbers a vertex for " +
-                       name + ", but its accessor says " + std::to_string(request.form->components) + ".");
+    return refuse_file("The Draco data of the glTF has " + std::to_string(components) +
+                       " numbers a vertex for " + name + ", but its accessor says " +
+                       std::to_string(request.form->components) + ".");
   const int type = request.form ? request.form->component_type : component_type_of(stored);
-  const bool normalized = request.normalize || (request.form ? request.form->normalized : attribute->normalized());
+  const bool normalized =
+      request.normalize || (request.form ? request.form->normalized : attribute->normalized());
   GltfDocument::Values values{mesh.num_points(), components, {}};
   values.numbers.resize(values.count * components);
   float* out = values.numbers.data();
   const std::uint8_t* bytes = attribute->buffer()->data();
-  const std::uint64_t held = attribute->buffer()->data_size(), each = static_cast<std::uint64_t>(components) * size;
+  const std::uint64_t held = attribute->buffer()->data_size(),
+                      each = static_cast<std::uint64_t>(components) * size;
   for (draco::PointIndex point(0); point < mesh.num_points(); ++point) {
     const auto value = attribute->mapped_index(point);
-    const std::uint64_t at = value.value() < attribute->size() ? attribute->GetBytePos(value) : held;
+    const std::uint64_t at =
+        value.value() < attribute->size() ? attribute->GetBytePos(value) : held;
     if (at > held || held - at < each)
-      return refuse_file("The Draco data of the glTF is damaged: " + name + " has values that are missing.");
+      return refuse_file("The Draco data of the glTF is damaged: " + name +
+                         " has values that are missing.");
     for (int k = 0; k < components; ++k)
-      *out++ = static_cast<float>(gltf_number(raw_number(bytes + at + k * size, stored), type, normalized));
+      *out++ = static_cast<float>(
+          gltf_number(raw_number(bytes + at + k * size, stored), type, normalized));
   }
   return values;
 }
@@ -66,12 +74,14 @@ Result<GltfDocument::Values> read_attribute(const draco::Mesh& mesh, const std::
 }  // namespace
 
 Result<DracoPrimitive> decode_draco(std::span<const std::uint8_t> bytes,
-                                    const std::map<std::string, DracoRequest>& requests, std::uint64_t most_triangles) {
+                                    const std::map<std::string, DracoRequest>& requests,
+                                    std::uint64_t most_triangles) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok())
-    return refuse_file("The Draco data of the glTF cannot be decoded: " + decoded.status().error_msg_string() + ".");
+    return refuse_file("The Draco data of the glTF cannot be decoded: " +
+                       decoded.status().error_msg_string() + ".");
   const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
   DracoPrimitive primitive;
   primitive.points = mesh->num_points();

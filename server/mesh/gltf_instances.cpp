@@ -20,7 +20,8 @@ glm::dvec3 vector_at(const GltfDocument::Values& values, std::uint64_t i, double
 
 }  // namespace
 
-glm::dmat4 gltf_transform(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale) {
+glm::dmat4 gltf_transform(const glm::dvec3& translation, const glm::dvec4& rotation,
+                          const glm::dvec3& scale) {
   glm::dquat turn(rotation.w, rotation.x, rotation.y, rotation.z);
   const double length = glm::length(turn);
   turn = length > 0 ? turn / length : glm::dquat(1, 0, 0, 0);
@@ -41,8 +42,9 @@ Result<GltfInstances> GltfInstances::read(GltfDocument& document, const json& no
     GltfDocument::Values* values;
     int components;
   };
-  for (const Part& part : {Part{"TRANSLATION", &instances.translations_, 3}, Part{"ROTATION", &instances.rotations_, 4},
-                           Part{"SCALE", &instances.scales_, 3}}) {
+  for (const Part& part :
+       {Part{"TRANSLATION", &instances.translations_, 3},
+        Part{"ROTATION", &instances.rotations_, 4}, Part{"SCALE", &instances.scales_, 3}}) {
     if (!attributes.contains(part.name)) continue;
     const auto accessor = whole_number(attributes, part.name);
     if (!accessor) return tl::unexpected(accessor.error());
@@ -50,14 +52,16 @@ Result<GltfInstances> GltfInstances::read(GltfDocument& document, const json& no
     if (!form) return tl::unexpected(form.error());
     const std::string name = std::string(part.name) + " of " + kExtension;
     const bool whole = form->component_type == kByte || form->component_type == kShort;
-    const bool allowed = form->component_type == kFloat || (part.components == 4 && whole && form->normalized);
+    const bool allowed =
+        form->component_type == kFloat || (part.components == 4 && whole && form->normalized);
     if (form->components != part.components || !allowed)
       return refuse_file(name + " in the glTF does not hold " + std::to_string(part.components) +
-                         (part.components == 4 ? " numbers of FLOAT, or of BYTE or SHORT that are normalised."
-                                               : " numbers of FLOAT."));
+                         (part.components == 4
+                              ? " numbers of FLOAT, or of BYTE or SHORT that are normalised."
+                              : " numbers of FLOAT."));
     if (form->count > kMostInstances)
-      return refuse_file("The glTF repeats a mesh " + std::to_string(form->count) + " times by " + kExtension +
-                         "; up to " + std::to_string(kMostInstances) +
+      return refuse_file("The glTF repeats a mesh " + std::to_string(form->count) + " times by " +
+                         kExtension + "; up to " + std::to_string(kMostInstances) +
                          " are read. Export the parts that you need as meshes.");
     if (count && *count != form->count)
       return refuse_file(name + " in the glTF has " + std::to_string(form->count) +

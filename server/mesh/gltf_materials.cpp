@@ -26,7 +26,10 @@ Wrap wrap_of(std::uint64_t mode) {
 class MaterialReader {
  public:
   MaterialReader(GltfDocument& document, const InputFiles& files, LoadedMesh& loaded)
-      : document_(document), mesh_(loaded.mesh), repairs_(loaded.repairs), shelf_(files, loaded.mesh, loaded.repairs) {}
+      : document_(document),
+        mesh_(loaded.mesh),
+        repairs_(loaded.repairs),
+        shelf_(files, loaded.mesh, loaded.repairs) {}
 
   Result<std::vector<GltfMaterial>> read() {
     std::vector<GltfMaterial> materials;
@@ -46,27 +49,32 @@ class MaterialReader {
 
  private:
   Result<GltfMaterial> read_material(const json& source) {
-    const json& glossy = object_in(object_in(source, "extensions"), "KHR_materials_pbrSpecularGlossiness");
+    const json& glossy =
+        object_in(object_in(source, "extensions"), "KHR_materials_pbrSpecularGlossiness");
     const json& metallic = object_in(source, "pbrMetallicRoughness");
     const bool is_glossy = metallic.empty() && !glossy.empty();
-    const auto factor =
-        real_numbers(is_glossy ? glossy : metallic, is_glossy ? "diffuseFactor" : "baseColorFactor", {1, 1, 1, 1});
+    const auto factor = real_numbers(is_glossy ? glossy : metallic,
+                                     is_glossy ? "diffuseFactor" : "baseColorFactor", {1, 1, 1, 1});
     if (!factor) return tl::unexpected(factor.error());
     Material material;
     material.name = text_of(source, "name").substr(0, 200);
-    for (int k = 0; k < 3; ++k) material.color[k] = static_cast<float>(srgb_of_linear((*factor)[k]));
+    for (int k = 0; k < 3; ++k)
+      material.color[k] = static_cast<float>(srgb_of_linear((*factor)[k]));
     material.color.a = static_cast<float>(std::clamp((*factor)[3], 0.0, 1.0));
     GltfMaterial result;
-    const json& texture = object_in(is_glossy ? glossy : metallic, is_glossy ? "diffuseTexture" : "baseColorTexture");
+    const json& texture =
+        object_in(is_glossy ? glossy : metallic, is_glossy ? "diffuseTexture" : "baseColorTexture");
     if (!texture.empty())
-      if (auto done = read_texture(texture, material, result); !done) return tl::unexpected(done.error());
+      if (auto done = read_texture(texture, material, result); !done)
+        return tl::unexpected(done.error());
     mesh_.materials.push_back(std::move(material));
     return result;
   }
 
   Result<void> read_texture(const json& reference, Material& material, GltfMaterial& result) {
     const json& transform = object_in(object_in(reference, "extensions"), "KHR_texture_transform");
-    const auto index = whole_number(reference, "index"), texcoord = whole_number(reference, "texCoord", 0);
+    const auto index = whole_number(reference, "index"),
+               texcoord = whole_number(reference, "texCoord", 0);
     if (!index) return tl::unexpected(index.error());
     if (!texcoord) return tl::unexpected(texcoord.error());
     const auto set = whole_number(transform, "texCoord", *texcoord);
@@ -81,7 +89,8 @@ class MaterialReader {
       if (!number) return tl::unexpected(number.error());
       const auto sampler = document_.element("samplers", *number);
       if (!sampler) return tl::unexpected(sampler.error());
-      const auto s = whole_number(**sampler, "wrapS", 10497), t = whole_number(**sampler, "wrapT", 10497);
+      const auto s = whole_number(**sampler, "wrapS", 10497),
+                 t = whole_number(**sampler, "wrapT", 10497);
       if (!s) return tl::unexpected(s.error());
       if (!t) return tl::unexpected(t.error());
       material.wrap_u = wrap_of(*s);
@@ -110,11 +119,12 @@ class MaterialReader {
     return {};
   }
 
-  // The plain picture where there is one; otherwise that of an extension which keeps it in another format. Nothing: glTF
-  // allows a texture without a picture, which another extension may supply.
+  // The plain picture where there is one; otherwise that of an extension which keeps it in another
+  // format. Nothing: glTF allows a texture without a picture, which another extension may supply.
   static Result<std::optional<std::uint64_t>> image_of(const json& texture) {
     if (texture.contains("source")) return optional_number(texture);
-    for (const char* extension : {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"}) {
+    for (const char* extension :
+         {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"}) {
       const json& found = object_in(object_in(texture, "extensions"), extension);
       if (found.contains("source")) return optional_number(found);
     }
@@ -137,7 +147,8 @@ class MaterialReader {
 
   // Rotation turns counter-clockwise where v points down (KHR_texture_transform).
   static Result<void> read_transform(const json& transform, GltfMaterial& result) {
-    const auto offset = real_numbers(transform, "offset", {0, 0}), scale = real_numbers(transform, "scale", {1, 1});
+    const auto offset = real_numbers(transform, "offset", {0, 0}),
+               scale = real_numbers(transform, "scale", {1, 1});
     if (!offset) return tl::unexpected(offset.error());
     if (!scale) return tl::unexpected(scale.error());
     double turn = 0;
@@ -162,8 +173,8 @@ class MaterialReader {
 
 }  // namespace
 
-Result<std::vector<GltfMaterial>> read_gltf_materials(GltfDocument& document, const InputFiles& files,
-                                                      LoadedMesh& loaded) {
+Result<std::vector<GltfMaterial>> read_gltf_materials(GltfDocument& document,
+                                                      const InputFiles& files, LoadedMesh& loaded) {
   return MaterialReader(document, files, loaded).read();
 }
 

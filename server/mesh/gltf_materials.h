@@ -22,9 +22,10 @@ struct GltfMaterial {
   }
 };
 
-// All materials of the document, in its order: the base colour of metallic-roughness, or the diffuse one of
-// KHR_materials_pbrSpecularGlossiness. Puts them and their pictures into the mesh; pictures that cannot be read are noted.
-Result<std::vector<GltfMaterial>> read_gltf_materials(GltfDocument& document, const InputFiles& files,
-                                                      LoadedMesh& loaded);
+// All materials of the document, in its order: the base colour of metallic-roughness, or the
+// diffuse one of KHR_materials_pbrSpecularGlossiness. Puts them and their pictures into the mesh;
+// pictures that cannot be read are noted.
+Result<std::vector<GltfMaterial>> read_gltf_materials(GltfDocument& document,
+                                                      const InputFiles& files, LoadedMesh& loaded);
 
 }  // namespace strata::mesh

@@ -8,10 +8,11 @@
 
 namespace strata::mesh {
 
-// Numbers as the accessors of a glTF say that they are stored (glTF 2.0, 3.6.2), wherever the bytes come from.
+// Numbers as the accessors of a glTF say that they are stored (glTF 2.0, 3.6.2), wherever the bytes
+// come from.
 
-constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
-              kFloat = 5126;
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
+              kUnsignedInt = 5125, kFloat = 5126;
 
 inline int bytes_of_component(int type) {
   switch (type) {
@@ -37,8 +38,8 @@ inline std::string name_of_component(int type) {
   }
 }
 
-// What a stored number means: a normalised whole one is a share of the largest of its type, 0…1 or −1…1. Types of 4 bytes
-// are never normalised.
+// What a stored number means: a normalised whole one is a share of the largest of its type, 0…1 or
+// −1…1. Types of 4 bytes are never normalised.
 inline double gltf_number(double stored, int type, bool normalized) {
   if (!normalized) return stored;
   switch (type) {
@@ -73,6 +74,8 @@ inline std::uint32_t stored_index(const std::uint8_t* at, int type) {
   return type == kUnsignedShort ? load_number<std::uint16_t>(at) : load_number<std::uint32_t>(at);
 }
 
-inline bool is_index_type(int type) { return type == kUnsignedByte || type == kUnsignedShort || type == kUnsignedInt; }
+inline bool is_index_type(int type) {
+  return type == kUnsignedByte || type == kUnsignedShort || type == kUnsignedInt;
+}
 
 }  // namespace strata::mesh

@@ -15,8 +15,8 @@ using Values = GltfDocument::Values;
 
 constexpr std::uint32_t kUnused = 0xffffffffu;
 
-// An attribute as Strata needs it. KHR_mesh_quantization adds whole numbers for positions and texture coordinates; they are
-// read whether the file names it or not.
+// An attribute as Strata needs it. KHR_mesh_quantization adds whole numbers for positions and
+// texture coordinates; they are read whether the file names it or not.
 struct Attribute {
   std::string name;
   Values* values;
@@ -26,30 +26,33 @@ struct Attribute {
 
 class PrimitiveReader {
  public:
-  PrimitiveReader(GltfDocument& document, const json& source, const GltfMaterial& material, std::size_t max_triangles,
-                  GltfRemarks& remarks)
+  PrimitiveReader(GltfDocument& document, const json& source, const GltfMaterial& material,
+                  std::size_t max_triangles, GltfRemarks& remarks)
       : document_(document),
         source_(source),
         accessors_(object_in(source, "attributes")),
         max_triangles_(max_triangles),
         remarks_(remarks),
-        attributes_{{{"POSITION", &primitive_.positions, 3, 3, false},
-                     {"TEXCOORD_" + std::to_string(material.texcoord), &primitive_.uvs, 2, 2, false},
-                     {"COLOR_0", &primitive_.colors, 3, 4, true}}} {}
+        attributes_{
+            {{"POSITION", &primitive_.positions, 3, 3, false},
+             {"TEXCOORD_" + std::to_string(material.texcoord), &primitive_.uvs, 2, 2, false},
+             {"COLOR_0", &primitive_.colors, 3, 4, true}}} {}
 
   Result<std::optional<GltfPrimitive>> read() {
     const auto mode = whole_number(source_, "mode", kTriangles);
     if (!mode) return tl::unexpected(mode.error());
     primitive_.mode = *mode;
     if (*mode > kTriangleFan)
-      return refuse_file("A primitive of the glTF has mode " + std::to_string(*mode) + ", which glTF does not have.");
+      return refuse_file("A primitive of the glTF has mode " + std::to_string(*mode) +
+                         ", which glTF does not have.");
     if (*mode < kTriangles) {
       ++remarks_.points_and_lines;
       return std::nullopt;
     }
     const auto& draco = object_in(object_in(source_, "extensions"), "KHR_draco_mesh_compression");
     if (!accessors_.contains("POSITION") && !object_in(draco, "attributes").contains("POSITION")) {
-      ++remarks_.without_positions;  // glTF has it so: an extension that is not read here may give them
+      // glTF has it so: an extension that is not read here may give them
+      ++remarks_.without_positions;
       return std::nullopt;
     }
     const Result<void> done = draco.empty() ? Result<void>() : read_draco(draco);
@@ -64,15 +67,19 @@ class PrimitiveReader {
   }
 
  private:
-  // Whether numbers of this accessor mean what they must; whole ones that should be normalised and do not say so are.
-  Result<bool> must_normalize(const Attribute& attribute, std::uint64_t accessor, const GltfDocument::Form& form) {
-    const std::string name = "Accessor " + std::to_string(accessor) + " of the glTF (" + attribute.name + ")";
+  // Whether numbers of this accessor mean what they must; whole ones that should be normalised and
+  // do not say so are.
+  Result<bool> must_normalize(const Attribute& attribute, std::uint64_t accessor,
+                              const GltfDocument::Form& form) {
+    const std::string name =
+        "Accessor " + std::to_string(accessor) + " of the glTF (" + attribute.name + ")";
     const int type = form.component_type;
     if (form.components < attribute.least_components || form.components > attribute.most_components)
-      return refuse_file(name + " has " + std::to_string(form.components) + " numbers a vertex; " +
-                         std::to_string(attribute.least_components) +
-                         (attribute.is_color ? " or " + std::to_string(attribute.most_components) : "") +
-                         " belong there.");
+      return refuse_file(
+          name + " has " + std::to_string(form.components) + " numbers a vertex; " +
+          std::to_string(attribute.least_components) +
+          (attribute.is_color ? " or " + std::to_string(attribute.most_components) : "") +
+          " belong there.");
     const bool is_signed = type == kByte || type == kShort;
     if (type == kUnsignedInt || (attribute.is_color && is_signed))
       return refuse_file(name + " holds " + name_of_component(type) +
@@ -136,7 +143,8 @@ class PrimitiveReader {
     auto decoded = decode_draco(view->bytes, requests, most);
     if (!decoded) return tl::unexpected(decoded.error());
     for (const Attribute& attribute : attributes_)
-      if (const auto found = decoded->attributes.find(attribute.name); found != decoded->attributes.end())
+      if (const auto found = decoded->attributes.find(attribute.name);
+          found != decoded->attributes.end())
         *attribute.values = std::move(found->second);
     primitive_.indices = std::move(decoded->indices);
     primitive_.mode = kTriangles;
@@ -164,17 +172,19 @@ class PrimitiveReader {
     for (const Attribute& attribute : attributes_) {
       const Values& values = *attribute.values;
       if (values.components == 0) continue;
-      if (values.components < attribute.least_components || values.components > attribute.most_components)
+      if (values.components < attribute.least_components ||
+          values.components > attribute.most_components)
         return refuse_file("A primitive of the glTF has " + std::to_string(values.components) +
                            " numbers a vertex for " + attribute.name + ".");
       if (values.count == count) continue;
-      return refuse_file("A primitive of the glTF has " + std::to_string(count) + " positions, but " +
-                         std::to_string(values.count) + " values of " + attribute.name + ".");
+      return refuse_file("A primitive of the glTF has " + std::to_string(count) +
+                         " positions, but " + std::to_string(values.count) + " values of " +
+                         attribute.name + ".");
     }
     for (const std::uint32_t index : primitive_.indices)
       if (index >= count)
-        return refuse_file("A triangle of the glTF names vertex " + std::to_string(index) + ", but its primitive has " +
-                           std::to_string(count) + ".");
+        return refuse_file("A triangle of the glTF names vertex " + std::to_string(index) +
+                           ", but its primitive has " + std::to_string(count) + ".");
     return {};
   }
 
@@ -212,7 +222,8 @@ class PrimitiveReader {
 }  // namespace
 
 Result<std::optional<GltfPrimitive>> read_gltf_primitive(GltfDocument& document, const json& source,
-                                                         const GltfMaterial& material, std::size_t max_triangles,
+                                                         const GltfMaterial& material,
+                                                         std::size_t max_triangles,
                                                          GltfRemarks& remarks) {
   return PrimitiveReader(document, source, material, max_triangles, remarks).read();
 }

@@ -11,8 +11,8 @@ namespace strata::mesh {
 
 enum GltfMode : std::uint64_t { kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6 };
 
-// What one primitive holds, wherever it was compressed: the vertices that its triangles name, each once, in the order in
-// which they are first named.
+// What one primitive holds, wherever it was compressed: the vertices that its triangles name, each
+// once, in the order in which they are first named.
 struct GltfPrimitive {
   GltfDocument::Values positions, uvs, colors;  // uvs and colours: as many as positions, or none
   std::vector<std::uint32_t> indices;           // of those vertices
@@ -35,10 +35,13 @@ struct GltfRemarks {
   std::uint64_t points_and_lines = 0, without_positions = 0, colors_taken_as_normalized = 0;
 };
 
-// Nothing: it holds no triangles, which is counted. Refused as by `refuse_file`: what glTF or KHR_mesh_quantization do not
-// allow and has no plain meaning, counts that differ, indices out of range, more vertices than max_triangles have.
-Result<std::optional<GltfPrimitive>> read_gltf_primitive(GltfDocument& document, const nlohmann::json& source,
-                                                         const GltfMaterial& material, std::size_t max_triangles,
+// Nothing: it holds no triangles, which is counted. Refused as by `refuse_file`: what glTF or
+// KHR_mesh_quantization do not allow and has no plain meaning, counts that differ, indices out of
+// range, more vertices than max_triangles have.
+Result<std::optional<GltfPrimitive>> read_gltf_primitive(GltfDocument& document,
+                                                         const nlohmann::json& source,
+                                                         const GltfMaterial& material,
+                                                         std::size_t max_triangles,
                                                          GltfRemarks& remarks);
 
 }  // namespace strata::mesh

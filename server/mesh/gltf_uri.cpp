@@ -21,7 +21,8 @@ int value_of_hex(char c) {
 
 std::optional<std::vector<std::uint8_t>> decode_data_uri(std::string_view uri) {
   const auto comma = uri.find(',');
-  if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) return std::nullopt;
+  if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
+    return std::nullopt;
   std::string_view text = uri.substr(comma + 1);
   while (text.ends_with('=')) text.remove_suffix(1);
   if (text.size() % 4 == 1) return std::nullopt;

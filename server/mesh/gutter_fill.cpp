@@ -61,7 +61,8 @@ Picture mean_of_filled(Picture& fine) {
       }
       if (filled == 0) continue;
       std::uint8_t* out = pixel(coarse, x, y);
-      for (int c = 0; c < 3; ++c) out[c] = static_cast<std::uint8_t>((sum[c] + filled / 2) / filled);
+      for (int c = 0; c < 3; ++c)
+        out[c] = static_cast<std::uint8_t>((sum[c] + filled / 2) / filled);
       out[3] = 255;
     }
   return coarse;
@@ -83,7 +84,8 @@ void fill_gutter(Picture& picture, int ring) {
   std::vector<Picture> coarser;
   for (Picture* level = &picture; level->width > 1 || level->height > 1; level = &coarser.back())
     coarser.push_back(mean_of_filled(*level));
-  for (std::size_t i = coarser.size(); i-- > 0;) fill_from(i == 0 ? picture : coarser[i - 1], coarser[i]);
+  for (std::size_t i = coarser.size(); i-- > 0;)
+    fill_from(i == 0 ? picture : coarser[i - 1], coarser[i]);
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
 }
 

@@ -10,8 +10,8 @@ struct TexelOffset {
   int x, y;
 };
 
-// The 24 neighbours within the ring, nearest first; among equals the lower, then the left one. A gutter texel follows the first
-// of them that is surface.
+// The 24 neighbours within the ring, nearest first; among equals the lower, then the left one. A
+// gutter texel follows the first of them that is surface.
 constexpr std::array<TexelOffset, 24> gutter_ring_offsets() {
   std::array<TexelOffset, 24> offsets{};
   int count = 0;

@@ -35,7 +35,8 @@ class IndexTable {
   // Calls visit(index) for all that were put in with this hash, and perhaps others.
   template <class Visit>
   void for_each(std::uint64_t hash, Visit visit) const {
-    for (std::size_t slot = first(hash); slots_[slot] != kEmpty; slot = (slot + 1) & (slots_.size() - 1))
+    for (std::size_t slot = first(hash); slots_[slot] != kEmpty;
+         slot = (slot + 1) & (slots_.size() - 1))
       visit(slots_[slot]);
   }
 

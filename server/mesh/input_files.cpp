@@ -12,7 +12,8 @@
 namespace strata::mesh {
 namespace {
 
-constexpr std::string_view kTaken = "send PLY, OBJ, STL, glTF or GLB, alone, with its textures, or as a zip of them";
+constexpr std::string_view kTaken =
+    "send PLY, OBJ, STL, glTF or GLB, alone, with its textures, or as a zip of them";
 
 std::string lower(std::string_view text) {
   std::string result(text);
@@ -89,19 +90,22 @@ Result<std::size_t> pick_scan(std::span<const std::string> filenames) {
   if (scans.size() == 1) return scans.front();
   if (scans.size() > 1)
     return fail(422, "More than one scan",
-                "One import makes one model, but several meshes were sent: " + listed(filenames, scans) +
-                    ". Import them one by one.",
+                "One import makes one model, but several meshes were sent: " +
+                    listed(filenames, scans) + ". Import them one by one.",
                 "filename");
   if (filenames.empty())
     return fail(422, "No file", "There is no file to import; " + std::string(kTaken) + ".", "file");
   if (filenames.size() == 1 && ending(filenames[0]).empty())
     return fail(422, "File name missing",
-                "Give the file's name, such as NAME.ply or NAME.obj: its ending names the format.", "filename");
+                "Give the file's name, such as NAME.ply or NAME.obj: its ending names the format.",
+                "filename");
   if (filenames.size() == 1)
     return fail(415, "Format not taken",
-                "'" + ending(filenames[0]) + "' files are not taken; " + std::string(kTaken) + ".", "filename");
+                "'" + ending(filenames[0]) + "' files are not taken; " + std::string(kTaken) + ".",
+                "filename");
   return fail(415, "No mesh among the files",
-              "None of the " + std::to_string(filenames.size()) + " files is a mesh; " + std::string(kTaken) + ".",
+              "None of the " + std::to_string(filenames.size()) + " files is a mesh; " +
+                  std::string(kTaken) + ".",
               "filename");
 }
 
@@ -114,7 +118,8 @@ Result<InputFiles> InputFiles::open(std::span<const InputFile> files, Progress& 
     const auto bytes = mapped->bytes();
     entries.push_back({file.filename, bytes, std::move(*mapped)});
   }
-  return of(std::move(entries), files.empty() ? std::filesystem::path() : scratch_beside(files[0].path), progress);
+  return of(std::move(entries),
+            files.empty() ? std::filesystem::path() : scratch_beside(files[0].path), progress);
 }
 
 Result<InputFiles> InputFiles::of(std::vector<Entry> entries, const std::filesystem::path& scratch,

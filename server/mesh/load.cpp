@@ -22,11 +22,13 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
   }();
   if (!loaded) {
     // What a reader of another format stumbles over says nothing to a person.
-    if (const auto other = other_nature(bytes, kind); other && loaded.error().status == 422) return refuse_file(*other);
+    if (const auto other = other_nature(bytes, kind); other && loaded.error().status == 422)
+      return refuse_file(*other);
     return loaded;
   }
   loaded->comments = file_comments(files);
-  if (const auto unit = stated_unit(loaded->comments); unit && !loaded->unit) loaded->unit = unit->value;
+  if (const auto unit = stated_unit(loaded->comments); unit && !loaded->unit)
+    loaded->unit = unit->value;
   if (const auto up = stated_up(loaded->comments); up && loaded->up.empty()) loaded->up = up->value;
   adopt_lone_picture(files, loaded->mesh, loaded->repairs);
   if (loaded->mesh.triangles.empty()) {
@@ -48,17 +50,20 @@ Result<LoadedMesh> load_mesh(InputFiles files, Progress& progress, const LoadOpt
     return parse(opened, progress);
   }();
   if (!loaded) return loaded;
-  if (auto repaired = repair(*loaded, progress, options); !repaired) return tl::unexpected(repaired.error());
+  if (auto repaired = repair(*loaded, progress, options); !repaired)
+    return tl::unexpected(repaired.error());
   return loaded;
 }
 
-Result<LoadedMesh> load_mesh(std::span<const InputFile> files, Progress& progress, const LoadOptions& options) {
+Result<LoadedMesh> load_mesh(std::span<const InputFile> files, Progress& progress,
+                             const LoadOptions& options) {
   auto opened = InputFiles::open(files, progress);
   if (!opened) return tl::unexpected(opened.error());
   return load_mesh(std::move(*opened), progress, options);
 }
 
-Result<LoadedMesh> load_mesh(const std::filesystem::path& file, const std::string& filename, Progress& progress) {
+Result<LoadedMesh> load_mesh(const std::filesystem::path& file, const std::string& filename,
+                             Progress& progress) {
   const InputFile one{filename, file};
   return load_mesh(std::span(&one, 1), progress);
 }
@@ -67,7 +72,8 @@ Result<LoadedMesh> load_mesh_bytes(std::span<const std::uint8_t> bytes, const st
                                    Progress& progress) {
   std::vector<InputFiles::Entry> entries;
   entries.push_back({filename, bytes, std::nullopt});
-  auto opened = InputFiles::of(std::move(entries), std::filesystem::temp_directory_path(), progress);
+  auto opened =
+      InputFiles::of(std::move(entries), std::filesystem::temp_directory_path(), progress);
   if (!opened) return tl::unexpected(opened.error());
   return load_mesh(std::move(*opened), progress);
 }

@@ -8,12 +8,17 @@
 
 namespace strata::mesh {
 
-// The steps behind `load_mesh`, for its own files only. The parsers give triangles whose indices are in range, in file
-// order, unwelded, with notes of what they ignored; `repair` brings them into the form that `load_mesh` promises.
-Result<LoadedMesh> parse_ply(const InputFiles& files, Progress& progress, std::size_t max_triangles = kMaxTriangles);
-Result<LoadedMesh> parse_obj(const InputFiles& files, Progress& progress, std::size_t max_triangles = kMaxTriangles);
-Result<LoadedMesh> parse_stl(const InputFiles& files, Progress& progress, std::size_t max_triangles = kMaxTriangles);
-Result<LoadedMesh> parse_gltf(const InputFiles& files, Progress& progress, std::size_t max_triangles = kMaxTriangles);
+// The steps behind `load_mesh`, for its own files only. The parsers give triangles whose indices
+// are in range, in file order, unwelded, with notes of what they ignored; `repair` brings them into
+// the form that `load_mesh` promises.
+Result<LoadedMesh> parse_ply(const InputFiles& files, Progress& progress,
+                             std::size_t max_triangles = kMaxTriangles);
+Result<LoadedMesh> parse_obj(const InputFiles& files, Progress& progress,
+                             std::size_t max_triangles = kMaxTriangles);
+Result<LoadedMesh> parse_stl(const InputFiles& files, Progress& progress,
+                             std::size_t max_triangles = kMaxTriangles);
+Result<LoadedMesh> parse_gltf(const InputFiles& files, Progress& progress,
+                              std::size_t max_triangles = kMaxTriangles);
 Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& options = {});
 
 // Parsers report up to this share of the whole, `repair` from there on.

@@ -21,7 +21,8 @@ constexpr std::uint64_t kTrianglesBetweenReports = 1u << 20;
 // Node transforms stay in double to the end: a translation may be a place on Earth.
 class GltfReader {
  public:
-  GltfReader(GltfDocument document, const InputFiles& files, Progress& progress, std::size_t max_triangles)
+  GltfReader(GltfDocument document, const InputFiles& files, Progress& progress,
+             std::size_t max_triangles)
       : document_(std::move(document)),
         files_(files),
         progress_(progress),
@@ -50,10 +51,12 @@ class GltfReader {
  private:
   tl::unexpected<Problem> nothing_to_see() const {
     const auto meshes = document_.root().find("meshes");
-    if (remarks_.points_and_lines > 0) return refuse_file("The glTF holds points or lines only, and no triangles.");
+    if (remarks_.points_and_lines > 0)
+      return refuse_file("The glTF holds points or lines only, and no triangles.");
     if (remarks_.without_positions > 0)
       return refuse_file("The meshes of the glTF have no POSITION, and so no triangles.");
-    if (meshes == document_.root().end() || meshes->empty()) return refuse_file("The glTF holds no meshes.");
+    if (meshes == document_.root().end() || meshes->empty())
+      return refuse_file("The glTF holds no meshes.");
     if (!mesh_shown_)
       return refuse_file(
           "The glTF holds meshes, but no node of its scene shows one. Export the scene with its objects.");
@@ -98,9 +101,11 @@ class GltfReader {
     std::vector<std::uint64_t> children;
     const auto list = parent.find(name);
     if (list == parent.end()) return children;
-    if (!list->is_array()) return refuse_file("In the glTF, \"" + std::string(name) + "\" is not a list.");
+    if (!list->is_array())
+      return refuse_file("In the glTF, \"" + std::string(name) + "\" is not a list.");
     for (const json& child : *list) {
-      if (!child.is_number_unsigned()) return refuse_file("In the glTF, a child of a node is not a number.");
+      if (!child.is_number_unsigned())
+        return refuse_file("In the glTF, a child of a node is not a number.");
       children.push_back(child.get<std::uint64_t>());
     }
     return children;
@@ -110,7 +115,8 @@ class GltfReader {
     auto open = roots();
     if (!open) return tl::unexpected(open.error());
     std::reverse(open->begin(), open->end());
-    std::vector<bool> seen(document_.root().contains("nodes") ? document_.root()["nodes"].size() : 0, false);
+    std::vector<bool> seen(
+        document_.root().contains("nodes") ? document_.root()["nodes"].size() : 0, false);
     while (!open->empty()) {
       const Visit visit = open->back();
       open->pop_back();
@@ -142,7 +148,8 @@ class GltfReader {
       if (!matrix) return tl::unexpected(matrix.error());
       return glm::make_mat4(matrix->data());
     }
-    const auto t = real_numbers(node, "translation", {0, 0, 0}), r = real_numbers(node, "rotation", {0, 0, 0, 1}),
+    const auto t = real_numbers(node, "translation", {0, 0, 0}),
+               r = real_numbers(node, "rotation", {0, 0, 0, 1}),
                s = real_numbers(node, "scale", {1, 1, 1});
     for (const auto* numbers : {&t, &r, &s})
       if (!*numbers) return tl::unexpected(numbers->error());
@@ -171,28 +178,34 @@ class GltfReader {
     return {};
   }
 
-  Result<void> add_primitive(const json& source, const glm::dmat4& world_from_node, const GltfInstances& instances) {
+  Result<void> add_primitive(const json& source, const glm::dmat4& world_from_node,
+                             const GltfInstances& instances) {
     GltfMaterial material;
     if (source.contains("material")) {
       const auto index = whole_number(source, "material");
       if (!index) return tl::unexpected(index.error());
       if (*index >= materials_.size())
-        return refuse_file("A primitive of the glTF names material " + std::to_string(*index) + ", but there are " +
-                           std::to_string(materials_.size()) + ".");
+        return refuse_file("A primitive of the glTF names material " + std::to_string(*index) +
+                           ", but there are " + std::to_string(materials_.size()) + ".");
       material = materials_[*index];
     }
-    const auto primitive = read_gltf_primitive(document_, source, material, max_triangles_, remarks_);
+    const auto primitive =
+        read_gltf_primitive(document_, source, material, max_triangles_, remarks_);
     if (!primitive) return tl::unexpected(primitive.error());
     if (!*primitive || (*primitive)->most_triangles() == 0) return {};
     const std::uint64_t triangles = (*primitive)->most_triangles(), count = instances.count();
-    // A few bytes can ask for any number of copies: how much they are is known before one is made. Of strips some triangles
-    // only join others.
-    const std::uint64_t room = max_triangles_ - std::min<std::uint64_t>(loaded_.mesh.triangle_count(), max_triangles_);
-    const std::uint64_t most = (*primitive)->mode == kTriangles ? room : 4 * std::uint64_t{max_triangles_};
+    // A few bytes can ask for any number of copies: how much they are is known before one is made.
+    // Of strips some triangles only join others.
+    const std::uint64_t room =
+        max_triangles_ - std::min<std::uint64_t>(loaded_.mesh.triangle_count(), max_triangles_);
+    const std::uint64_t most =
+        (*primitive)->mode == kTriangles ? room : 4 * std::uint64_t{max_triangles_};
     const std::uint64_t vertices = (*primitive)->positions.count;
-    if (count > 1 && (triangles > most / count || vertices > 3 * std::uint64_t{max_triangles_} / count))
+    if (count > 1 &&
+        (triangles > most / count || vertices > 3 * std::uint64_t{max_triangles_} / count))
       return refuse_file("The glTF repeats a mesh of " + std::to_string(triangles) + " triangles " +
-                         std::to_string(count) + " times, which makes more than " + std::to_string(max_triangles_) +
+                         std::to_string(count) + " times, which makes more than " +
+                         std::to_string(max_triangles_) +
                          " triangles. Reduce the mesh, or export the parts that you need.");
     std::uint64_t since_report = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -206,10 +219,12 @@ class GltfReader {
     return {};
   }
 
-  Result<void> append(const GltfPrimitive& primitive, const GltfMaterial& material, const glm::dmat4& world_from_mesh) {
+  Result<void> append(const GltfPrimitive& primitive, const GltfMaterial& material,
+                      const glm::dmat4& world_from_mesh) {
     TriangleMesh& mesh = loaded_.mesh;
     const std::size_t first = mesh.positions.size(), count = primitive.positions.count;
-    if (first + count >= 0xffffffffu) return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
+    if (first + count >= 0xffffffffu)
+      return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
     append_colors(primitive.colors, first, count);
     for (std::size_t i = 0; i < count; ++i)
       mesh.positions.emplace_back(world_from_mesh * glm::dvec4(primitive.position(i), 1));
@@ -219,21 +234,23 @@ class GltfReader {
     const auto corner = [&](std::uint32_t index) {
       FaceBuilder::Corner made{static_cast<std::uint32_t>(first) + index};
       if (has_uv)
-        made.uv = material.texture_uv(
-            {primitive.uvs.numbers[2 * std::size_t{index}], primitive.uvs.numbers[2 * std::size_t{index} + 1]});
+        made.uv = material.texture_uv({primitive.uvs.numbers[2 * std::size_t{index}],
+                                       primitive.uvs.numbers[2 * std::size_t{index} + 1]});
       return made;
     };
     const bool mirrored = glm::determinant(glm::dmat3(world_from_mesh)) < 0;
     const auto& indices = primitive.indices;
     const std::size_t step = primitive.mode == kTriangles ? 3 : 1;
     for (std::size_t i = 0; i + 2 < indices.size(); i += step) {
-      std::uint32_t a = indices[primitive.mode == kTriangleFan ? 0 : i], b = indices[i + 1], c = indices[i + 2];
+      std::uint32_t a = indices[primitive.mode == kTriangleFan ? 0 : i], b = indices[i + 1],
+                    c = indices[i + 2];
       if (primitive.mode == kTriangleStrip) {
         if (a == b || b == c || c == a) continue;  // they only join strips
         if (i % 2 == 1) std::swap(a, b);
       }
       if (mirrored) std::swap(b, c);
-      if (auto added = faces_.add_triangle(corner(a), corner(b), corner(c), has_uv); !added) return added;
+      if (auto added = faces_.add_triangle(corner(a), corner(b), corner(c), has_uv); !added)
+        return added;
     }
     return {};
   }
@@ -250,8 +267,8 @@ class GltfReader {
     const std::size_t n = static_cast<std::size_t>(colors.components);
     for (std::size_t i = 0; i < count; ++i) {
       const float* c = &colors.numbers[i * n];
-      out.push_back(pack_color(255 * srgb_of_linear(c[0]), 255 * srgb_of_linear(c[1]), 255 * srgb_of_linear(c[2]),
-                               n == 4 ? 255 * c[3] : 255));
+      out.push_back(pack_color(255 * srgb_of_linear(c[0]), 255 * srgb_of_linear(c[1]),
+                               255 * srgb_of_linear(c[2]), n == 4 ? 255 * c[3] : 255));
     }
   }
 
@@ -270,7 +287,8 @@ class GltfReader {
 
 }  // namespace
 
-Result<LoadedMesh> parse_gltf(const InputFiles& files, Progress& progress, std::size_t max_triangles) {
+Result<LoadedMesh> parse_gltf(const InputFiles& files, Progress& progress,
+                              std::size_t max_triangles) {
   auto document = GltfDocument::open(files);
   if (!document) return tl::unexpected(document.error());
   return GltfReader(std::move(*document), files, progress, max_triangles).read();

@@ -17,8 +17,8 @@ constexpr std::size_t kMaxNumbers = 8;
 constexpr std::size_t kMostLibraries = 100, kMostNames = 10000;
 constexpr int kTextureToFind = 0;  // of a UDIM material until its tiles are known
 
-// Three passes: what there is, points, then faces, so that a face may name points that follow it and polygons can be split at
-// once.
+// Three passes: what there is, points, then faces, so that a face may name points that follow it
+// and polygons can be split at once.
 class ObjReader {
  public:
   ObjReader(const InputFiles& files, Progress& progress, std::size_t max_triangles)
@@ -34,10 +34,13 @@ class ObjReader {
     read_materials();
     if (auto points = read_points(); !points) return tl::unexpected(points.error());
     if (auto faces = read_faces(); !faces) return tl::unexpected(faces.error());
-    if (colored_ > 0) note(loaded_.repairs, "vertices without colour", loaded_.mesh.positions.size() - colored_);
+    if (colored_ > 0)
+      note(loaded_.repairs, "vertices without colour", loaded_.mesh.positions.size() - colored_);
     faces_.report(loaded_.repairs);
-    note(loaded_.repairs, "faces that name texture coordinates which the file does not have", without_named_uv_);
-    note(loaded_.repairs, "faces that name normals which the file does not have", without_named_normal_);
+    note(loaded_.repairs, "faces that name texture coordinates which the file does not have",
+         without_named_uv_);
+    note(loaded_.repairs, "faces that name normals which the file does not have",
+         without_named_normal_);
     note(loaded_.repairs, "materials without a definition", undefined_.size());
     UdimTiles::resolve(shelf_, references_, loaded_.mesh);
     note(loaded_.repairs, "ignored lines, points, curves and free-form surfaces", ignored_);
@@ -51,19 +54,22 @@ class ObjReader {
     std::string_view line;
     std::uint64_t positions = 0, uvs = 0, faces = 0;
     for (std::uint64_t n = 0; lines.next(line); ++n) {
-      if (n % kLinesBetweenReports == 0 && !report(0, 0.1 * lines.fraction())) return cancelled_problem();
+      if (n % kLinesBetweenReports == 0 && !report(0, 0.1 * lines.fraction()))
+        return cancelled_problem();
       const std::string_view keyword = next_word(line);
       positions += keyword == "v";
       uvs += keyword == "vt";
       normals_ += keyword == "vn";
       faces += keyword == "f";
-      if (keyword == "mtllib" && libraries_.size() < kMostLibraries) libraries_.emplace_back(rest_of(line));
+      if (keyword == "mtllib" && libraries_.size() < kMostLibraries)
+        libraries_.emplace_back(rest_of(line));
     }
     if (positions >= 0xffffffffu || uvs >= 0xffffffffu)
       return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
     if (faces == 0)
-      return refuse_file(positions > 0 ? "The OBJ has vertices but no faces: a point cloud cannot carry layers."
-                                       : "The OBJ has neither vertices nor faces: it is empty, or no OBJ file.");
+      return refuse_file(
+          positions > 0 ? "The OBJ has vertices but no faces: a point cloud cannot carry layers."
+                        : "The OBJ has neither vertices nor faces: it is empty, or no OBJ file.");
     // Lines that are shorter than "v 0 0 0", "vt 0" and "f 1 2 3" are refused or make nothing.
     loaded_.mesh.positions.reserve(std::min<std::uint64_t>(positions, bytes_.size() / 8 + 1));
     uvs_.reserve(std::min<std::uint64_t>(uvs, bytes_.size() / 5 + 1));
@@ -77,8 +83,8 @@ class ObjReader {
     return line;
   }
 
-  // A library's name may hold blanks, or several may stand in one line. Where none is named, the only .mtl that was sent along
-  // is meant.
+  // A library's name may hold blanks, or several may stand in one line. Where none is named, the
+  // only .mtl that was sent along is meant.
   std::vector<const InputFiles::Entry*> find_libraries() {
     std::vector<const InputFiles::Entry*> found;
     for (const std::string& library : libraries_) {
@@ -103,14 +109,16 @@ class ObjReader {
 
   void read_materials() {
     for (const InputFiles::Entry* library : find_libraries()) {
-      for (MtlMaterial& mtl : parse_mtl(library->bytes, kNoMaterial - loaded_.mesh.materials.size())) {
+      for (MtlMaterial& mtl :
+           parse_mtl(library->bytes, kNoMaterial - loaded_.mesh.materials.size())) {
         const auto index = static_cast<std::uint16_t>(loaded_.mesh.materials.size());
         if (!material_of_name_.emplace(mtl.name, index).second) continue;
         Material material{.name = printable(mtl.name), .color = mtl.color};
         if (mtl.clamp) material.wrap_u = material.wrap_v = Wrap::clamp;
         if (!mtl.texture.empty()) {
           material.color = glm::vec4(1);  // writers leave anything in Kd beside a picture
-          material.texture = UdimTiles::is_pattern(mtl.texture) ? kTextureToFind : shelf_.of_file(mtl.texture);
+          material.texture =
+              UdimTiles::is_pattern(mtl.texture) ? kTextureToFind : shelf_.of_file(mtl.texture);
         }
         loaded_.mesh.materials.push_back(std::move(material));
         references_.push_back(mtl.texture);
@@ -121,20 +129,24 @@ class ObjReader {
 
   void use_material(std::string_view name) {
     const auto found = material_of_name_.find(name);
-    uv_transform_ = found == material_of_name_.end() ? UvTransform{} : uv_transforms_[found->second];
+    uv_transform_ =
+        found == material_of_name_.end() ? UvTransform{} : uv_transforms_[found->second];
     faces_.use_material(found == material_of_name_.end() ? kNoMaterial : found->second);
-    if (found == material_of_name_.end() && undefined_.size() < kMostNames) undefined_.emplace(name, 0);
+    if (found == material_of_name_.end() && undefined_.size() < kMostNames)
+      undefined_.emplace(name, 0);
   }
 
   Result<void> read_points() {
     ObjLines lines(bytes_);
     std::string_view line;
     for (std::uint64_t n = 0; lines.next(line); ++n) {
-      if (n % kLinesBetweenReports == 0 && !report(0.1, 0.5 * lines.fraction())) return cancelled_problem();
+      if (n % kLinesBetweenReports == 0 && !report(0.1, 0.5 * lines.fraction()))
+        return cancelled_problem();
       const std::string_view keyword = next_word(line);
       if (keyword != "v" && keyword != "vt") continue;
       if (!read_numbers(line))
-        return fault(lines, "\"" + std::string(keyword) + "\" is followed by something that is not a number");
+        return fault(lines, "\"" + std::string(keyword) +
+                                "\" is followed by something that is not a number");
       if (keyword == "vt") {
         if (count_ < 1) return fault(lines, "\"vt\" needs a number");
         uvs_.emplace_back(numbers_[0], count_ > 1 ? numbers_[1] : 0.0);
@@ -169,7 +181,8 @@ class ObjReader {
     std::string_view line;
     std::vector<FaceBuilder::Corner> corners;
     for (std::uint64_t n = 0; lines.next(line); ++n) {
-      if (n % kLinesBetweenReports == 0 && !report(0.6, 0.4 * lines.fraction())) return cancelled_problem();
+      if (n % kLinesBetweenReports == 0 && !report(0.6, 0.4 * lines.fraction()))
+        return cancelled_problem();
       const std::string_view keyword = next_word(line);
       if (keyword == "v") {
         ++positions_so_far_;
@@ -196,16 +209,19 @@ class ObjReader {
         if (auto added = faces_.add(corners, has_uv); !added) return added;
       } else if (keyword == "usemtl") {
         use_material(rest_of(line));
-      } else if (keyword == "l" || keyword == "p" || keyword == "curv" || keyword == "curv2" || keyword == "surf") {
+      } else if (keyword == "l" || keyword == "p" || keyword == "curv" || keyword == "curv2" ||
+                 keyword == "surf") {
         ++ignored_;
       }
     }
     return {};
   }
 
-  // v, v/vt, v//vn or v/vt/vn; counted from 1, or backwards from the last that stands above the face. Texture coordinates
-  // and normals that are not there leave a face as it would be without them: writers name them out of habit.
-  Result<FaceBuilder::Corner> read_corner(const ObjLines& lines, std::string_view word, bool& has_uv) {
+  // v, v/vt, v//vn or v/vt/vn; counted from 1, or backwards from the last that stands above the
+  // face. Texture coordinates and normals that are not there leave a face as it would be without
+  // them: writers name them out of habit.
+  Result<FaceBuilder::Corner> read_corner(const ObjLines& lines, std::string_view word,
+                                          bool& has_uv) {
     const std::size_t slash = word.find('/');
     FaceBuilder::Corner corner;
     std::int64_t index = 0;
@@ -213,9 +229,11 @@ class ObjReader {
       return fault(lines, "\"" + printable(word) + "\" is no face corner");
     const auto position = resolve(index, positions_so_far_, loaded_.mesh.positions.size());
     if (!position) {
-      return fault(lines, "the face names vertex " + std::to_string(index) + ", but the file has " +
-                              std::to_string(loaded_.mesh.positions.size()) + " vertices" +
-                              (index < 0 ? " (" + std::to_string(positions_so_far_) + " above this line)" : ""));
+      return fault(
+          lines,
+          "the face names vertex " + std::to_string(index) + ", but the file has " +
+              std::to_string(loaded_.mesh.positions.size()) + " vertices" +
+              (index < 0 ? " (" + std::to_string(positions_so_far_) + " above this line)" : ""));
     }
     corner.position = static_cast<std::uint32_t>(*position);
     std::string_view uv_word, normal_word;
@@ -226,13 +244,15 @@ class ObjReader {
       uv_word = uv_word.substr(0, second);
     }
     // Normals are not used, and so not looked at further.
-    if (!normal_word.empty() && !(parse_integer(normal_word, index) && resolve(index, normals_so_far_, normals_)))
+    if (!normal_word.empty() &&
+        !(parse_integer(normal_word, index) && resolve(index, normals_so_far_, normals_)))
       missing_normal_ = true;
     if (uv_word.empty()) {
       has_uv = false;
       return corner;
     }
-    if (!parse_integer(uv_word, index)) return fault(lines, "\"" + printable(word) + "\" is no face corner");
+    if (!parse_integer(uv_word, index))
+      return fault(lines, "\"" + printable(word) + "\" is no face corner");
     const auto uv = resolve(index, uvs_so_far_, uvs_.size());
     if (!uv) {
       has_uv = false;
@@ -243,9 +263,12 @@ class ObjReader {
     return corner;
   }
 
-  static std::optional<std::uint64_t> resolve(std::int64_t index, std::uint64_t so_far, std::uint64_t count) {
-    if (index > 0 && static_cast<std::uint64_t>(index) <= count) return static_cast<std::uint64_t>(index) - 1;
-    if (index < 0 && index >= -static_cast<std::int64_t>(so_far)) return so_far - static_cast<std::uint64_t>(-index);
+  static std::optional<std::uint64_t> resolve(std::int64_t index, std::uint64_t so_far,
+                                              std::uint64_t count) {
+    if (index > 0 && static_cast<std::uint64_t>(index) <= count)
+      return static_cast<std::uint64_t>(index) - 1;
+    if (index < 0 && index >= -static_cast<std::int64_t>(so_far))
+      return so_far - static_cast<std::uint64_t>(-index);
     return std::nullopt;
   }
 
@@ -269,7 +292,8 @@ class ObjReader {
   }
 
   bool report(double done, double share) {
-    progress_.report(kParsedShare * (done + share), done < 0.6 ? "Reading vertices" : "Reading faces");
+    progress_.report(kParsedShare * (done + share),
+                     done < 0.6 ? "Reading vertices" : "Reading faces");
     return !progress_.cancelled();
   }
 
@@ -304,7 +328,8 @@ class ObjReader {
 
 }  // namespace
 
-Result<LoadedMesh> parse_obj(const InputFiles& files, Progress& progress, std::size_t max_triangles) {
+Result<LoadedMesh> parse_obj(const InputFiles& files, Progress& progress,
+                             std::size_t max_triangles) {
   return ObjReader(files, progress, max_triangles).read();
 }
 

@@ -62,9 +62,11 @@ class PlyReader {
         element.properties[*z].count_type) {
       return refuse_file("The element \"vertex\" has no properties x, y and z.");
     }
-    if (element.count >= 0xffffffffu) return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
+    if (element.count >= 0xffffffffu)
+      return refuse_file("More than 4 294 967 294 vertices; split the mesh.");
     const PlyColorProperties colors = find_ply_colors(element);
-    const PlyType color_type = colors.present() ? element.properties[colors.rgba[0]].type : PlyType::u8;
+    const PlyType color_type =
+        colors.present() ? element.properties[colors.rgba[0]].type : PlyType::u8;
     const auto [u, v] = find_uv(element);
     has_vertices_ = true;
     TriangleMesh& mesh = loaded_.mesh;
@@ -74,10 +76,12 @@ class PlyReader {
     RealColorScale real_scale;
     std::vector<double> values(element.properties.size());
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      if (i % kElementsBetweenReports == 0 && !report("Reading vertices")) return cancelled_problem();
+      if (i % kElementsBetweenReports == 0 && !report("Reading vertices"))
+        return cancelled_problem();
       for (std::size_t k = 0; k < values.size(); ++k) {
         const PlyProperty& property = element.properties[k];
-        const bool read = property.count_type ? skip_list(property) : source_.value(property.type, values[k]);
+        const bool read =
+            property.count_type ? skip_list(property) : source_.value(property.type, values[k]);
         if (!read) return broken("vertex", i, element.count);
       }
       source_.end_element();
@@ -85,9 +89,11 @@ class PlyReader {
       if (u >= 0) vertex_uvs_.emplace_back(values[u], values[v]);
       if (!colors.present()) continue;
       double rgba[4] = {0, 0, 0, 255};
-      for (int k = 0; k < (colors.alpha() ? 4 : 3); ++k) rgba[k] = to_byte_scale(color_type, values[colors.rgba[k]]);
-      mesh.vertex_colors.push_back(is_real(color_type) ? real_scale.pack(rgba, colors.alpha(), mesh.vertex_colors)
-                                                       : pack_color(rgba[0], rgba[1], rgba[2], rgba[3]));
+      for (int k = 0; k < (colors.alpha() ? 4 : 3); ++k)
+        rgba[k] = to_byte_scale(color_type, values[colors.rgba[k]]);
+      mesh.vertex_colors.push_back(is_real(color_type)
+                                       ? real_scale.pack(rgba, colors.alpha(), mesh.vertex_colors)
+                                       : pack_color(rgba[0], rgba[1], rgba[2], rgba[3]));
     }
     return {};
   }
@@ -97,7 +103,8 @@ class PlyReader {
         {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}};
     for (const auto& [first, second] : kNames) {
       const auto u = element.find({first}), v = element.find({second});
-      if (u && v && !element.properties[*u].count_type && !element.properties[*v].count_type) return {*u, *v};
+      if (u && v && !element.properties[*u].count_type && !element.properties[*v].count_type)
+        return {*u, *v};
     }
     return {-1, -1};
   }
@@ -111,11 +118,13 @@ class PlyReader {
     const PlyProperty& index_list = element.properties[*indices];
     // No triangle takes fewer bytes than its list of three.
     const std::uint64_t least =
-        source_.rest() / (1 + 3 * (header_.encoding == PlyEncoding::ascii ? 2 : bytes_of(index_list.type)));
+        source_.rest() /
+        (1 + 3 * (header_.encoding == PlyEncoding::ascii ? 2 : bytes_of(index_list.type)));
     faces_.reserve(std::min(element.count, least));
     const auto texcoords = element.find({"texcoord", "texcoords"});
     const auto texnumber = element.find({"texnumber"});
-    const auto colors = loaded_.mesh.vertex_colors.empty() ? find_ply_colors(element) : PlyColorProperties{};
+    const auto colors =
+        loaded_.mesh.vertex_colors.empty() ? find_ply_colors(element) : PlyColorProperties{};
     if (colors.present()) face_colors_.begin(loaded_.mesh.positions.size());
 
     std::vector<FaceBuilder::Corner> corners;
@@ -130,24 +139,28 @@ class PlyReader {
           if (auto read = read_indices(property, i, element.count, corners); !read) return read;
         } else if (texcoords && static_cast<int>(k) == *texcoords && property.count_type) {
           if (!read_uv_list(property)) return broken("face", i, element.count);
-        } else if (!(property.count_type ? skip_list(property) : source_.value(property.type, values[k]))) {
+        } else if (!(property.count_type ? skip_list(property)
+                                         : source_.value(property.type, values[k]))) {
           return broken("face", i, element.count);
         }
       }
       source_.end_element();
       if (!uv_list_.empty() && uv_list_.size() == 2 * corners.size()) {
         has_uv = true;
-        for (std::size_t k = 0; k < corners.size(); ++k) corners[k].uv = {uv_list_[2 * k], uv_list_[2 * k + 1]};
+        for (std::size_t k = 0; k < corners.size(); ++k)
+          corners[k].uv = {uv_list_[2 * k], uv_list_[2 * k + 1]};
       }
       if (colors.present()) face_colors_.add(element, colors, values, corners);
-      if (texnumber && !element.properties[*texnumber].count_type) faces_.use_material(material_of(values[*texnumber]));
+      if (texnumber && !element.properties[*texnumber].count_type)
+        faces_.use_material(material_of(values[*texnumber]));
       if (auto added = faces_.add(corners, has_uv); !added) return added;
     }
     return {};
   }
 
   static std::uint16_t material_of(double texnumber) {
-    return texnumber >= 0 && texnumber < kNoMaterial ? static_cast<std::uint16_t>(texnumber) : kNoMaterial;
+    return texnumber >= 0 && texnumber < kNoMaterial ? static_cast<std::uint16_t>(texnumber)
+                                                     : kNoMaterial;
   }
 
   Result<void> read_indices(const PlyProperty& list, std::uint64_t face, std::uint64_t faces,
@@ -156,11 +169,13 @@ class PlyReader {
     std::int64_t count = 0, index = 0;
     if (!read_count(list, count)) return broken("face", face, faces);
     if (static_cast<std::uint64_t>(count) > kMaxPolygonCorners) {
-      return FaceBuilder::too_many_corners("face " + std::to_string(face) + " (" + source_.place() + ")");
+      return FaceBuilder::too_many_corners("face " + std::to_string(face) + " (" + source_.place() +
+                                           ")");
     }
     for (std::int64_t k = 0; k < count; ++k) {
       if (!source_.integer(list.type, index)) return broken("face", face, faces);
-      if (auto checked = check_index("Face " + std::to_string(face), index); !checked) return checked;
+      if (auto checked = check_index("Face " + std::to_string(face), index); !checked)
+        return checked;
       FaceBuilder::Corner corner{static_cast<std::uint32_t>(index)};
       if (!vertex_uvs_.empty()) corner.uv = vertex_uvs_[corner.position];
       corners.push_back(corner);
@@ -183,8 +198,8 @@ class PlyReader {
     return true;
   }
 
-  // Strips end at a negative index; every second triangle of a strip turns the other way. Triangles with a repeated
-  // corner only join strips and are no fault.
+  // Strips end at a negative index; every second triangle of a strip turns the other way. Triangles
+  // with a repeated corner only join strips and are no fault.
   Result<void> read_strips(const PlyElement& element) {
     const auto indices = element.find({"vertex_indices", "vertex_index"});
     if (!indices || !element.properties[*indices].count_type) {
@@ -196,7 +211,8 @@ class PlyReader {
         double ignored = 0;
         if (static_cast<int>(k) == *indices) {
           if (auto read = read_strip_list(property, i, element.count); !read) return read;
-        } else if (!(property.count_type ? skip_list(property) : source_.value(property.type, ignored))) {
+        } else if (!(property.count_type ? skip_list(property)
+                                         : source_.value(property.type, ignored))) {
           return broken("tristrips", i, element.count);
         }
       }
@@ -218,7 +234,8 @@ class PlyReader {
         length = 0;
         continue;
       }
-      if (auto checked = check_index("Triangle strip " + std::to_string(strip), index); !checked) return checked;
+      if (auto checked = check_index("Triangle strip " + std::to_string(strip), index); !checked)
+        return checked;
       FaceBuilder::Corner corner{static_cast<std::uint32_t>(index)};
       if (!vertex_uvs_.empty()) corner.uv = vertex_uvs_[corner.position];
       last = {last[1], last[2], corner};
@@ -227,7 +244,8 @@ class PlyReader {
       if (last[0].position == last[1].position || last[1].position == last[2].position ||
           last[0].position == last[2].position)
         continue;
-      auto added = faces_.add_triangle(last[odd ? 1 : 0], last[odd ? 0 : 1], last[2], !vertex_uvs_.empty());
+      auto added =
+          faces_.add_triangle(last[odd ? 1 : 0], last[odd ? 0 : 1], last[2], !vertex_uvs_.empty());
       if (!added) return added;
     }
     return {};
@@ -236,7 +254,8 @@ class PlyReader {
   Result<void> skip_element(const PlyElement& element) {
     if (element.properties.empty()) return {};
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      if (i % kElementsBetweenReports == 0 && !report("Reading " + element.name)) return cancelled_problem();
+      if (i % kElementsBetweenReports == 0 && !report("Reading " + element.name))
+        return cancelled_problem();
       for (const PlyProperty& property : element.properties) {
         if (!(property.count_type ? skip_list(property) : source_.skip(property.type, 1))) {
           return broken(element.name, i, element.count);
@@ -266,13 +285,17 @@ class PlyReader {
                        std::to_string(static_cast<std::int64_t>(vertices) - 1) + ").");
   }
 
-  tl::unexpected<Problem> broken(const std::string& element, std::uint64_t index, std::uint64_t count) {
-    const std::string where =
-        element + " " + std::to_string(index) + " of " + std::to_string(count) + " (" + source_.place() + ")";
-    if (list_too_long_) return refuse_file("The list of " + where + " has a length that the file cannot hold.");
+  tl::unexpected<Problem> broken(const std::string& element, std::uint64_t index,
+                                 std::uint64_t count) {
+    const std::string where = element + " " + std::to_string(index) + " of " +
+                              std::to_string(count) + " (" + source_.place() + ")";
+    if (list_too_long_)
+      return refuse_file("The list of " + where + " has a length that the file cannot hold.");
     if (source_.fault() == PlyFault::not_a_number)
-      return refuse_file("In " + where + " stands something that is not the number expected there.");
-    return refuse_file("The file ends in " + where + ": it is cut short. Export or upload it again.");
+      return refuse_file("In " + where +
+                         " stands something that is not the number expected there.");
+    return refuse_file("The file ends in " + where +
+                       ": it is cut short. Export or upload it again.");
   }
 
   bool report(const std::string& message) {
@@ -298,14 +321,17 @@ class PlyReader {
 
 }  // namespace
 
-Result<LoadedMesh> parse_ply(const InputFiles& files, Progress& progress, std::size_t max_triangles) {
+Result<LoadedMesh> parse_ply(const InputFiles& files, Progress& progress,
+                             std::size_t max_triangles) {
   const auto bytes = files.scan().bytes;
   const Result<PlyHeader> header = parse_ply_header(bytes);
   if (!header) return tl::unexpected(header.error());
   if (header->encoding == PlyEncoding::ascii) {
-    return PlyReader(PlyAsciiSource(bytes, *header), *header, files, progress, max_triangles).read();
+    return PlyReader(PlyAsciiSource(bytes, *header), *header, files, progress, max_triangles)
+        .read();
   }
-  const PlyBinarySource source(bytes, header->data_offset, header->encoding == PlyEncoding::big_endian);
+  const PlyBinarySource source(bytes, header->data_offset,
+                               header->encoding == PlyEncoding::big_endian);
   return PlyReader(source, *header, files, progress, max_triangles).read();
 }
 

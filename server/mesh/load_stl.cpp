@@ -21,8 +21,9 @@ class StlReader {
   StlReader(std::span<const std::uint8_t> bytes, Progress& progress, std::size_t max_triangles)
       : bytes_(bytes), plain_(bytes), progress_(progress), faces_(loaded_.mesh, max_triangles) {}
 
-  // Many binary files begin with "solid", as text does, and text may begin with anything: the size decides where it is that
-  // of a binary file to the byte, and otherwise whether there are bytes that no text has.
+  // Many binary files begin with "solid", as text does, and text may begin with anything: the size
+  // decides where it is that of a binary file to the byte, and otherwise whether there are bytes
+  // that no text has.
   Result<LoadedMesh> read() {
     const auto count = binary_count();
     const std::uint64_t room = count ? (bytes_.size() - kHeaderBytes - 4) / kTriangleBytes : 0;
@@ -63,20 +64,24 @@ class StlReader {
 
   Result<void> read_binary(std::optional<std::uint64_t> count, std::uint64_t room) {
     if (!count)
-      return refuse_file("This is not an STL file: it is no text, and shorter than the header of a binary one.");
+      return refuse_file(
+          "This is not an STL file: it is no text, and shorter than the header of a binary one.");
     if (*count > room)
       return refuse_file("The STL, a binary one, announces " + std::to_string(*count) +
                          " triangles, but has bytes for " + std::to_string(room) +
                          ": it is cut short, or not an STL. Export or upload it again.");
-    if (*count == 0) return refuse_file("The STL, a binary one, announces no triangle: it is empty.");
+    if (*count == 0)
+      return refuse_file("The STL, a binary one, announces no triangle: it is empty.");
     loaded_.mesh.positions.reserve(3 * *count);
     faces_.reserve(*count);
     const std::uint8_t* at = bytes_.data() + kHeaderBytes + 4;
     for (std::uint64_t i = 0; i < *count; ++i, at += kTriangleBytes) {
-      if (i % kTrianglesBetweenReports == 0 && !report(double(i) / double(*count))) return cancelled_problem();
+      if (i % kTrianglesBetweenReports == 0 && !report(double(i) / double(*count)))
+        return cancelled_problem();
       std::array<float, 9> p;
       std::memcpy(p.data(), at + 12, sizeof p);
-      if (auto added = add({glm::dvec3(p[0], p[1], p[2]), glm::dvec3(p[3], p[4], p[5]), glm::dvec3(p[6], p[7], p[8])});
+      if (auto added = add({glm::dvec3(p[0], p[1], p[2]), glm::dvec3(p[3], p[4], p[5]),
+                            glm::dvec3(p[6], p[7], p[8])});
           !added)
         return added;
     }
@@ -85,8 +90,8 @@ class StlReader {
     return {};
   }
 
-  // solid NAME { facet normal x y z  outer loop  vertex x y z ×3  endloop  endfacet } endsolid, in letters of any case: only the
-  // vertices count.
+  // solid NAME { facet normal x y z  outer loop  vertex x y z ×3  endloop  endfacet } endsolid, in
+  // letters of any case: only the vertices count.
   Result<void> read_text() {
     std::vector<glm::dvec3> loop;
     std::string_view rest = text_;
@@ -99,7 +104,8 @@ class StlReader {
       if (word.empty()) break;
       if (begins_comment(word)) {
         skip_line(rest);
-      } else if (is_word(word, "solid") || is_word(word, "endsolid")) {  // their names may hold anything
+      } else if (is_word(word, "solid") || is_word(word, "endsolid")) {
+        // their names may hold anything
         any_word = true;
         skip_line(rest);
       } else if (is_word(word, "vertex")) {
@@ -108,7 +114,8 @@ class StlReader {
         const std::string_view numbers = rest;
         for (int k = 0; k < 3; ++k)
           if (!parse_number(next_word(rest), point[k]))
-            return fault(numbers, "a vertex without three numbers; the file is damaged or cut short");
+            return fault(numbers,
+                         "a vertex without three numbers; the file is damaged or cut short");
         if (loop.size() == kMaxPolygonCorners) return FaceBuilder::too_many_corners(place(rest));
         loop.push_back(point);
       } else if (is_word(word, "endfacet") || is_word(word, "endloop")) {
@@ -119,9 +126,12 @@ class StlReader {
         if (!loop.empty()) return fault(rest, "a facet that does not end");
       }
     }
-    if (!loop.empty()) return refuse_file("The STL ends within a facet: it is cut short. Export or upload it again.");
+    if (!loop.empty())
+      return refuse_file(
+          "The STL ends within a facet: it is cut short. Export or upload it again.");
     if (!any_word) return refuse_file("This is not an STL file: it is text without a facet.");
-    if (loaded_.mesh.triangles.empty()) return refuse_file("The STL, a text, holds no triangle: it is empty.");
+    if (loaded_.mesh.triangles.empty())
+      return refuse_file("The STL, a text, holds no triangle: it is empty.");
     return {};
   }
 
@@ -136,7 +146,9 @@ class StlReader {
     }
     return faces_.add(corners_, false);
   }
-  Result<void> add(std::initializer_list<glm::dvec3> loop) { return add(std::span(loop.begin(), loop.size())); }
+  Result<void> add(std::initializer_list<glm::dvec3> loop) {
+    return add(std::span(loop.begin(), loop.size()));
+  }
 
   static std::string_view next_word(std::string_view& rest) {
     std::size_t start = 0;
@@ -154,7 +166,8 @@ class StlReader {
     });
   }
   static bool begins_comment(std::string_view word) {
-    return word.front() == '#' || word.front() == ';' || word.front() == '!' || word.starts_with("//");
+    return word.front() == '#' || word.front() == ';' || word.front() == '!' ||
+           word.starts_with("//");
   }
   static void skip_line(std::string_view& rest) {
     rest.remove_prefix(std::min(rest.find_first_of("\r\n"), rest.size()));
@@ -181,7 +194,8 @@ class StlReader {
 
   const std::span<const std::uint8_t> bytes_;
   const PlainText plain_;
-  const std::string_view text_{reinterpret_cast<const char*>(plain_.bytes().data()), plain_.bytes().size()};
+  const std::string_view text_{reinterpret_cast<const char*>(plain_.bytes().data()),
+                               plain_.bytes().size()};
   Progress& progress_;
   LoadedMesh loaded_;
   FaceBuilder faces_;
@@ -190,7 +204,8 @@ class StlReader {
 
 }  // namespace
 
-Result<LoadedMesh> parse_stl(const InputFiles& files, Progress& progress, std::size_t max_triangles) {
+Result<LoadedMesh> parse_stl(const InputFiles& files, Progress& progress,
+                             std::size_t max_triangles) {
   return StlReader(files.scan().bytes, progress, max_triangles).read();
 }
 

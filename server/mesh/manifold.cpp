@@ -19,8 +19,12 @@ constexpr double kSliverHeight = 1e-5;
 constexpr std::size_t kMostShells = 64;  // that may hold hollows
 constexpr std::size_t kMostSides = 64;   // of an edge that is mended; beyond it all are cut
 
-std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-std::uint32_t corner_before(std::uint32_t corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
+std::uint32_t next_corner(std::uint32_t corner) {
+  return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+std::uint32_t corner_before(std::uint32_t corner) {
+  return corner % 3 == 0 ? corner + 2 : corner - 1;
+}
 
 class Manifold {
  public:
@@ -55,7 +59,9 @@ class Manifold {
   }
 
  private:
-  const glm::dvec3& point(std::uint32_t corner) const { return mesh_.positions[mesh_.triangles[corner]]; }
+  const glm::dvec3& point(std::uint32_t corner) const {
+    return mesh_.positions[mesh_.triangles[corner]];
+  }
 
   // Whether the triangle is nothing but this side of it, its longest, up to rounding.
   bool is_sliver_along(std::uint32_t corner) const {
@@ -69,27 +75,30 @@ class Manifold {
 
   void drop_slivers() {
     std::vector<bool> dropped(mesh_.triangle_count(), false);
-    for_each_edge(mesh_.triangles, mesh_.positions.size(), [&](std::uint32_t, std::span<const HalfEdge> sides) {
-      std::size_t left = 0;
-      for (const HalfEdge& side : sides) left += !dropped[side.triangle()];
-      for (const HalfEdge& side : sides) {
-        if (left <= 2) return;
-        if (dropped[side.triangle()] || !is_sliver_along(side.corner)) continue;
-        dropped[side.triangle()] = true;
-        ++slivers_;
-        --left;
-      }
-    });
-    if (slivers_ > 0) keep_triangles(mesh_, [&](std::size_t triangle) { return !dropped[triangle]; });
+    for_each_edge(mesh_.triangles, mesh_.positions.size(),
+                  [&](std::uint32_t, std::span<const HalfEdge> sides) {
+                    std::size_t left = 0;
+                    for (const HalfEdge& side : sides) left += !dropped[side.triangle()];
+                    for (const HalfEdge& side : sides) {
+                      if (left <= 2) return;
+                      if (dropped[side.triangle()] || !is_sliver_along(side.corner)) continue;
+                      dropped[side.triangle()] = true;
+                      ++slivers_;
+                      --left;
+                    }
+                  });
+    if (slivers_ > 0)
+      keep_triangles(mesh_, [&](std::size_t triangle) { return !dropped[triangle]; });
   }
 
   void find_mates() {
     mate_.assign(mesh_.triangles.size(), kNone);
     std::vector<CrowdedEdge> crowded;
-    for_each_edge(mesh_.triangles, mesh_.positions.size(), [&](std::uint32_t low, std::span<const HalfEdge> sides) {
-      if (sides.size() == 2) join(sides[0].corner, sides[1].corner);
-      if (sides.size() > 2) crowded.push_back({low, {sides.begin(), sides.end()}});
-    });
+    for_each_edge(mesh_.triangles, mesh_.positions.size(),
+                  [&](std::uint32_t low, std::span<const HalfEdge> sides) {
+                    if (sides.size() == 2) join(sides[0].corner, sides[1].corner);
+                    if (sides.size() > 2) crowded.push_back({low, {sides.begin(), sides.end()}});
+                  });
     crowded_edges_ = crowded.size();
     for (const CrowdedEdge& edge : crowded) pair_up(edge);
   }
@@ -117,7 +126,8 @@ class Manifold {
       for (std::size_t k = i + 1; k < edge.sides.size(); ++k) {
         const HalfEdge &a = edge.sides[i], &b = edge.sides[k];
         if (a.upward != b.upward)
-          pairs.push_back({is_loose(a) + is_loose(b), flatness(edge.low, a, b), a.corner, b.corner});
+          pairs.push_back(
+              {is_loose(a) + is_loose(b), flatness(edge.low, a, b), a.corner, b.corner});
       }
     std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) {
       return x.loose != y.loose ? x.loose < y.loose : x.flatness > y.flatness;
@@ -131,7 +141,8 @@ class Manifold {
     const glm::dvec3 from = mesh_.positions[low], axis = mesh_.positions[a.other_end] - from;
     const auto away = [&](const HalfEdge& side) {
       const glm::dvec3 to = point(corner_before(side.corner)) - from;
-      const glm::dvec3 across = to - axis * (glm::dot(to, axis) / std::max(glm::dot(axis, axis), 1e-300));
+      const glm::dvec3 across =
+          to - axis * (glm::dot(to, axis) / std::max(glm::dot(axis, axis), 1e-300));
       return across / std::max(glm::length(across), 1e-300);
     };
     return -glm::dot(away(a), away(b));
@@ -197,7 +208,8 @@ class Manifold {
     double volume = 0;                     // six times, signed
     glm::dvec3 low{INFINITY}, high{-INFINITY};
     bool holds(const Shell& other) const {
-      return glm::all(glm::lessThan(low, other.low)) && glm::all(glm::greaterThan(high, other.high));
+      return glm::all(glm::lessThan(low, other.low)) &&
+             glm::all(glm::greaterThan(high, other.high));
     }
   };
 
@@ -220,15 +232,18 @@ class Manifold {
     std::vector<const Shell*> largest;
     for (const Shell& shell : shells) largest.push_back(&shell);
     const std::size_t kept = std::min(kMostShells, largest.size());
-    std::partial_sort(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(kept), largest.end(),
-                      [](const Shell* a, const Shell* b) { return std::abs(a->volume) > std::abs(b->volume); });
+    std::partial_sort(
+        largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(kept), largest.end(),
+        [](const Shell* a, const Shell* b) { return std::abs(a->volume) > std::abs(b->volume); });
     largest.resize(kept);
     for (const Shell& shell : shells) {
       if (shell.volume >= 0) continue;
-      if (std::any_of(largest.begin(), largest.end(), [&](const Shell* other) { return other->holds(shell); }))
+      if (std::any_of(largest.begin(), largest.end(),
+                      [&](const Shell* other) { return other->holds(shell); }))
         continue;
       ++turned_pieces_;
-      for (const std::uint32_t triangle : shell.triangles) is_turned_[triangle] = !is_turned_[triangle];
+      for (const std::uint32_t triangle : shell.triangles)
+        is_turned_[triangle] = !is_turned_[triangle];
     }
   }
 
@@ -239,7 +254,8 @@ class Manifold {
     return mesh_.triangles[mate] == vertex ? mate : next_corner(mate);
   }
 
-  // Corners of a vertex hang together through joined sides; each further group gets a vertex of its own.
+  // Corners of a vertex hang together through joined sides; each further group gets a vertex of its
+  // own.
   void split_fans() {
     struct Moved {
       std::uint32_t vertex;
@@ -247,7 +263,8 @@ class Manifold {
     };
     std::vector<Moved> moved;
     const std::size_t vertices = mesh_.positions.size();
-    std::vector<bool> seen(mesh_.triangles.size(), false), has_fan(vertices, false), is_cut(vertices, false);
+    std::vector<bool> seen(mesh_.triangles.size(), false), has_fan(vertices, false),
+        is_cut(vertices, false);
     std::vector<std::uint32_t> fan;
     for (std::uint32_t first = 0; first < mesh_.triangles.size(); ++first) {
       if (seen[first]) continue;
@@ -275,19 +292,23 @@ class Manifold {
       for (const std::uint32_t corner : move.corners) mesh_.triangles[corner] = move.vertex;
   }
 
-  // A cut edge whose sides hang together around both of its ends is none yet: the triangles that are not joined there get the
-  // lower vertex for themselves. Whether there were any.
+  // A cut edge whose sides hang together around both of its ends is none yet: the triangles that
+  // are not joined there get the lower vertex for themselves. Whether there were any.
   bool detach_what_still_touches() {
     std::vector<std::uint32_t> corners;
-    for_each_edge(mesh_.triangles, mesh_.positions.size(), [&](std::uint32_t low, std::span<const HalfEdge> sides) {
-      if (sides.size() < 2 || (sides.size() == 2 && mate_[sides[0].corner] == sides[1].corner)) return;
-      std::uint32_t stays = sides[0].corner;  // and what it is joined to
-      for (const HalfEdge& side : sides)
-        if (mate_[side.corner] != kNone) stays = side.corner;
-      for (const HalfEdge& side : sides)
-        if (side.corner != stays && mate_[side.corner] != stays)
-          corners.push_back(mesh_.triangles[side.corner] == low ? side.corner : next_corner(side.corner));
-    });
+    for_each_edge(
+        mesh_.triangles, mesh_.positions.size(),
+        [&](std::uint32_t low, std::span<const HalfEdge> sides) {
+          if (sides.size() < 2 || (sides.size() == 2 && mate_[sides[0].corner] == sides[1].corner))
+            return;
+          std::uint32_t stays = sides[0].corner;  // and what it is joined to
+          for (const HalfEdge& side : sides)
+            if (mate_[side.corner] != kNone) stays = side.corner;
+          for (const HalfEdge& side : sides)
+            if (side.corner != stays && mate_[side.corner] != stays)
+              corners.push_back(mesh_.triangles[side.corner] == low ? side.corner
+                                                                    : next_corner(side.corner));
+        });
     for (const std::uint32_t corner : corners) {
       mesh_.triangles[corner] = copy_vertex(mesh_.triangles[corner]);
       for (const std::uint32_t side : {corner, corner_before(corner)}) {
@@ -300,7 +321,8 @@ class Manifold {
 
   std::uint32_t copy_vertex(std::uint32_t vertex) {
     mesh_.positions.push_back(glm::dvec3(mesh_.positions[vertex]));
-    if (!mesh_.vertex_colors.empty()) mesh_.vertex_colors.push_back(std::uint32_t{mesh_.vertex_colors[vertex]});
+    if (!mesh_.vertex_colors.empty())
+      mesh_.vertex_colors.push_back(std::uint32_t{mesh_.vertex_colors[vertex]});
     return static_cast<std::uint32_t>(mesh_.positions.size() - 1);
   }
 
@@ -313,16 +335,18 @@ class Manifold {
       if (!is_turned_[t]) continue;
       std::swap(mate_[3 * t], mate_[3 * t + 2]);
       std::swap(mesh_.triangles[3 * t + 1], mesh_.triangles[3 * t + 2]);
-      if (!mesh_.corner_uvs.empty()) std::swap(mesh_.corner_uvs[3 * t + 1], mesh_.corner_uvs[3 * t + 2]);
+      if (!mesh_.corner_uvs.empty())
+        std::swap(mesh_.corner_uvs[3 * t + 1], mesh_.corner_uvs[3 * t + 2]);
     }
   }
 
   TriangleMesh& mesh_;
   std::vector<Repair>& repairs_;
-  std::vector<std::uint32_t> mate_;  // of each side of a triangle, by its first corner: the side it is joined to
+  // of each side of a triangle, by its first corner: the side it is joined to
+  std::vector<std::uint32_t> mate_;
   std::vector<bool> is_turned_;
-  std::uint64_t slivers_ = 0, crowded_edges_ = 0, turned_ = 0, turned_pieces_ = 0, one_sided_edges_ = 0,
-                cut_vertices_ = 0;
+  std::uint64_t slivers_ = 0, crowded_edges_ = 0, turned_ = 0, turned_pieces_ = 0,
+                one_sided_edges_ = 0, cut_vertices_ = 0;
 };
 
 }  // namespace

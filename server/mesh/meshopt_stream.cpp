@@ -16,16 +16,19 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint8_t kSecondVersion = 0xa1;
-// More than this many times its size no stream can become: of version 0, two bits stand for 16 bytes of a vertex, and of
-// version 1 for 256.
+// More than this many times its size no stream can become: of version 0, two bits stand for 16
+// bytes of a vertex, and of version 1 for 256.
 constexpr std::uint64_t kMostGain = 64, kMostGainOfSecond = 1024;
 constexpr std::size_t kGroup = 16;
 constexpr std::size_t kLeastTail = 24;
 
 std::uint8_t unzigzag(std::uint8_t v) { return static_cast<std::uint8_t>((v >> 1) ^ -(v & 1)); }
-std::uint16_t unzigzag16(std::uint16_t v) { return static_cast<std::uint16_t>((v >> 1) ^ -(v & 1)); }
+std::uint16_t unzigzag16(std::uint16_t v) {
+  return static_cast<std::uint16_t>((v >> 1) ^ -(v & 1));
+}
 
-// Version 1 of the attribute stream (KHR_meshopt_compression, appendix A), which the library of Debian 12 does not know.
+// Version 1 of the attribute stream (KHR_meshopt_compression, appendix A), which the library of
+// Debian 12 does not know.
 class AttributeStream {
  public:
   AttributeStream(std::span<const std::uint8_t> bytes, std::size_t count, std::size_t stride)
@@ -92,7 +95,8 @@ class AttributeStream {
     for (std::size_t i = 0; i < kGroup; ++i) {
       // Of single bits the lowest is the first, of others the highest.
       const std::size_t place = bits == 1 ? i % each : each - 1 - i % each;
-      const int value = bytes_[packed + i / each] >> (place * static_cast<std::size_t>(bits)) & sentinel;
+      const int value =
+          bytes_[packed + i / each] >> (place * static_cast<std::size_t>(bits)) & sentinel;
       if (bits < 8 && value == sentinel) {
         if (!take(1)) return false;
         out[i] = bytes_[at_ - 1];
@@ -111,11 +115,13 @@ class AttributeStream {
       std::array<std::uint8_t, 4> delta;
       for (std::size_t k = 0; k < 4; ++k) delta[k] = deltas[k * 256 + i];
       if (mode == 0) {
-        for (std::size_t k = 0; k < 4; ++k) last[k] = static_cast<std::uint8_t>(last[k] + unzigzag(delta[k]));
+        for (std::size_t k = 0; k < 4; ++k)
+          last[k] = static_cast<std::uint8_t>(last[k] + unzigzag(delta[k]));
       } else if (mode == 1) {
         for (std::size_t k = 0; k < 4; k += 2) {
           const auto change = static_cast<std::uint16_t>(delta[k] | delta[k + 1] << 8);
-          const auto sum = static_cast<std::uint16_t>((last[k] | last[k + 1] << 8) + unzigzag16(change));
+          const auto sum =
+              static_cast<std::uint16_t>((last[k] | last[k + 1] << 8) + unzigzag16(change));
           last[k] = static_cast<std::uint8_t>(sum);
           last[k + 1] = static_cast<std::uint8_t>(sum >> 8);
         }
@@ -142,7 +148,8 @@ class AttributeStream {
   std::array<std::uint8_t, 256 * 256> deltas_{};
 };
 
-// YCoCg with a precision that the alpha tells (appendix B, filter 4); the library does not know this one either.
+// YCoCg with a precision that the alpha tells (appendix B, filter 4); the library does not know
+// this one either.
 template <class Unsigned, class Signed>
 void decode_colors(Bytes& out, std::size_t count) {
   constexpr double kLargest = std::numeric_limits<Unsigned>::max();
@@ -156,7 +163,8 @@ void decode_colors(Bytes& out, std::size_t count) {
     const std::array<int, 4> rgba{y + co - cg, y + cg, y - co - cg, alpha << 1 | (alpha & 1)};
     for (std::size_t k = 0; k < 4; ++k)
       in[k] = scale == 0 ? Unsigned{0}
-                         : static_cast<Unsigned>(std::clamp(std::round(rgba[k] * (kLargest / scale)), 0.0, kLargest));
+                         : static_cast<Unsigned>(
+                               std::clamp(std::round(rgba[k] * (kLargest / scale)), 0.0, kLargest));
     std::memcpy(at, in.data(), sizeof in);
   }
 }
@@ -164,39 +172,48 @@ void decode_colors(Bytes& out, std::size_t count) {
 bool decode_attributes(std::span<const std::uint8_t> bytes, const MeshoptShape& shape, Bytes& out) {
   if (!bytes.empty() && bytes[0] == kSecondVersion)
     return std::make_unique<AttributeStream>(bytes, shape.count, shape.stride)->decode(out);
-  return meshopt_decodeVertexBuffer(out.data(), shape.count, shape.stride, bytes.data(), bytes.size()) == 0;
+  return meshopt_decodeVertexBuffer(out.data(), shape.count, shape.stride, bytes.data(),
+                                    bytes.size()) == 0;
 }
 
 }  // namespace
 
-tl::expected<Bytes, std::string> decode_meshopt(std::span<const std::uint8_t> bytes, const MeshoptShape& shape,
+tl::expected<Bytes, std::string> decode_meshopt(std::span<const std::uint8_t> bytes,
+                                                const MeshoptShape& shape,
                                                 std::uint64_t most_bytes) {
   const auto& [mode, filter, count, stride] = shape;
-  const bool attributes = mode == "ATTRIBUTES", triangles = mode == "TRIANGLES", indices = mode == "INDICES";
+  const bool attributes = mode == "ATTRIBUTES", triangles = mode == "TRIANGLES",
+             indices = mode == "INDICES";
   const bool plain = filter.empty() || filter == "NONE";
-  if (!attributes && !triangles && !indices) return tl::unexpected("it has no mode \"" + mode.substr(0, 40) + "\"");
+  if (!attributes && !triangles && !indices)
+    return tl::unexpected("it has no mode \"" + mode.substr(0, 40) + "\"");
   if (attributes ? stride == 0 || stride > 256 || stride % 4 != 0 : stride != 2 && stride != 4)
-    return tl::unexpected("elements of " + std::to_string(stride) + " bytes do not belong to the mode " + mode);
+    return tl::unexpected("elements of " + std::to_string(stride) +
+                          " bytes do not belong to the mode " + mode);
   if (triangles && count % 3 != 0)
     return tl::unexpected("its " + std::to_string(count) + " indices are no whole triangles");
-  const bool fits = plain || (attributes && ((filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
-                                             (filter == "QUATERNION" && stride == 8) || filter == "EXPONENTIAL" ||
-                                             (filter == "COLOR" && (stride == 4 || stride == 8))));
+  const bool fits =
+      plain || (attributes && ((filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
+                               (filter == "QUATERNION" && stride == 8) || filter == "EXPONENTIAL" ||
+                               (filter == "COLOR" && (stride == 4 || stride == 8))));
   if (!fits)
-    return tl::unexpected("the filter \"" + filter.substr(0, 40) + "\" does not belong to elements of " +
-                          std::to_string(stride) + " bytes in the mode " + mode);
+    return tl::unexpected("the filter \"" + filter.substr(0, 40) +
+                          "\" does not belong to elements of " + std::to_string(stride) +
+                          " bytes in the mode " + mode);
   const bool second = attributes && !bytes.empty() && bytes[0] == kSecondVersion;
   if (count > 256 + (bytes.size() + 64) * (second ? kMostGainOfSecond : kMostGain) / stride)
-    return tl::unexpected("its " + std::to_string(bytes.size()) + " bytes cannot hold " + std::to_string(count) +
-                          " elements");
+    return tl::unexpected("its " + std::to_string(bytes.size()) + " bytes cannot hold " +
+                          std::to_string(count) + " elements");
   if (count > most_bytes / stride) return tl::unexpected(std::string("it becomes too large"));
   Bytes out(count * stride);
   if (count == 0) return out;
   const bool done =
       attributes
           ? decode_attributes(bytes, shape, out)
-          : (triangles ? meshopt_decodeIndexBuffer(out.data(), count, stride, bytes.data(), bytes.size())
-                       : meshopt_decodeIndexSequence(out.data(), count, stride, bytes.data(), bytes.size())) == 0;
+          : (triangles
+                 ? meshopt_decodeIndexBuffer(out.data(), count, stride, bytes.data(), bytes.size())
+                 : meshopt_decodeIndexSequence(out.data(), count, stride, bytes.data(),
+                                               bytes.size())) == 0;
   if (!done) return tl::unexpected(std::string("it is damaged"));
   if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(out.data(), count, stride);
   if (filter == "QUATERNION") meshopt_decodeFilterQuat(out.data(), count, stride);

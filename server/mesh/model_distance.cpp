@@ -5,8 +5,9 @@
 
 namespace strata::mesh {
 
-ModelDistance::ModelDistance(const glm::dvec3& origin_here, double metres_here, std::shared_ptr<const Geometry> there,
-                             double metres_there, double max_distance)
+ModelDistance::ModelDistance(const glm::dvec3& origin_here, double metres_here,
+                             std::shared_ptr<const Geometry> there, double metres_there,
+                             double max_distance)
     : there_(there),
       tree_(there),
       normals_(there),
@@ -26,8 +27,10 @@ float ModelDistance::at(const glm::vec3& position) const {
   if (std::min({w.x, w.y, w.z}) < kOnEdge) {
     normal = glm::vec3(0);
     for (int k = 0; k < 3; ++k)
-      normal += w[k] * normals_.at_position(
-                           there_->vertices[there_->indices[3 * std::size_t{hit->triangle} + k]].position_index);
+      normal +=
+          w[k] *
+          normals_.at_position(
+              there_->vertices[there_->indices[3 * std::size_t{hit->triangle} + k]].position_index);
   }
   const float sign = glm::dot(point - hit->position, normal) < 0 ? -1.0f : 1.0f;
   return sign * hit->distance / static_cast<float>(there_per_here_);

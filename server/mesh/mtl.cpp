@@ -87,9 +87,11 @@ std::vector<MtlMaterial> parse_mtl(std::span<const std::uint8_t> bytes, std::siz
       // "Kd spectral …" and "Kd xyz …" have no three numbers and are passed over.
       const int count = take_numbers(line, numbers, 3);
       if (count == 1) numbers[1] = numbers[2] = numbers[0];
-      for (int k = 0; count > 0 && k < 3; ++k) material.color[k] = static_cast<float>(std::clamp(numbers[k], 0.0, 1.0));
+      for (int k = 0; count > 0 && k < 3; ++k)
+        material.color[k] = static_cast<float>(std::clamp(numbers[k], 0.0, 1.0));
     } else if (keyword == "d") {
-      if (take_numbers(line, numbers, 1) == 1) material.color.a = static_cast<float>(std::clamp(numbers[0], 0.0, 1.0));
+      if (take_numbers(line, numbers, 1) == 1)
+        material.color.a = static_cast<float>(std::clamp(numbers[0], 0.0, 1.0));
     } else if (keyword == "Tr") {
       if (take_numbers(line, numbers, 1) == 1)
         material.color.a = static_cast<float>(1 - std::clamp(numbers[0], 0.0, 1.0));

@@ -18,8 +18,9 @@ struct MtlMaterial {
   glm::vec2 uv_offset{0};  // -o
 };
 
-// Reads what it knows and passes over the rest: an MTL says nothing without which a mesh cannot be used. Lines may go on after a
-// backslash and end as those of an OBJ; the text may be UTF-16; names may hold blanks. At most `most` materials.
+// Reads what it knows and passes over the rest: an MTL says nothing without which a mesh cannot be
+// used. Lines may go on after a backslash and end as those of an OBJ; the text may be UTF-16; names
+// may hold blanks. At most `most` materials.
 std::vector<MtlMaterial> parse_mtl(std::span<const std::uint8_t> bytes, std::size_t most);
 
 }  // namespace strata::mesh

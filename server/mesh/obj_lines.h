@@ -10,7 +10,8 @@
 
 namespace strata::mesh {
 
-// The logical lines of an OBJ, which end at LF, CRLF or CR: a line that ends with a backslash goes on in the next. Comments are not cut off here.
+// The logical lines of an OBJ, which end at LF, CRLF or CR: a line that ends with a backslash goes
+// on in the next. Comments are not cut off here.
 class ObjLines {
  public:
   explicit ObjLines(std::span<const std::uint8_t> bytes)
@@ -41,19 +42,24 @@ class ObjLines {
 
   std::uint64_t line_number() const { return line_number_; }  // of the first physical line, from 1
   double fraction() const {
-    return begin_ == end_ ? 1.0 : static_cast<double>(at_ - begin_) / static_cast<double>(end_ - begin_);
+    return begin_ == end_ ? 1.0
+                          : static_cast<double>(at_ - begin_) / static_cast<double>(end_ - begin_);
   }
 
  private:
-  // Lines end at LF, CRLF, or CR alone. The next LF is kept: a file of CRs has none, and is not searched for it at each line.
+  // Lines end at LF, CRLF, or CR alone. The next LF is kept: a file of CRs has none, and is not
+  // searched for it at each line.
   std::string_view physical_line() {
     const char* start = at_;
     if (start >= newline_) {
-      const void* found = start == end_ ? nullptr : std::memchr(start, '\n', static_cast<std::size_t>(end_ - start));
+      const void* found = start == end_
+                              ? nullptr
+                              : std::memchr(start, '\n', static_cast<std::size_t>(end_ - start));
       newline_ = found ? static_cast<const char*>(found) : end_;
     }
-    const void* found =
-        start == newline_ ? nullptr : std::memchr(start, '\r', static_cast<std::size_t>(newline_ - start));
+    const void* found = start == newline_
+                            ? nullptr
+                            : std::memchr(start, '\r', static_cast<std::size_t>(newline_ - start));
     const char* stop = found ? static_cast<const char*>(found) : newline_;
     at_ = stop == end_ ? end_ : stop + 1;
     if (found && at_ == newline_ && at_ != end_) ++at_;  // CRLF
@@ -64,7 +70,8 @@ class ObjLines {
   const char* at_;
   const char* begin_;
   const char* end_;
-  const char* newline_ = begin_;  // the LF that comes next, or end_; looked for once at_ has reached it
+  // the LF that comes next, or end_; looked for once at_ has reached it
+  const char* newline_ = begin_;
   std::uint64_t line_number_ = 1;
   std::uint64_t lines_of_last_ = 0;
   std::string joined_;

@@ -8,8 +8,9 @@
 
 namespace strata::mesh {
 
-// The texels that the faces of one growing chart cover, so that no two faces of it share a texel. Chart coordinates are
-// texels relative to the centre of a square window of `side` texels; faces that leave the window are refused.
+// The texels that the faces of one growing chart cover, so that no two faces of it share a texel.
+// Chart coordinates are texels relative to the centre of a square window of `side` texels; faces
+// that leave the window are refused.
 class Occupancy {
  public:
   explicit Occupancy(int side) : side_(side), stamps_(static_cast<std::size_t>(side) * side, 0) {}
@@ -22,7 +23,8 @@ class Occupancy {
   // Whether no texel whose centre the triangle covers is taken, and it lies in the window.
   bool is_free(glm::vec2 a, glm::vec2 b, glm::vec2 c);
 
-  // Takes the texels whose centres the triangle covers; with Overlap::refuse only if all of them are free.
+  // Takes the texels whose centres the triangle covers; with Overlap::refuse only if all of them
+  // are free.
   bool claim(glm::vec2 a, glm::vec2 b, glm::vec2 c, Overlap overlap = Overlap::refuse);
 
  private:

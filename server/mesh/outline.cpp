@@ -10,7 +10,9 @@
 namespace strata::mesh {
 namespace {
 
-float turn_of(glm::vec2 a, glm::vec2 b, glm::vec2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+float turn_of(glm::vec2 a, glm::vec2 b, glm::vec2 c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
 
 // Corners of the convex hull, counterclockwise.
 std::vector<glm::vec2> hull_of(std::vector<glm::vec2> points) {
@@ -20,7 +22,8 @@ std::vector<glm::vec2> hull_of(std::vector<glm::vec2> points) {
   if (points.size() < 3) return points;
   std::vector<glm::vec2> hull;
   const auto add = [&](glm::vec2 p, std::size_t kept) {
-    while (hull.size() > kept && turn_of(hull[hull.size() - 2], hull.back(), p) <= 0) hull.pop_back();
+    while (hull.size() > kept && turn_of(hull[hull.size() - 2], hull.back(), p) <= 0)
+      hull.pop_back();
     hull.push_back(p);
   };
   for (const auto p : points) add(p, 1);
@@ -48,7 +51,8 @@ void turn(Outline& outline) {
     turned.low = low, turned.size = high - low;
     if (const float area = turned.size.x * turned.size.y; area < least) least = area, best = turned;
   }
-  // The box of the segments themselves: where the hull dropped points for rounding, they may lie a little outside.
+  // The box of the segments themselves: where the hull dropped points for rounding, they may lie a
+  // little outside.
   glm::vec2 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
   best.low = glm::vec2(0);
   for (auto& p : outline.segments) {

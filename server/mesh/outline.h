@@ -8,8 +8,8 @@
 
 namespace strata::mesh {
 
-// The rim of a chart in its plane, turned so that its bounding box has the least area, squeezed where it was too long, lower
-// left corner at 0.
+// The rim of a chart in its plane, turned so that its bounding box has the least area, squeezed
+// where it was too long, lower left corner at 0.
 struct Outline {
   std::vector<glm::vec2> segments;  // two points each, the chart on the left, any order
   glm::vec2 size{0};                // of the box, in units of the plane
@@ -26,7 +26,8 @@ struct Outline {
 };
 
 // `plane`: of every corner of the mesh, as `flatten` gives it.
-Outline make_outline_of(const Chart& chart, std::span<const glm::vec2> plane);  // with all edges of its faces
+// with all edges of its faces
+Outline make_outline_of(const Chart& chart, std::span<const glm::vec2> plane);
 std::vector<Outline> make_outlines(const ChartSurface& surface, std::span<const Chart> charts,
                                    std::span<const glm::vec2> plane);
 

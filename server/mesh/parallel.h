@@ -12,12 +12,17 @@
 namespace strata::mesh {
 
 // For long work beside which others paint and look: on many cores it leaves them the other half.
-inline int background_threads() { return static_cast<int>(std::max(2u, std::thread::hardware_concurrency() / 2)); }
+inline int background_threads() {
+  return static_cast<int>(std::max(2u, std::thread::hardware_concurrency() / 2));
+}
 
-inline int hardware_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+inline int hardware_threads() {
+  return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
 
-// Runs work(0) … work(count - 1) on up to `threads` threads (this one among them), each index once, in any order. Between them the current question
-// (core/question.h) is asked whether it goes on. What one of them throws ends all and is thrown here.
+// Runs work(0) … work(count - 1) on up to `threads` threads (this one among them), each index once,
+// in any order. Between them the current question (core/question.h) is asked whether it goes on.
+// What one of them throws ends all and is thrown here.
 template <class Work>
 void parallel_for(int threads, int count, Work&& work) {
   const QuestionTurn turn;

@@ -24,7 +24,8 @@ void append_utf8(std::uint32_t code, std::vector<std::uint8_t>& out) {
 // RFC 2781. Half of a pair becomes U+FFFD, as does an odd byte at the end.
 std::vector<std::uint8_t> utf8_of_utf16(std::span<const std::uint8_t> bytes, bool big_endian) {
   const auto unit = [&](std::size_t i) {
-    return static_cast<std::uint32_t>(big_endian ? bytes[i] << 8 | bytes[i + 1] : bytes[i + 1] << 8 | bytes[i]);
+    return static_cast<std::uint32_t>(big_endian ? bytes[i] << 8 | bytes[i + 1]
+                                                 : bytes[i + 1] << 8 | bytes[i]);
   };
   std::vector<std::uint8_t> out;
   out.reserve(bytes.size() / 2 + 3);
@@ -52,9 +53,11 @@ std::size_t utf8_mark(std::span<const std::uint8_t> bytes) {
   return bytes.size() >= 3 && bytes[0] == 0xef && bytes[1] == 0xbb && bytes[2] == 0xbf ? 3 : 0;
 }
 
-PlainText::PlainText(std::span<const std::uint8_t> bytes) : bytes_(bytes.subspan(utf8_mark(bytes))) {
+PlainText::PlainText(std::span<const std::uint8_t> bytes)
+    : bytes_(bytes.subspan(utf8_mark(bytes))) {
   if (bytes.size() < 2) return;
-  const bool little = bytes[0] == 0xff && bytes[1] == 0xfe, big = bytes[0] == 0xfe && bytes[1] == 0xff;
+  const bool little = bytes[0] == 0xff && bytes[1] == 0xfe,
+             big = bytes[0] == 0xfe && bytes[1] == 0xff;
   if (!little && !big) return;
   decoded_ = utf8_of_utf16(bytes.subspan(2), big);
   bytes_ = decoded_;

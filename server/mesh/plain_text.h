@@ -7,8 +7,9 @@
 
 namespace strata::mesh {
 
-// The text of a file in the form that the readers of text formats take: without a byte order mark, and UTF-8 where that
-// mark says UTF-16. Anything else stays as it is, byte for byte. What it gives is valid as long as it and `bytes` are.
+// The text of a file in the form that the readers of text formats take: without a byte order mark,
+// and UTF-8 where that mark says UTF-16. Anything else stays as it is, byte for byte. What it gives
+// is valid as long as it and `bytes` are.
 class PlainText {
  public:
   explicit PlainText(std::span<const std::uint8_t> bytes);

@@ -21,10 +21,12 @@ std::optional<PlyType> parse_type(std::string_view name) {
     PlyType type;
   };
   static constexpr Entry kTypes[] = {
-      {"char", PlyType::i8},   {"int8", PlyType::i8},     {"uchar", PlyType::u8},   {"uint8", PlyType::u8},
-      {"short", PlyType::i16}, {"int16", PlyType::i16},   {"ushort", PlyType::u16}, {"uint16", PlyType::u16},
-      {"int", PlyType::i32},   {"int32", PlyType::i32},   {"uint", PlyType::u32},   {"uint32", PlyType::u32},
-      {"float", PlyType::f32}, {"float32", PlyType::f32}, {"double", PlyType::f64}, {"float64", PlyType::f64}};
+      {"char", PlyType::i8},    {"int8", PlyType::i8},     {"uchar", PlyType::u8},
+      {"uint8", PlyType::u8},   {"short", PlyType::i16},   {"int16", PlyType::i16},
+      {"ushort", PlyType::u16}, {"uint16", PlyType::u16},  {"int", PlyType::i32},
+      {"int32", PlyType::i32},  {"uint", PlyType::u32},    {"uint32", PlyType::u32},
+      {"float", PlyType::f32},  {"float32", PlyType::f32}, {"double", PlyType::f64},
+      {"float64", PlyType::f64}};
   for (const Entry& entry : kTypes) {
     if (entry.name == name) return entry.type;
   }
@@ -55,7 +57,8 @@ std::string shown(std::string_view text) {
 class HeaderReader {
  public:
   explicit HeaderReader(std::span<const std::uint8_t> bytes)
-      : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()), position_(utf8_mark(bytes)) {}
+      : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
+        position_(utf8_mark(bytes)) {}
 
   Result<PlyHeader> read() {
     std::string_view line;
@@ -70,18 +73,20 @@ class HeaderReader {
     }
     if (text_.size() - position_ > kMostHeader || position_ > kMostHeader)
       return refuse_file("The PLY has no \"end_header\" in its first 16 MB.");
-    return refuse_file("The PLY header has no \"end_header\": the file is cut short, or not a PLY.");
+    return refuse_file(
+        "The PLY header has no \"end_header\": the file is cut short, or not a PLY.");
   }
 
  private:
-  // The end of the first line says how all end: in old Macintosh files with CR alone, where a byte LF after
-  // "end_header" CR is already data. The CR of a CRLF counts as a blank.
+  // The end of the first line says how all end: in old Macintosh files with CR alone, where a byte
+  // LF after "end_header" CR is already data. The CR of a CRLF counts as a blank.
   bool next_line(std::string_view& line) {
     if (position_ >= text_.size() || position_ > kMostHeader) return false;
     const std::string_view rest = text_.substr(position_, kMostHeader);
     if (line_number_ == 0) {
       const std::size_t end = rest.find_first_of("\r\n");
-      if (end != std::string_view::npos && rest[end] == '\r' && rest.substr(end + 1, 1) != "\n") line_end_ = '\r';
+      if (end != std::string_view::npos && rest[end] == '\r' && rest.substr(end + 1, 1) != "\n")
+        line_end_ = '\r';
     }
     const std::size_t end = rest.find(line_end_);
     if (end == std::string_view::npos) return false;
@@ -97,8 +102,10 @@ class HeaderReader {
 
   Result<void> read_line(const std::vector<std::string_view>& words) {
     if (words[0] == "comment" || words[0] == "obj_info") {
-      if (words.size() > 2 && words[1] == "TextureFile" && header_.texture_files.size() < kMaxTextureFiles)
-        header_.texture_files.emplace_back(words[2].data(), words.back().data() + words.back().size());
+      if (words.size() > 2 && words[1] == "TextureFile" &&
+          header_.texture_files.size() < kMaxTextureFiles)
+        header_.texture_files.emplace_back(words[2].data(),
+                                           words.back().data() + words.back().size());
       return {};
     }
     if (words[0] == "format") return read_format(words);
@@ -132,7 +139,8 @@ class HeaderReader {
     element.name = words[1];
     element.count = static_cast<std::uint64_t>(count);
     for (const PlyElement& other : header_.elements) {
-      if (other.name == element.name) return fault("the element " + shown(words[1]) + " is declared twice.");
+      if (other.name == element.name)
+        return fault("the element " + shown(words[1]) + " is declared twice.");
     }
     if (header_.elements.size() == kMaxElements) return fault("more than 1000 elements.");
     header_.elements.push_back(std::move(element));
@@ -157,7 +165,8 @@ class HeaderReader {
     }
     property.name = words.back();
     auto& properties = header_.elements.back().properties;
-    if (properties.size() >= kMaxProperties) return fault("more than 1000 properties in one element.");
+    if (properties.size() >= kMaxProperties)
+      return fault("more than 1000 properties in one element.");
     properties.push_back(std::move(property));
     return {};
   }
@@ -167,13 +176,15 @@ class HeaderReader {
     if (!has_format_) return refuse_file("The PLY header has no \"format\" line.");
     header_.data_offset = position_;
     const bool ascii = header_.encoding == PlyEncoding::ascii;
-    std::uint64_t rest = text_.size() - position_ + (ascii ? 1 : 0);  // the last value needs no blank after it
+    // the last value needs no blank after it
+    std::uint64_t rest = text_.size() - position_ + (ascii ? 1 : 0);
     for (const PlyElement& element : header_.elements) {
       const std::uint64_t least = element.least_bytes(ascii);
       if (least > 0 && element.count > rest / least) {
-        return refuse_file("The header announces " + std::to_string(element.count) + " of the element " +
-                           shown(element.name) + ", but only " + std::to_string(rest) +
-                           " bytes are left for them: the file is cut short or its header is wrong.");
+        return refuse_file(
+            "The header announces " + std::to_string(element.count) + " of the element " +
+            shown(element.name) + ", but only " + std::to_string(rest) +
+            " bytes are left for them: the file is cut short or its header is wrong.");
       }
       rest -= least * element.count;
     }
@@ -218,6 +229,8 @@ std::uint64_t PlyHeader::element_count() const {
   return sum;
 }
 
-Result<PlyHeader> parse_ply_header(std::span<const std::uint8_t> bytes) { return HeaderReader(bytes).read(); }
+Result<PlyHeader> parse_ply_header(std::span<const std::uint8_t> bytes) {
+  return HeaderReader(bytes).read();
+}
 
 }  // namespace strata::mesh

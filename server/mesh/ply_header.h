@@ -25,8 +25,10 @@ struct PlyElement {
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
 
-  std::optional<int> find(std::initializer_list<std::string_view> names) const;  // index of the first that is there
-  // Least bytes that one such element takes (a list may be empty; ascii needs a digit and a blank a value).
+  // index of the first that is there
+  std::optional<int> find(std::initializer_list<std::string_view> names) const;
+  // Least bytes that one such element takes (a list may be empty; ascii needs a digit and a blank a
+  // value).
   std::uint64_t least_bytes(bool ascii) const;
 };
 
@@ -38,11 +40,13 @@ struct PlyHeader {
   std::vector<std::string> texture_files;  // pictures named in comments, by texnumber
   std::size_t data_offset = 0;             // first byte after the header
 
-  std::uint64_t element_count() const;  // of all elements that have properties; no more than fits 64 bits
+  // of all elements that have properties; no more than fits 64 bits
+  std::uint64_t element_count() const;
 };
 
-// Refuses what is no PLY, a header of more than 16 MB, and counts that the rest of the file cannot hold. Line ends are LF,
-// CRLF or CR, of lines of any length; a UTF-8 byte order mark may stand before them.
+// Refuses what is no PLY, a header of more than 16 MB, and counts that the rest of the file cannot
+// hold. Line ends are LF, CRLF or CR, of lines of any length; a UTF-8 byte order mark may stand
+// before them.
 Result<PlyHeader> parse_ply_header(std::span<const std::uint8_t> bytes);
 
 }  // namespace strata::mesh

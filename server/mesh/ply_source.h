@@ -18,11 +18,15 @@ static_assert(std::endian::native == std::endian::little);
 
 enum class PlyFault { none, end_of_file, not_a_number };
 
-// Values one after the other, from binary or ascii data. Each read returns false at a fault and then stays where it is.
+// Values one after the other, from binary or ascii data. Each read returns false at a fault and
+// then stays where it is.
 class PlyBinarySource {
  public:
   PlyBinarySource(std::span<const std::uint8_t> bytes, std::size_t offset, bool big_endian)
-      : begin_(bytes.data()), at_(bytes.data() + offset), end_(bytes.data() + bytes.size()), swap_(big_endian) {}
+      : begin_(bytes.data()),
+        at_(bytes.data() + offset),
+        end_(bytes.data() + bytes.size()),
+        swap_(big_endian) {}
 
   bool value(PlyType type, double& result) {
     switch (type) {
@@ -104,9 +108,9 @@ class PlyBinarySource {
   PlyFault fault_ = PlyFault::none;
 };
 
-// Ascii values are taken by blanks, not by lines: some writers fold long lists. Where there are exactly as many lines as elements,
-// though, what is left of a line behind an element's last value belongs to no other: MeshLab writes more words than the header
-// has properties.
+// Ascii values are taken by blanks, not by lines: some writers fold long lists. Where there are
+// exactly as many lines as elements, though, what is left of a line behind an element's last value
+// belongs to no other: MeshLab writes more words than the header has properties.
 class PlyAsciiSource {
  public:
   PlyAsciiSource(std::span<const std::uint8_t> bytes, const PlyHeader& header)
@@ -126,7 +130,8 @@ class PlyAsciiSource {
     if (word.empty()) return false;
     if (parse_integer(word, result)) return true;
     double number = 0;  // "3.0" is met in the wild
-    if (!parse_number(word, number) || !(std::abs(number) <= 9e15) || number != std::floor(number)) return refuse(word);
+    if (!parse_number(word, number) || !(std::abs(number) <= 9e15) || number != std::floor(number))
+      return refuse(word);
     result = static_cast<std::int64_t>(number);
     return true;
   }
@@ -147,7 +152,8 @@ class PlyAsciiSource {
     for (; at_ < text_.size() && !is_line_end(text_[at_]); ++at_) surplus |= !is_blank(text_[at_]);
     surplus_elements_ += surplus;
   }
-  std::uint64_t surplus_elements() const { return surplus_elements_; }  // that had more words than the header says
+  // that had more words than the header says
+  std::uint64_t surplus_elements() const { return surplus_elements_; }
 
   std::size_t offset() const { return at_; }
   std::uint64_t rest() const { return text_.size() - at_; }

@@ -44,9 +44,11 @@ bool is_convex(const std::vector<glm::dvec2>& flat) {
   return winding < 2.5 * 3.14159265358979;
 }
 
-bool is_ear(const std::vector<glm::dvec2>& flat, const std::vector<std::uint32_t>& loop, std::size_t at) {
+bool is_ear(const std::vector<glm::dvec2>& flat, const std::vector<std::uint32_t>& loop,
+            std::size_t at) {
   const std::size_t n = loop.size();
-  const glm::dvec2 a = flat[loop[(at + n - 1) % n]], b = flat[loop[at]], c = flat[loop[(at + 1) % n]];
+  const glm::dvec2 a = flat[loop[(at + n - 1) % n]], b = flat[loop[at]],
+                   c = flat[loop[(at + 1) % n]];
   if (!(turn(a, b, c) > 0)) return false;
   for (std::size_t k = 2; k + 1 < n; ++k) {
     const glm::dvec2 p = flat[loop[(at + k) % n]];
@@ -58,7 +60,8 @@ bool is_ear(const std::vector<glm::dvec2>& flat, const std::vector<std::uint32_t
 
 }  // namespace
 
-void triangulate_polygon(std::span<const glm::dvec3> corners, std::vector<std::uint32_t>& triangles) {
+void triangulate_polygon(std::span<const glm::dvec3> corners,
+                         std::vector<std::uint32_t>& triangles) {
   triangles.clear();
   const std::size_t n = corners.size();
   if (n < 3) return;
@@ -73,7 +76,8 @@ void triangulate_polygon(std::span<const glm::dvec3> corners, std::vector<std::u
   std::size_t at = 0, tried = 0;
   while (loop.size() > 3) {
     at %= loop.size();
-    // Where no ear is left (the outline crosses itself, or is flat) the next corner is cut off all the same.
+    // Where no ear is left (the outline crosses itself, or is flat) the next corner is cut off all
+    // the same.
     if (tried < loop.size() && !is_ear(flat, loop, at)) {
       ++at;
       ++tried;

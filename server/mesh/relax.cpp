@@ -6,11 +6,13 @@
 namespace strata::mesh {
 namespace {
 
-constexpr double kAreaWeight = 4;      // of the area's distortion beside the shape's
-constexpr double kLeastQuality = 0.1;  // height over base; slivers say nothing of the shape they should have
+constexpr double kAreaWeight = 4;  // of the area's distortion beside the shape's
+// height over base; slivers say nothing of the shape they should have
+constexpr double kLeastQuality = 0.1;
 constexpr int kMostHalvings = 6;
 
-// A triangle's map from its true shape: the columns of its Jacobian are sums of its corners with these factors.
+// A triangle's map from its true shape: the columns of its Jacobian are sums of its corners with
+// these factors.
 struct Element {
   double first[3], second[3];
   double weight;
@@ -42,7 +44,8 @@ struct Energy {
 
 class Relaxer {
  public:
-  explicit Relaxer(RelaxPatch& patch) : patch_(patch), points_(patch.points.begin(), patch.points.end()) {
+  explicit Relaxer(RelaxPatch& patch)
+      : patch_(patch), points_(patch.points.begin(), patch.points.end()) {
     double area = 0;
     for (const auto& face : patch.faces) area += (face.b.x * face.c.y - face.b.y * face.c.x) / 2;
     const double mean_area = std::max(area / double(patch.faces.size()), 1e-300);
@@ -56,7 +59,8 @@ class Relaxer {
     corners_.resize(3 * patch.faces.size());
     auto cursor = first_corner_;
     for (std::uint32_t f = 0; f < patch.faces.size(); ++f)
-      for (std::uint32_t k = 0; k < 3; ++k) corners_[cursor[patch.faces[f].vertex[k]]++] = 3 * f + k;
+      for (std::uint32_t k = 0; k < 3; ++k)
+        corners_[cursor[patch.faces[f].vertex[k]]++] = 3 * f + k;
   }
 
   void run(double good_area, int most_sweeps) {
@@ -89,7 +93,8 @@ class Relaxer {
   }
   template <class Visit>
   void for_each_corner(std::uint32_t v, Visit visit) const {
-    for (auto i = first_corner_[v]; i < first_corner_[v + 1]; ++i) visit(corners_[i] / 3, corners_[i] % 3);
+    for (auto i = first_corner_[v]; i < first_corner_[v + 1]; ++i)
+      visit(corners_[i] / 3, corners_[i] % 3);
   }
 
   // Of the faces around a point; `epsilon` keeps it finite where some are folded.
@@ -98,7 +103,8 @@ class Relaxer {
     for_each_corner(v, [&](std::uint32_t f, std::uint32_t k) {
       const Element& element = elements_[f];
       const Jacobian j = jacobian(f);
-      const double det = j.det(), root = std::sqrt(det * det + epsilon * epsilon), chi = (det + root) / 2;
+      const double det = j.det(), root = std::sqrt(det * det + epsilon * epsilon),
+                   chi = (det + root) / 2;
       const double norm = glm::dot(j.first, j.first) + glm::dot(j.second, j.second);
       const double value = (norm + kAreaWeight * (det * det + 1)) / chi;
       sum.value += element.weight * value;
@@ -107,8 +113,11 @@ class Relaxer {
       const glm::dvec2 of_det(a * j.second.y - b * j.first.y, b * j.first.x - a * j.second.x);
       const glm::dvec2 of_norm = 2.0 * (a * j.first + b * j.second);
       const glm::dvec2 of_chi = (1 + det / root) / 2 * of_det;
-      sum.gradient += element.weight * (of_norm + 2 * kAreaWeight * det * of_det - value * of_chi) / chi;
-      sum.curvature += element.weight * (2 * (a * a + b * b) + 2 * kAreaWeight * glm::dot(of_det, of_det)) / chi +
+      sum.gradient +=
+          element.weight * (of_norm + 2 * kAreaWeight * det * of_det - value * of_chi) / chi;
+      sum.curvature += element.weight *
+                           (2 * (a * a + b * b) + 2 * kAreaWeight * glm::dot(of_det, of_det)) /
+                           chi +
                        element.weight * 2 * value * glm::dot(of_chi, of_chi) / (chi * chi);
     });
     return sum;
@@ -116,7 +125,8 @@ class Relaxer {
 
   void move(std::uint32_t v) {
     double least = 1;
-    for_each_corner(v, [&](std::uint32_t f, std::uint32_t) { least = std::min(least, jacobian(f).det()); });
+    for_each_corner(
+        v, [&](std::uint32_t f, std::uint32_t) { least = std::min(least, jacobian(f).det()); });
     const double folded = std::min(least, 0.0);
     const double epsilon = std::sqrt(1e-8 + 0.04 * folded * folded);
     const Energy here = energy(v, epsilon, true);

@@ -14,7 +14,8 @@ namespace strata::mesh {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-constexpr double kLargestCoordinate = 1e15;  // beyond it squares and cubes of lengths leave the range of float
+// beyond it squares and cubes of lengths leave the range of float
+constexpr double kLargestCoordinate = 1e15;
 constexpr std::string_view kWelded = "welded vertices";
 constexpr double kFarAway = 1e5;  // in sizes of the mesh
 constexpr double kSmallestExtent = 1e-12;
@@ -31,7 +32,8 @@ Result<void> check_coordinates(const TriangleMesh& mesh, const std::vector<bool>
     if (!used[i]) continue;
     const glm::dvec3& p = mesh.positions[i];
     const bool finite = std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-    const bool large = finite && std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kLargestCoordinate;
+    const bool large =
+        finite && std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kLargestCoordinate;
     if ((!finite || large) && first == kNone) first = i;
     not_finite += !finite;
     too_large += large;
@@ -43,9 +45,10 @@ Result<void> check_coordinates(const TriangleMesh& mesh, const std::vector<bool>
         std::to_string(first) + ", counted from 0). Remove or repair them.");
   }
   if (too_large > 0) {
-    return refuse_file(std::to_string(too_large) +
-                       " vertices that triangles use have a coordinate beyond 1e15 (the first is vertex " +
-                       std::to_string(first) + ", counted from 0). Check the unit of the file.");
+    return refuse_file(
+        std::to_string(too_large) +
+        " vertices that triangles use have a coordinate beyond 1e15 (the first is vertex " +
+        std::to_string(first) + ", counted from 0). Check the unit of the file.");
   }
   return {};
 }
@@ -63,9 +66,10 @@ std::array<std::uint32_t, 3> sorted_corners(const std::uint32_t* t) {
   return key;
 }
 
-// Where most triangles shrank to nothing because single precision is too coarse there, what is left is no picture of the thing
-// that was scanned.
-Result<void> refuse_collapsed(const TriangleMesh& mesh, std::uint64_t without_area, std::uint64_t triangles) {
+// Where most triangles shrank to nothing because single precision is too coarse there, what is left
+// is no picture of the thing that was scanned.
+Result<void> refuse_collapsed(const TriangleMesh& mesh, std::uint64_t without_area,
+                              std::uint64_t triangles) {
   if (without_area * 2 <= triangles) return {};
   glm::dvec3 low(INFINITY), high(-INFINITY);
   for (const std::uint32_t index : mesh.triangles) {
@@ -73,7 +77,8 @@ Result<void> refuse_collapsed(const TriangleMesh& mesh, std::uint64_t without_ar
     high = glm::max(high, mesh.positions[index]);
   }
   const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high)), extent = high - low;
-  if (std::max({far.x, far.y, far.z}) < kFarAway * std::max({extent.x, extent.y, extent.z})) return {};
+  if (std::max({far.x, far.y, far.z}) < kFarAway * std::max({extent.x, extent.y, extent.z}))
+    return {};
   return refuse_file(
       std::to_string(without_area) + " of " + std::to_string(triangles) +
       " triangles have no area: the mesh lies so far from the origin that its coordinates were rounded away. "
@@ -88,7 +93,8 @@ Result<void> drop_triangles(LoadedMesh& loaded) {
   std::uint64_t degenerate = 0, no_area = 0, duplicate = 0;
   std::uint32_t kept = 0;
   for (std::size_t i = 0; i < mesh.triangle_count(); ++i) {
-    const std::uint32_t t[3] = {mesh.triangles[3 * i], mesh.triangles[3 * i + 1], mesh.triangles[3 * i + 2]};
+    const std::uint32_t t[3] = {mesh.triangles[3 * i], mesh.triangles[3 * i + 1],
+                                mesh.triangles[3 * i + 2]};
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
       ++degenerate;
       continue;
@@ -99,7 +105,8 @@ Result<void> drop_triangles(LoadedMesh& loaded) {
     }
     const auto key = sorted_corners(t);
     const std::uint64_t hash = mix_hash(mix_hash(mix_hash(0, key[0]), key[1]), key[2]);
-    // The slot that is written first is where the triangle goes if it stays, so that the table can compare with it.
+    // The slot that is written first is where the triangle goes if it stays, so that the table can
+    // compare with it.
     std::copy(t, t + 3, mesh.triangles.begin() + 3 * std::ptrdiff_t{kept});
     const std::uint32_t found = table.find_or_insert(hash, kept, [&](std::uint32_t other) {
       return sorted_corners(&mesh.triangles[3 * std::size_t{other}]) == key;
@@ -121,7 +128,8 @@ Result<void> drop_triangles(LoadedMesh& loaded) {
 
 std::uint64_t count_not_finite(const TriangleMesh& mesh) {
   std::uint64_t count = 0;
-  for (const glm::dvec3& p : mesh.positions) count += !(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+  for (const glm::dvec3& p : mesh.positions)
+    count += !(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
   return count;
 }
 
@@ -160,7 +168,9 @@ Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& o
     if (options.weld_distance > 0) {
       used = used_vertices(mesh);
       const std::uint64_t near = weld_near(mesh, used, options.weld_distance);
-      note(loaded.repairs, std::string(kWelded).append(" within ").append(short_number(options.weld_distance)), near);
+      note(loaded.repairs,
+           std::string(kWelded).append(" within ").append(short_number(options.weld_distance)),
+           near);
       merged += near;
     }
   }
@@ -169,10 +179,13 @@ Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& o
   if (auto dropped = drop_triangles(loaded); !dropped) return dropped;
   if (auto made = make_manifold(loaded, progress, 0.75, 0.95); !made) return made;
   progress.report(0.95, "Dropping unused vertices");
-  const std::uint64_t not_finite = count_not_finite(mesh), before = mesh.positions.size();  // none of them is used
+  // none of them is used
+  const std::uint64_t not_finite = count_not_finite(mesh), before = mesh.positions.size();
   drop_unused(mesh);
-  note(loaded.repairs, "dropped unused vertices", before - mesh.positions.size() - merged - not_finite);
-  note(loaded.repairs, "dropped unused vertices with coordinates that are no finite numbers", not_finite);
+  note(loaded.repairs, "dropped unused vertices",
+       before - mesh.positions.size() - merged - not_finite);
+  note(loaded.repairs, "dropped unused vertices with coordinates that are no finite numbers",
+       not_finite);
 
   glm::dvec3 low = mesh.positions[0], high = low;
   for (const glm::dvec3& p : mesh.positions) {

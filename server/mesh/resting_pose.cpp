@@ -19,10 +19,13 @@ namespace {
 constexpr std::array<double, 6> kPrior{0.10, 0.28, 0.32, 0.08, 0.10, 0.12};
 constexpr double kAnyPose = 0.005;    // what a direction has in which the object does not rest
 constexpr double kTilt_degrees = 30;  // a face of the hull counts for an axis up to this angle
-constexpr double kContact = 0.008;    // of the diagonal: what lies nearer to the ground than this rests on it
-constexpr double kUnlikely = 0.004;   // share of the ways to drop it: what is rarer is not looked at
+// of the diagonal: what lies nearer to the ground than this rests on it
+constexpr double kContact = 0.008;
+// share of the ways to drop it: what is rarer is not looked at
+constexpr double kUnlikely = 0.004;
 constexpr int kMostPoses = 40;
-constexpr double kLevel = 0.85;             // cosine of the slope up to which surface lies on the ground
+// cosine of the slope up to which surface lies on the ground
+constexpr double kLevel = 0.85;
 constexpr int kColumns = 128;               // a side, for the points that the hull is made of
 constexpr int kCells = 48;                  // a side, for hollows
 constexpr double kTouching = 0.04;          // of the height: what is a rim
@@ -34,7 +37,8 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y 
 
 // Andrew's monotone chain; counter-clockwise.
 std::vector<glm::dvec2> convex_hull(std::vector<glm::dvec2> points) {
-  std::ranges::sort(points, [](const auto& a, const auto& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  std::ranges::sort(
+      points, [](const auto& a, const auto& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   if (points.size() < 3) return points;
   std::vector<glm::dvec2> hull;
   const auto add = [&](const glm::dvec2& point, std::size_t least) {
@@ -52,7 +56,8 @@ std::vector<glm::dvec2> convex_hull(std::vector<glm::dvec2> points) {
 
 double area_of(std::span<const glm::dvec2> polygon) {
   double twice = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
   return twice / 2;
 }
 
@@ -68,7 +73,8 @@ struct Shape {
   std::vector<glm::dvec3> points;
   std::span<const std::uint32_t> triangles;
   glm::dvec3 low{0}, high{0};
-  glm::dvec3 facing{0};  // mean of the normals by area: of length 1 for a flat sheet, 0 for what is closed
+  // mean of the normals by area: of length 1 for a flat sheet, 0 for what is closed
+  glm::dvec3 facing{0};
 };
 
 std::optional<Shape> shape_of(const TriangleMesh& mesh) {
@@ -83,7 +89,8 @@ std::optional<Shape> shape_of(const TriangleMesh& mesh) {
   if (!(diagonal > 0) || !std::isfinite(diagonal)) return std::nullopt;
   double area = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-    const glm::dvec3 a = mesh.positions[mesh.triangles[t]] - low, b = mesh.positions[mesh.triangles[t + 1]] - low,
+    const glm::dvec3 a = mesh.positions[mesh.triangles[t]] - low,
+                     b = mesh.positions[mesh.triangles[t + 1]] - low,
                      c = mesh.positions[mesh.triangles[t + 2]] - low;
     const glm::dvec3 normal = glm::cross(b - a, c - a) / 2.0;
     const double size = glm::length(normal);
@@ -95,26 +102,31 @@ std::optional<Shape> shape_of(const TriangleMesh& mesh) {
   middle = low + middle / area;
   shape.facing = facing / area;
   shape.points.reserve(mesh.positions.size());
-  for (const glm::dvec3& position : mesh.positions) shape.points.push_back((position - middle) / diagonal);
+  for (const glm::dvec3& position : mesh.positions)
+    shape.points.push_back((position - middle) / diagonal);
   shape.low = (low - middle) / diagonal;
   shape.high = (high - middle) / diagonal;
   return shape;
 }
 
-// Of each column along each axis the two farthest points: what the hull is made of, up to the width of a column across.
+// Of each column along each axis the two farthest points: what the hull is made of, up to the width
+// of a column across.
 std::vector<glm::dvec3> outer_points(const Shape& shape) {
   std::vector<glm::dvec3> outer;
   const glm::dvec3 size = glm::max(shape.high - shape.low, glm::dvec3(1e-12));
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     const auto column = [&](const glm::dvec3& p, int along) {
-      return std::clamp(static_cast<int>((p[along] - shape.low[along]) / size[along] * kColumns), 0, kColumns - 1);
+      return std::clamp(static_cast<int>((p[along] - shape.low[along]) / size[along] * kColumns), 0,
+                        kColumns - 1);
     };
     constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> ends(std::size_t{kColumns} * kColumns, {kNone, kNone});
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> ends(std::size_t{kColumns} * kColumns,
+                                                              {kNone, kNone});
     for (const std::uint32_t index : shape.triangles) {
       const glm::dvec3& p = shape.points[index];
-      auto& [lowest, highest] = ends[static_cast<std::size_t>(column(p, u) * kColumns + column(p, v))];
+      auto& [lowest, highest] =
+          ends[static_cast<std::size_t>(column(p, u) * kColumns + column(p, v))];
       if (lowest == kNone || p[axis] < shape.points[lowest][axis]) lowest = index;
       if (highest == kNone || p[axis] > shape.points[highest][axis]) highest = index;
     }
@@ -130,20 +142,22 @@ std::vector<glm::dvec3> outer_points(const Shape& shape) {
 struct HullFacet {
   glm::dvec3 normal;  // outwards
   std::array<glm::dvec3, 3> corners;
-  std::array<int, 3> beyond;  // the facet on the other side of the edge that is opposite to the corner
+  // the facet on the other side of the edge that is opposite to the corner
+  std::array<int, 3> beyond;
 };
 
 // Triangles of the convex hull; none for points in one plane.
 std::vector<HullFacet> hull_of(std::vector<glm::dvec3> points) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> nowhere{std::fopen("/dev/null", "w"), &std::fclose};
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> nowhere{std::fopen("/dev/null", "w"),
+                                                                &std::fclose};
   if (!nowhere || points.size() < 4) return {};
   qhT context;
   qhT* qh = &context;
   qh_zero(qh, nowhere.get());
   char command[] = "qhull Qt Pp";
   std::vector<HullFacet> facets;
-  const int failed =
-      qh_new_qhull(qh, 3, static_cast<int>(points.size()), &points[0].x, False, command, nowhere.get(), nowhere.get());
+  const int failed = qh_new_qhull(qh, 3, static_cast<int>(points.size()), &points[0].x, False,
+                                  command, nowhere.get(), nowhere.get());
   if (failed == 0) {
     std::unordered_map<unsigned, int> number;
     facetT *facet, *neighbor, **neighborp;
@@ -169,7 +183,8 @@ std::vector<HullFacet> hull_of(std::vector<glm::dvec3> points) {
 double solid_angle(const HullFacet& facet) {
   const auto& [a, b, c] = facet.corners;
   const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-  const double below = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+  const double below =
+      la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
   return 2 * std::abs(std::atan2(glm::dot(a, glm::cross(b, c)), below));
 }
 
@@ -177,7 +192,8 @@ double solid_angle(const HullFacet& facet) {
 int next_of(const std::vector<HullFacet>& facets, int at) {
   const HullFacet& facet = facets[static_cast<std::size_t>(at)];
   const auto& [a, b, c] = facet.corners;
-  const glm::dvec3 foot = glm::dot(a, facet.normal) * facet.normal;  // of the origin, which is the middle of the mass
+  // of the origin, which is the middle of the mass
+  const glm::dvec3 foot = glm::dot(a, facet.normal) * facet.normal;
   const glm::dvec3 across = glm::cross(b - a, c - a);
   const std::array<double, 3> weights{glm::dot(glm::cross(c - b, foot - b), across),
                                       glm::dot(glm::cross(a - c, foot - c), across),
@@ -190,10 +206,13 @@ int next_of(const std::vector<HullFacet>& facets, int at) {
   return height(facets[static_cast<std::size_t>(next)]) < height(facet) ? next : at;
 }
 
-// How broadly the object stands, 0…1: the part of its outline that lies between places on the ground, and the part that is on it. A bust lies on
-// three points of its back, and stands on all of its base.
-double support_share(const Shape& shape, const std::vector<glm::dvec3>& corners, const HullFacet& facet) {
-  const glm::dvec3 side = glm::normalize(facet.corners[1] - facet.corners[0]), ahead = glm::cross(facet.normal, side);
+// How broadly the object stands, 0…1: the part of its outline that lies between places on the
+// ground, and the part that is on it. A bust lies on three points of its back, and stands on all of
+// its base.
+double support_share(const Shape& shape, const std::vector<glm::dvec3>& corners,
+                     const HullFacet& facet) {
+  const glm::dvec3 side = glm::normalize(facet.corners[1] - facet.corners[0]),
+                   ahead = glm::cross(facet.normal, side);
   const double ground = glm::dot(facet.corners[0], facet.normal);
   std::vector<glm::dvec2> outline, contact;
   for (const glm::dvec3& corner : corners) {
@@ -205,14 +224,16 @@ double support_share(const Shape& shape, const std::vector<glm::dvec3>& corners,
   if (!(whole > 0)) return 0;
   double touching = 0;
   for (std::size_t t = 0; t < shape.triangles.size(); t += 3) {
-    const glm::dvec3 &a = shape.points[shape.triangles[t]], &b = shape.points[shape.triangles[t + 1]],
+    const glm::dvec3 &a = shape.points[shape.triangles[t]],
+                     &b = shape.points[shape.triangles[t + 1]],
                      &c = shape.points[shape.triangles[t + 2]];
     if (glm::dot(a + b + c, facet.normal) < 3 * (ground - kContact)) continue;
     const glm::dvec3 across = glm::cross(b - a, c - a);
     const double level = std::abs(glm::dot(across, facet.normal));
     if (level > kLevel * glm::length(across)) touching += level / 2;
   }
-  return std::sqrt(area_of(convex_hull(std::move(contact))) / whole * std::min(1.0, touching / whole));
+  return std::sqrt(area_of(convex_hull(std::move(contact))) / whole *
+                   std::min(1.0, touching / whole));
 }
 
 std::array<double, 6> poses_of(const Shape& shape) {
@@ -229,8 +250,10 @@ std::array<double, 6> poses_of(const Shape& shape) {
     likely[static_cast<std::size_t>(at)] += solid_angle(facets[i]) / (4 * glm::pi<double>());
   }
   std::vector<glm::dvec3> corners;
-  for (const HullFacet& facet : facets) corners.insert(corners.end(), facet.corners.begin(), facet.corners.end());
-  // Each costs a look at all triangles: the likeliest alone, and of those the ones that have an axis up.
+  for (const HullFacet& facet : facets)
+    corners.insert(corners.end(), facet.corners.begin(), facet.corners.end());
+  // Each costs a look at all triangles: the likeliest alone, and of those the ones that have an
+  // axis up.
   std::vector<std::size_t> order(facets.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, std::greater(), [&](std::size_t i) { return likely[i]; });
@@ -240,7 +263,8 @@ std::array<double, 6> poses_of(const Shape& shape) {
     std::array<double, 6> weights{};
     for (std::size_t d = 0; d < 6; ++d) {
       const double along = glm::dot(-facets[i].normal, up_frame(kUpDirections[d]).up);
-      weights[d] = std::max(0.0, 1 - glm::degrees(std::acos(std::clamp(along, -1.0, 1.0))) / kTilt_degrees);
+      weights[d] =
+          std::max(0.0, 1 - glm::degrees(std::acos(std::clamp(along, -1.0, 1.0))) / kTilt_degrees);
     }
     if (std::ranges::max(weights) <= 0) continue;
     ++looked_at;
@@ -254,12 +278,16 @@ std::array<double, 6> poses_of(const Shape& shape) {
 class Silhouette {
  public:
   Silhouette(const Shape& shape, int axis)
-      : u_((axis + 1) % 3), v_((axis + 2) % 3), low_(shape.low[axis]), height_(shape.high[axis] - shape.low[axis]) {
+      : u_((axis + 1) % 3),
+        v_((axis + 2) % 3),
+        low_(shape.low[axis]),
+        height_(shape.high[axis] - shape.low[axis]) {
     const glm::dvec3 size = glm::max(shape.high - shape.low, glm::dvec3(1e-12));
     aspect_ = std::min(size[u_], size[v_]) / std::max(size[u_], size[v_]);
     const double cell = std::min(size[u_], size[v_]) / kCells;
     for (std::size_t t = 0; t < shape.triangles.size(); t += 3) {
-      const glm::dvec3 &a = shape.points[shape.triangles[t]], &b = shape.points[shape.triangles[t + 1]],
+      const glm::dvec3 &a = shape.points[shape.triangles[t]],
+                       &b = shape.points[shape.triangles[t + 1]],
                        &c = shape.points[shape.triangles[t + 2]];
       const double facing = glm::cross(b - a, c - a)[axis];
       const double longest = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
@@ -267,15 +295,18 @@ class Silhouette {
       for (int i = 0; i <= steps; ++i)
         for (int j = 0; i + j <= steps; ++j) {
           const glm::dvec3 p = a + (b - a) * (double(i) / steps) + (c - a) * (double(j) / steps);
-          const int x = std::clamp(static_cast<int>((p[u_] - shape.low[u_]) / size[u_] * kCells), 0, kCells - 1);
-          const int y = std::clamp(static_cast<int>((p[v_] - shape.low[v_]) / size[v_] * kCells), 0, kCells - 1);
+          const int x = std::clamp(static_cast<int>((p[u_] - shape.low[u_]) / size[u_] * kCells), 0,
+                                   kCells - 1);
+          const int y = std::clamp(static_cast<int>((p[v_] - shape.low[v_]) / size[v_] * kCells), 0,
+                                   kCells - 1);
           put(static_cast<std::size_t>(y * kCells + x), p[axis], facing);
         }
     }
   }
 
-  // How deep the surface lies below its highest places, in the area that these surround, and how large that area is. What shows its back
-  // is no hollow: the scan has a hole there, where the object stood.
+  // How deep the surface lies below its highest places, in the area that these surround, and how
+  // large that area is. What shows its back is no hollow: the scan has a hole there, where the
+  // object stood.
   double hollow_above() const { return hollow(+1); }
   double hollow_below() const { return hollow(-1); }
 
@@ -297,7 +328,8 @@ class Silhouette {
  private:
   struct Cell {
     double lowest = 0, highest = 0;
-    bool is_covered = false, faces_down = false, faces_up = false;  // the lowest and the highest place
+    // the lowest and the highest place
+    bool is_covered = false, faces_down = false, faces_up = false;
   };
 
   void put(std::size_t at, double height, double facing) {
@@ -331,7 +363,8 @@ class Silhouette {
     for (int y = 0; y < kCells; ++y)
       for (int x = 0; x < kCells; ++x) {
         const Cell& cell = cells_[static_cast<std::size_t>(y * kCells + x)];
-        if (cell.is_covered && (sign > 0 ? cell.faces_up : cell.faces_down) && is_inside(polygon, {x, y}))
+        if (cell.is_covered && (sign > 0 ? cell.faces_up : cell.faces_down) &&
+            is_inside(polygon, {x, y}))
           sum += depth(cell);
       }
     return covered > 0 ? sum / covered : 0;
@@ -351,7 +384,8 @@ std::array<double, 6> up_shares(const TriangleMesh& mesh) {
   const auto poses = poses_of(*shape);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Silhouette seen(*shape, static_cast<int>(axis));
-    const double opens_up = seen.hollow_above() - seen.hollow_below(), round = std::exp(kRound * seen.roundness());
+    const double opens_up = seen.hollow_above() - seen.hollow_below(),
+                 round = std::exp(kRound * seen.roundness());
     shares[axis] *= round * std::exp(kHollow * opens_up);
     shares[axis + 3] *= round * std::exp(-kHollow * opens_up);
   }

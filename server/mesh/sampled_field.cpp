@@ -26,7 +26,8 @@ float longest_edge(const Geometry& geometry, std::size_t triangle) {
 int cuts_of(float edge, float spacing) { return static_cast<int>(std::ceil(edge / spacing)); }
 int points_of(int cuts) { return (cuts + 1) * (cuts + 2) / 2; }
 
-// Long triangles are cut evenly, so slivers cost more than their area: the spacing is widened until the sum fits.
+// Long triangles are cut evenly, so slivers cost more than their area: the spacing is widened until
+// the sum fits.
 float fitting_spacing(const std::vector<float>& edges, float spacing) {
   for (;; spacing *= 1.5f) {
     double points = 0;
@@ -49,8 +50,10 @@ float mean_of_defined(const std::array<float, 3>& values, const glm::vec3& weigh
 
 }  // namespace
 
-Result<SampledField> SampledField::make(std::shared_ptr<const Geometry> source, const SurfaceNormals& normals,
-                                        float spacing, const PointFunction& function, Progress& progress, int threads) {
+Result<SampledField> SampledField::make(std::shared_ptr<const Geometry> source,
+                                        const SurfaceNormals& normals, float spacing,
+                                        const PointFunction& function, Progress& progress,
+                                        int threads) {
   SampledField field;
   field.geometry_ = std::move(source);
   const Geometry& geometry = *field.geometry_;
@@ -83,19 +86,22 @@ Result<SampledField> SampledField::make(std::shared_ptr<const Geometry> source, 
   std::atomic<std::size_t> done{0};
   const auto report = [&](std::size_t more) {
     const std::size_t now = done += more;
-    progress.report(static_cast<double>(now) / static_cast<double>(std::max<std::size_t>(total, 1)), kMeasuring);
+    progress.report(static_cast<double>(now) / static_cast<double>(std::max<std::size_t>(total, 1)),
+                    kMeasuring);
   };
   parallel_for(threads, static_cast<int>((vertices + kAtOnce - 1) / kAtOnce), [&](int part) {
     const std::size_t first = part * kAtOnce, last = std::min(vertices, first + kAtOnce);
     for (std::size_t i = first; i < last && !progress.cancelled(); ++i)
       if (is_used[i])
-        field.vertex_values_[i] = function(position_of[i], normals.at_position(static_cast<std::uint32_t>(i)));
+        field.vertex_values_[i] =
+            function(position_of[i], normals.at_position(static_cast<std::uint32_t>(i)));
     report(last - first);
   });
   parallel_for(threads, static_cast<int>(gridded.size()), [&](int which) {
     const std::uint32_t t = gridded[which];
     const Grid grid = field.grids_.at(t);
-    const glm::vec3 a = corner(geometry, t, 0), ab = corner(geometry, t, 1) - a, ac = corner(geometry, t, 2) - a;
+    const glm::vec3 a = corner(geometry, t, 0), ab = corner(geometry, t, 1) - a,
+                    ac = corner(geometry, t, 2) - a;
     for (int i = 0; i <= grid.cuts; ++i)
       for (int j = 0; i + j <= grid.cuts && !progress.cancelled(); ++j) {
         const float b = static_cast<float>(i) / static_cast<float>(grid.cuts),
@@ -110,7 +116,8 @@ Result<SampledField> SampledField::make(std::shared_ptr<const Geometry> source, 
 }
 
 float SampledField::grid_at(const Grid& grid, const glm::vec3& weights) const {
-  const float u = weights.y * static_cast<float>(grid.cuts), v = weights.z * static_cast<float>(grid.cuts);
+  const float u = weights.y * static_cast<float>(grid.cuts),
+              v = weights.z * static_cast<float>(grid.cuts);
   int i = std::clamp(static_cast<int>(u), 0, grid.cuts - 1);
   int j = std::clamp(static_cast<int>(v), 0, grid.cuts - 1 - i);
   const float du = std::clamp(u - static_cast<float>(i), 0.0f, 1.0f),
@@ -119,15 +126,19 @@ float SampledField::grid_at(const Grid& grid, const glm::vec3& weights) const {
     return grid_values_[grid.first + index_in_grid(grid.cuts, i + di, j + dj)];
   };
   if (du + dv <= 1 || i + j + 2 > grid.cuts)
-    return mean_of_defined({value(0, 0), value(1, 0), value(0, 1)}, {std::max(0.0f, 1 - du - dv), du, dv});
+    return mean_of_defined({value(0, 0), value(1, 0), value(0, 1)},
+                           {std::max(0.0f, 1 - du - dv), du, dv});
   return mean_of_defined({value(1, 1), value(0, 1), value(1, 0)}, {du + dv - 1, 1 - du, 1 - dv});
 }
 
 float SampledField::at(std::uint32_t triangle, const glm::vec3& weights) const {
-  if (const auto grid = grids_.find(triangle); grid != grids_.end()) return grid_at(grid->second, weights);
+  if (const auto grid = grids_.find(triangle); grid != grids_.end())
+    return grid_at(grid->second, weights);
   std::array<float, 3> values;
   for (std::size_t k = 0; k < 3; ++k)
-    values[k] = vertex_values_[geometry_->vertices[geometry_->indices[3 * std::size_t{triangle} + k]].position_index];
+    values[k] =
+        vertex_values_[geometry_->vertices[geometry_->indices[3 * std::size_t{triangle} + k]]
+                           .position_index];
   return mean_of_defined(values, weights);
 }
 

@@ -14,16 +14,20 @@
 
 namespace strata::mesh {
 
-// A value at a point of a surface, from its place and normal in model space; NaN: none. Called on several threads at once.
+// A value at a point of a surface, from its place and normal in model space; NaN: none. Called on
+// several threads at once.
 using PointFunction = std::function<float(const glm::vec3& position, const glm::vec3& normal)>;
 
-// A function of points, worked out at the vertices of a mesh and interpolated between them. Triangles with an edge longer than
-// `spacing` get a grid of points of their own, so that a coarse mesh loses nothing. Immutable once made; thread-safe.
+// A function of points, worked out at the vertices of a mesh and interpolated between them.
+// Triangles with an edge longer than `spacing` get a grid of points of their own, so that a coarse
+// mesh loses nothing. Immutable once made; thread-safe.
 class SampledField {
  public:
-  // Refused when cancelled. `spacing` > 0; it is widened where the grids would have more than four million points.
-  static Result<SampledField> make(std::shared_ptr<const Geometry> geometry, const SurfaceNormals& normals,
-                                   float spacing, const PointFunction& function, Progress& progress,
+  // Refused when cancelled. `spacing` > 0; it is widened where the grids would have more than four
+  // million points.
+  static Result<SampledField> make(std::shared_ptr<const Geometry> geometry,
+                                   const SurfaceNormals& normals, float spacing,
+                                   const PointFunction& function, Progress& progress,
                                    int threads = background_threads());
 
   // Corners without a value are left out of the mean; NaN where none has one.

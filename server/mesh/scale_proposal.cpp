@@ -34,7 +34,8 @@ constexpr UnitShare kUnits[] = {{Unit::mm, 0.45}, {Unit::m, 0.45}, {Unit::cm, 0.
 // As likely as a size is, for each factor of ten.
 double plausibility(double size_m) {
   for (const SizeClass& size : kSizes)
-    if (size_m >= size.from_m && size_m < size.to_m) return size.share / std::log10(size.to_m / size.from_m);
+    if (size_m >= size.from_m && size_m < size.to_m)
+      return size.share / std::log10(size.to_m / size.from_m);
   return kAnySize;
 }
 
@@ -42,7 +43,8 @@ struct Box {
   glm::dvec3 low, high;
 };
 Box box_of(const TriangleMesh& mesh) {
-  Box box{glm::dvec3(std::numeric_limits<double>::infinity()), glm::dvec3(-std::numeric_limits<double>::infinity())};
+  Box box{glm::dvec3(std::numeric_limits<double>::infinity()),
+          glm::dvec3(-std::numeric_limits<double>::infinity())};
   for (const glm::dvec3& position : mesh.positions) {
     box.low = glm::min(box.low, position);
     box.high = glm::max(box.high, position);

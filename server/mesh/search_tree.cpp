@@ -7,10 +7,11 @@
 #include <limits>
 #include <vector>
 
-// A tree of boxes over the triangles in the order in which the geometry stores them. That order follows a Hilbert
-// curve, so runs of it have compact boxes without any sorting: a million triangles take some tens of milliseconds, and any
-// other order would only be slower, never wrong. Each node has eight children, whose boxes lie side by side, so that vectors
-// of the CPU test them together. Triangles are computed in double.
+// A tree of boxes over the triangles in the order in which the geometry stores them. That order
+// follows a Hilbert curve, so runs of it have compact boxes without any sorting: a million
+// triangles take some tens of milliseconds, and any other order would only be slower, never wrong.
+// Each node has eight children, whose boxes lie side by side, so that vectors of the CPU test them
+// together. Triangles are computed in double.
 
 namespace strata::mesh {
 namespace {
@@ -36,7 +37,8 @@ struct Boxes {
 template <class Key>
 using Keys = std::array<Key, kWidth>;
 
-// Several boxes at once. Compilers do not find this by themselves: they keep branches, which vectors of the CPU cannot take.
+// Several boxes at once. Compilers do not find this by themselves: they keep branches, which
+// vectors of the CPU cannot take.
 template <class Number>
 struct LanesOf {
   typedef Number Type __attribute__((vector_size(16)));
@@ -51,8 +53,8 @@ Lanes load(const Number* from) {
   return lanes;
 }
 
-// Not above the squared distances of the boxes: the margin is more than the floats round, those of a limit that they are held
-// against included.
+// Not above the squared distances of the boxes: the margin is more than the floats round, those of
+// a limit that they are held against included.
 Keys<float> squared_distances(const Boxes& boxes, const glm::vec3& p) {
   constexpr std::size_t kLanes = sizeof(Floats) / sizeof(float);
   Keys<float> keys;
@@ -74,10 +76,11 @@ Keys<float> squared_distances(const Boxes& boxes, const glm::vec3& p) {
   return keys;
 }
 
-// Weights of the corners at the point of triangle a, b, c that is nearest to p (Ericson, Real-Time Collision
-// Detection, 5.1.5). Written with differences of products only where the denominators cannot vanish; a triangle without
-// area falls to its edges.
-glm::dvec3 nearest_weights(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+// Weights of the corners at the point of triangle a, b, c that is nearest to p (Ericson, Real-Time
+// Collision Detection, 5.1.5). Written with differences of products only where the denominators
+// cannot vanish; a triangle without area falls to its edges.
+glm::dvec3 nearest_weights(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                           const glm::dvec3& c) {
   const glm::dvec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
   if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
@@ -95,9 +98,9 @@ glm::dvec3 nearest_weights(const glm::dvec3& p, const glm::dvec3& a, const glm::
   return {1 - vb / sum - vc / sum, vb / sum, vc / sum};
 }
 
-// A ray prepared for the watertight test of Woop, Benthin and Wald (2013): the axis along which it is longest becomes
-// z, and the others are sheared. Edges shared by two triangles give the same numbers with opposite sign, so no ray
-// slips between them.
+// A ray prepared for the watertight test of Woop, Benthin and Wald (2013): the axis along which it
+// is longest becomes z, and the others are sheared. Edges shared by two triangles give the same
+// numbers with opposite sign, so no ray slips between them.
 struct PreparedRay {
   PreparedRay(const glm::dvec3& from, const glm::dvec3& along)
       : origin(from), direction(along + 0.0), inverse(1.0 / direction) {
@@ -109,7 +112,8 @@ struct PreparedRay {
     shear = glm::dvec3(direction[kx], direction[ky], 1.0) / direction[kz];
   }
 
-  // Entry distances of the boxes, or infinity. The factor covers the rounding of the three divisions.
+  // Entry distances of the boxes, or infinity. The factor covers the rounding of the three
+  // divisions.
   Keys<double> enter(const Boxes& boxes, double limit) const {
     constexpr std::size_t kLanes = sizeof(Doubles) / sizeof(double);
     Keys<double> keys;
@@ -120,7 +124,8 @@ struct PreparedRay {
         // From the side that the ray meets first.
         const float* first = &(scale < 0 ? boxes.high : boxes.low)[axis][begin];
         const float* last = &(scale < 0 ? boxes.low : boxes.high)[axis][begin];
-        const Doubles t0 = (Doubles{first[0], first[1]} - at) * scale, t1 = (Doubles{last[0], last[1]} - at) * scale;
+        const Doubles t0 = (Doubles{first[0], first[1]} - at) * scale,
+                      t1 = (Doubles{last[0], last[1]} - at) * scale;
         // 0 × infinity: the ray runs inside the face of the box, which bounds nothing.
         near = t0 > near ? t0 : near;
         far = t1 < far ? t1 : far;
@@ -133,7 +138,8 @@ struct PreparedRay {
   }
 
   // Distance to the triangle, in front of the origin; fills `weights`.
-  std::optional<double> hit(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, glm::dvec3& weights) const {
+  std::optional<double> hit(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
+                            glm::dvec3& weights) const {
     const glm::dvec3 pa = a - origin, pb = b - origin, pc = c - origin;
     const double ax = pa[kx] - shear.x * pa[kz], ay = pa[ky] - shear.y * pa[kz];
     const double bx = pb[kx] - shear.x * pb[kz], by = pb[ky] - shear.y * pb[kz];
@@ -152,7 +158,9 @@ struct PreparedRay {
   int kx = 0, ky = 1, kz = 2;
 };
 
-bool is_finite(const glm::vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+bool is_finite(const glm::vec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 
 }  // namespace
 
@@ -184,11 +192,13 @@ struct SearchTree::Impl {
 
   std::array<glm::dvec3, 3> corners(std::size_t triangle) const {
     const std::uint32_t* i = &geometry->indices[3 * triangle];
-    return {geometry->vertices[i[0]].position, geometry->vertices[i[1]].position, geometry->vertices[i[2]].position};
+    return {geometry->vertices[i[0]].position, geometry->vertices[i[1]].position,
+            geometry->vertices[i[2]].position};
   }
 
-  // Visits the triangles of leaves in the order of their keys while these are not above `limit`, which `visit` may lower.
-  // `keys_of` gives those of a node's children: distances, infinity to skip.
+  // Visits the triangles of leaves in the order of their keys while these are not above `limit`,
+  // which `visit` may lower. `keys_of` gives those of a node's children: distances, infinity to
+  // skip.
   template <class Key, class KeysOf, class Visit>
   void search(double& limit, KeysOf keys_of, Visit visit) const {
     struct Entry {
@@ -214,7 +224,8 @@ struct SearchTree::Impl {
       const std::size_t below = entry.level == 1 ? leaves : levels[entry.level - 2].size();
       const std::size_t first_child = std::size_t{entry.index} * kWidth;
       const std::size_t first = depth, children = std::min(kWidth, below - first_child);
-      // Which of them are near is not to be foretold: a branch for each would take longer than the boxes.
+      // Which of them are near is not to be foretold: a branch for each would take longer than the
+      // boxes.
       std::array<std::uint8_t, kWidth> near{};
       std::size_t count = 0;
       for (std::size_t child = 0; child < children; ++child) {
@@ -225,8 +236,10 @@ struct SearchTree::Impl {
         const std::size_t child = near[i];
         // The nearest is on top of the stack.
         std::size_t place = depth++;
-        for (; place > first && stack[place - 1].key < keys[child]; --place) stack[place] = stack[place - 1];
-        stack[place] = {keys[child], static_cast<std::uint32_t>(first_child + child), entry.level - 1};
+        for (; place > first && stack[place - 1].key < keys[child]; --place)
+          stack[place] = stack[place - 1];
+        stack[place] = {keys[child], static_cast<std::uint32_t>(first_child + child),
+                        entry.level - 1};
       }
     }
   }
@@ -256,12 +269,13 @@ struct SearchTree::Impl {
 
   Hit make_hit(std::size_t triangle, const glm::dvec3& weights, double distance) const {
     const std::uint32_t* i = &geometry->indices[3 * triangle];
-    const Vertex &a = geometry->vertices[i[0]], &b = geometry->vertices[i[1]], &c = geometry->vertices[i[2]];
+    const Vertex &a = geometry->vertices[i[0]], &b = geometry->vertices[i[1]],
+                 &c = geometry->vertices[i[2]];
     const auto [pa, pb, pc] = corners(triangle);
     // World positions tell the sides of triangles that are flat in float.
     const glm::dvec3& base = geometry->positions[a.position_index];
-    const glm::dvec3 cross =
-        glm::cross(geometry->positions[b.position_index] - base, geometry->positions[c.position_index] - base);
+    const glm::dvec3 cross = glm::cross(geometry->positions[b.position_index] - base,
+                                        geometry->positions[c.position_index] - base);
     const double length = glm::length(cross);
     Hit hit;
     hit.position = glm::vec3(weights.x * pa + weights.y * pb + weights.z * pc);
@@ -278,24 +292,31 @@ struct SearchTree::Impl {
   std::vector<std::vector<Boxes>> levels;  // the lowest nodes, whose children are leaves, first
 };
 
-SearchTree::SearchTree(std::shared_ptr<const Geometry> geometry) : impl_(std::make_unique<Impl>(std::move(geometry))) {}
+SearchTree::SearchTree(std::shared_ptr<const Geometry> geometry)
+    : impl_(std::make_unique<Impl>(std::move(geometry))) {}
 SearchTree::~SearchTree() = default;
 
-std::optional<SearchTree::Hit> SearchTree::nearest(const glm::vec3& point, float max_distance) const {
-  return impl_->nearest(point, max_distance,
-                        [](const glm::dvec3&, const glm::dvec3&, const glm::dvec3&) { return true; });
+std::optional<SearchTree::Hit> SearchTree::nearest(const glm::vec3& point,
+                                                   float max_distance) const {
+  return impl_->nearest(
+      point, max_distance,
+      [](const glm::dvec3&, const glm::dvec3&, const glm::dvec3&) { return true; });
 }
 
-std::optional<SearchTree::Hit> SearchTree::nearest_facing(const glm::vec3& point, float max_distance,
-                                                          const glm::vec3& normal, float least_cos) const {
+std::optional<SearchTree::Hit> SearchTree::nearest_facing(const glm::vec3& point,
+                                                          float max_distance,
+                                                          const glm::vec3& normal,
+                                                          float least_cos) const {
   const glm::dvec3 n(normal);
-  return impl_->nearest(point, max_distance, [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    const glm::dvec3 cross = glm::cross(b - a, c - a);
-    return glm::dot(cross, n) >= double{least_cos} * glm::length(cross);
-  });
+  return impl_->nearest(point, max_distance,
+                        [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+                          const glm::dvec3 cross = glm::cross(b - a, c - a);
+                          return glm::dot(cross, n) >= double{least_cos} * glm::length(cross);
+                        });
 }
 
-std::optional<SearchTree::Hit> SearchTree::first_hit(const glm::vec3& origin, const glm::vec3& direction) const {
+std::optional<SearchTree::Hit> SearchTree::first_hit(const glm::vec3& origin,
+                                                     const glm::vec3& direction) const {
   const double length = glm::length(glm::dvec3(direction));
   if (!is_finite(origin) || !is_finite(direction) || !(length > 0)) return std::nullopt;
   const PreparedRay ray(glm::dvec3(origin), glm::dvec3(direction) / length);

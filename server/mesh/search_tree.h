@@ -7,8 +7,8 @@
 
 namespace strata::mesh {
 
-// Nearest point and ray queries on a model's surface, in model space (world minus origin), without the GPU.
-// Immutable once built; queries are thread-safe.
+// Nearest point and ray queries on a model's surface, in model space (world minus origin), without
+// the GPU. Immutable once built; queries are thread-safe.
 class SearchTree {
  public:
   // Keeps a reference to `geometry`'s arrays.
@@ -26,9 +26,10 @@ class SearchTree {
     glm::vec3 barycentric;
   };
   std::optional<Hit> nearest(const glm::vec3& point, float max_distance) const;
-  // Among triangles whose normal is within the angle of `normal` (unit; its cosine is `least_cos`): the right side of a thin wall.
-  std::optional<Hit> nearest_facing(const glm::vec3& point, float max_distance, const glm::vec3& normal,
-                                    float least_cos) const;
+  // Among triangles whose normal is within the angle of `normal` (unit; its cosine is `least_cos`):
+  // the right side of a thin wall.
+  std::optional<Hit> nearest_facing(const glm::vec3& point, float max_distance,
+                                    const glm::vec3& normal, float least_cos) const;
   std::optional<Hit> first_hit(const glm::vec3& origin, const glm::vec3& direction) const;
 
  private:

@@ -17,13 +17,15 @@ std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangl
   std::vector<glm::vec3> sum(positions.size());
   std::vector<float> weight(positions.size());
   std::vector<bool> is_fixed(positions.size(), false);
-  const auto other = [&](std::size_t corner) { return triangles[corner % 3 == 2 ? corner - 2 : corner + 1]; };
+  const auto other = [&](std::size_t corner) {
+    return triangles[corner % 3 == 2 ? corner - 2 : corner + 1];
+  };
   for (std::size_t c = 0; c < triangles.size(); ++c)
     if (neighbours[c] == kNoTriangle) is_fixed[triangles[c]] = is_fixed[other(c)] = true;
   for (std::size_t v = 0; v < stays.size(); ++v)
     if (stays[v]) is_fixed[v] = true;
-  // A vertex goes no farther than a share of its shortest edge: the long edges of slivers would pull it through its
-  // neighbours.
+  // A vertex goes no farther than a share of its shortest edge: the long edges of slivers would
+  // pull it through its neighbours.
   std::vector<float> shortest(positions.size(), std::numeric_limits<float>::max());
   for (std::size_t c = 0; c < triangles.size(); ++c) {
     const std::uint32_t a = triangles[c], b = other(c);

@@ -7,8 +7,9 @@
 
 namespace strata::mesh {
 
-// Moves each vertex `iterations` times 60 % of the way to the mean of its neighbours; vertices on a boundary stay,
-// so that an open mesh does not shrink from its rim, and those that `stays` marks (one a vertex; empty: none).
+// Moves each vertex `iterations` times 60 % of the way to the mean of its neighbours; vertices on a
+// boundary stay, so that an open mesh does not shrink from its rim, and those that `stays` marks
+// (one a vertex; empty: none).
 std::vector<glm::vec3> laplacian_smoothed(std::span<const std::uint32_t> triangles,
                                           std::span<const std::uint32_t> neighbours,
                                           std::span<const glm::vec3> positions, int iterations,

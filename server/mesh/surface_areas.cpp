@@ -20,35 +20,41 @@ void SurfaceBake::credit_areas(int band) {
         map_.area[texel_index(x, y)] += static_cast<float>(area);
       else
         leftovers.push_back(
-            {static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(resolution_) + static_cast<std::uint32_t>(x), t,
-             static_cast<float>(area)});
+            {static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(resolution_) +
+                 static_cast<std::uint32_t>(x),
+             t, static_cast<float>(area)});
     };
     pieces.set(texels_at(t, 0), texels_at(t, 1), texels_at(t, 2));
     if (pieces.is_line()) {
       const auto texel = centroid_texel(t);
       const int y = static_cast<int>(texel / resolution_);
-      if (y >= y_low && y < y_high) credit(static_cast<int>(texel % resolution_), y, triangle_area_[t]);
+      if (y >= y_low && y < y_high)
+        credit(static_cast<int>(texel % resolution_), y, triangle_area_[t]);
       continue;
     }
     const double area_per_texel = triangle_area_[t] / pieces.area();
-    pieces.for_each(y_low, y_high, [&](int x, int y, double piece) { credit(x, y, piece * area_per_texel); });
+    pieces.for_each(y_low, y_high,
+                    [&](int x, int y, double piece) { credit(x, y, piece * area_per_texel); });
   }
 }
 
-// The surface texel that takes what lies on a texel of no or of another island: the nearest of its own island within
-// the ring; beyond (a tip too thin to cover centres) the nearest that the triangle covers; for a triangle that covers
-// none the one that holds its centroid, which is always surface.
+// The surface texel that takes what lies on a texel of no or of another island: the nearest of its
+// own island within the ring; beyond (a tip too thin to cover centres) the nearest that the
+// triangle covers; for a triangle that covers none the one that holds its centroid, which is always
+// surface.
 glm::ivec2 SurfaceBake::heir_of(const Leftover& leftover) const {
-  const int x = static_cast<int>(leftover.texel % resolution_), y = static_cast<int>(leftover.texel / resolution_);
+  const int x = static_cast<int>(leftover.texel % resolution_),
+            y = static_cast<int>(leftover.texel / resolution_);
   glm::ivec2 found;
   if (nearest_surface(x, y, islands_.of_triangle[leftover.triangle], found)) return found;
   std::int64_t least = -1;
-  raster_of(leftover.triangle).for_each_span(0, resolution_, 0, resolution_, [&](int row, int begin, int end) {
-    const int column = std::clamp(x, begin, end - 1);
-    const std::int64_t dx = column - x, dy = row - y, squared = dx * dx + dy * dy;
-    if (least < 0 || squared < least) least = squared, found = {column, row};
-    return true;
-  });
+  raster_of(leftover.triangle)
+      .for_each_span(0, resolution_, 0, resolution_, [&](int row, int begin, int end) {
+        const int column = std::clamp(x, begin, end - 1);
+        const std::int64_t dx = column - x, dy = row - y, squared = dx * dx + dy * dy;
+        if (least < 0 || squared < least) least = squared, found = {column, row};
+        return true;
+      });
   if (least >= 0) return found;
   const auto texel = centroid_texel(leftover.triangle);
   return {texel % resolution_, texel / resolution_};

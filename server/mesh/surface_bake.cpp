@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kMostBands = 32;
 
-double inside_unit(float value) { return value >= 0 ? std::min(double{value}, 1.0) : 0.0; }  // also for NaN
+// also for NaN
+double inside_unit(float value) { return value >= 0 ? std::min(double{value}, 1.0) : 0.0; }
 
 }  // namespace
 
@@ -29,12 +30,15 @@ SurfaceBake::SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& m
   map.blocks_per_side = resolution / kBlockSize;
   snapped_.reserve(geometry.vertices.size());
   for (const Vertex& v : geometry.vertices)
-    snapped_.push_back(snap_to_subtexels(inside_unit(v.uv.x) * resolution, inside_unit(v.uv.y) * resolution));
+    snapped_.push_back(
+        snap_to_subtexels(inside_unit(v.uv.x) * resolution, inside_unit(v.uv.y) * resolution));
   islands_ = find_islands(geometry.indices, geometry.vertices.size());
   triangle_area_.resize(geometry.triangle_count());
   for (std::uint32_t t = 0; t < triangle_area_.size(); ++t) {
     // From the world's doubles: model space is float.
-    const auto at = [&](int k) { return geometry.positions[geometry.vertices[vertex(t, k)].position_index]; };
+    const auto at = [&](int k) {
+      return geometry.positions[geometry.vertices[vertex(t, k)].position_index];
+    };
     const double area = glm::length(glm::cross(at(1) - at(0), at(2) - at(0))) / 2;
     triangle_area_[t] = static_cast<float>(area);
     map.area_total += area;
@@ -55,8 +59,10 @@ Buckets SurfaceBake::triangles_by_band() const {
   for (int band = 0; band < band_count_; ++band)
     std::fill(band_of_row.begin() + first_row(band), band_of_row.begin() + first_row(band + 1),
               static_cast<std::uint8_t>(band));
-  return {band_count_, static_cast<std::uint32_t>(geometry_.triangle_count()), [&](std::uint32_t t) {
-            const int a = snapped_[vertex(t, 0)].y, b = snapped_[vertex(t, 1)].y, c = snapped_[vertex(t, 2)].y;
+  return {band_count_, static_cast<std::uint32_t>(geometry_.triangle_count()),
+          [&](std::uint32_t t) {
+            const int a = snapped_[vertex(t, 0)].y, b = snapped_[vertex(t, 1)].y,
+                      c = snapped_[vertex(t, 2)].y;
             // One subtexel wider, as areas are clipped at the exact coordinates.
             const int low = std::clamp((std::min({a, b, c}) - 1) >> 8, 0, resolution_ - 1);
             const int high = std::clamp((std::max({a, b, c}) + 1) >> 8, 0, resolution_ - 1);
@@ -70,17 +76,21 @@ glm::dvec2 SurfaceBake::texels_at(std::uint32_t triangle, int k) const {
 }
 
 CoverageRaster SurfaceBake::raster_of(std::uint32_t triangle) const {
-  return {snapped_[vertex(triangle, 0)], snapped_[vertex(triangle, 1)], snapped_[vertex(triangle, 2)]};
+  return {snapped_[vertex(triangle, 0)], snapped_[vertex(triangle, 1)],
+          snapped_[vertex(triangle, 2)]};
 }
 
 std::uint32_t SurfaceBake::centroid_texel(std::uint32_t triangle) const {
-  const glm::dvec2 centre = (texels_at(triangle, 0) + texels_at(triangle, 1) + texels_at(triangle, 2)) / 3.0;
+  const glm::dvec2 centre =
+      (texels_at(triangle, 0) + texels_at(triangle, 1) + texels_at(triangle, 2)) / 3.0;
   const auto x = std::min(static_cast<int>(centre.x), resolution_ - 1);
   const auto y = std::min(static_cast<int>(centre.y), resolution_ - 1);
-  return static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(resolution_) + static_cast<std::uint32_t>(x);
+  return static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(resolution_) +
+         static_cast<std::uint32_t>(x);
 }
 
-std::uint64_t SurfaceBake::block_mask(const std::vector<std::uint64_t>& masks, int block_x, int block_y) const {
+std::uint64_t SurfaceBake::block_mask(const std::vector<std::uint64_t>& masks, int block_x,
+                                      int block_y) const {
   const int blocks = map_.blocks_per_side;
   if (block_x < 0 || block_y < 0 || block_x >= blocks || block_y >= blocks) return 0;
   return masks[static_cast<std::size_t>(block_y) * blocks + block_x];
@@ -96,15 +106,17 @@ std::size_t SurfaceBake::texel_index(int x, int y) const {
 }
 
 std::uint32_t SurfaceBake::owner(int x, int y) const {
-  return x >= 0 && y >= 0 && x < resolution_ && y < resolution_ && is_surface(x, y) ? owner_[texel_index(x, y)]
-                                                                                    : kNobody;
+  return x >= 0 && y >= 0 && x < resolution_ && y < resolution_ && is_surface(x, y)
+             ? owner_[texel_index(x, y)]
+             : kNobody;
 }
 
 void SurfaceBake::mark_surface(int band) {
   const int y_low = first_row(band), y_high = first_row(band + 1);
   for (const std::uint32_t t : triangles_of_band_[band])
     raster_of(t).for_each_span(0, resolution_, y_low, y_high, [&](int y, int x0, int x1) {
-      std::uint64_t* row = surface_of_block_.data() + static_cast<std::size_t>(y >> 3) * map_.blocks_per_side;
+      std::uint64_t* row =
+          surface_of_block_.data() + static_cast<std::size_t>(y >> 3) * map_.blocks_per_side;
       for (int x = x0; x < x1;) {
         const int next = std::min(x1, (x | 7) + 1);
         const std::uint64_t bits = ((1u << (next - x)) - 1u) << (x & 7);
@@ -113,15 +125,16 @@ void SurfaceBake::mark_surface(int band) {
       }
       return true;
     });
-  // Triangles between the centres: they get the texel of their centroid where no other triangle owns it.
+  // Triangles between the centres: they get the texel of their centroid where no other triangle
+  // owns it.
   auto& claims = claims_[band];
   for (const std::uint32_t t : triangles_of_band_[band]) {
     if (triangle_area_[t] <= 0) continue;
     const auto texel = centroid_texel(t);
     const int x = static_cast<int>(texel % resolution_), y = static_cast<int>(texel / resolution_);
     if (y < y_low || y >= y_high || is_surface(x, y)) continue;
-    const bool covers_none =
-        raster_of(t).for_each_span(0, resolution_, 0, resolution_, [](int, int, int) { return false; });
+    const bool covers_none = raster_of(t).for_each_span(0, resolution_, 0, resolution_,
+                                                        [](int, int, int) { return false; });
     if (covers_none) claims.push_back({texel, t});
   }
   std::sort(claims.begin(), claims.end(), [&](const Claim& a, const Claim& b) {
@@ -129,13 +142,14 @@ void SurfaceBake::mark_surface(int band) {
     const float area_a = triangle_area_[a.triangle], area_b = triangle_area_[b.triangle];
     return area_a != area_b ? area_a > area_b : a.triangle < b.triangle;
   });
-  claims.erase(
-      std::unique(claims.begin(), claims.end(), [](const Claim& a, const Claim& b) { return a.texel == b.texel; }),
-      claims.end());
+  claims.erase(std::unique(claims.begin(), claims.end(),
+                           [](const Claim& a, const Claim& b) { return a.texel == b.texel; }),
+               claims.end());
   for (const Claim& claim : claims) {
-    const int x = static_cast<int>(claim.texel % resolution_), y = static_cast<int>(claim.texel / resolution_);
-    surface_of_block_[static_cast<std::size_t>(y >> 3) * map_.blocks_per_side + (x >> 3)] |= std::uint64_t{1}
-                                                                                             << ((y & 7) * 8 + (x & 7));
+    const int x = static_cast<int>(claim.texel % resolution_),
+              y = static_cast<int>(claim.texel / resolution_);
+    surface_of_block_[static_cast<std::size_t>(y >> 3) * map_.blocks_per_side + (x >> 3)] |=
+        std::uint64_t{1} << ((y & 7) * 8 + (x & 7));
   }
 }
 
@@ -205,7 +219,10 @@ namespace {
 class PositionPlane {
  public:
   PositionPlane(const std::array<glm::dvec2, 3>& uv, const std::array<glm::dvec3, 3>& corners)
-      : origin_(uv[0]), base_(corners[0]), along_1_(corners[1] - corners[0]), along_2_(corners[2] - corners[0]) {
+      : origin_(uv[0]),
+        base_(corners[0]),
+        along_1_(corners[1] - corners[0]),
+        along_2_(corners[2] - corners[0]) {
     const glm::dvec2 e1 = uv[1] - uv[0], e2 = uv[2] - uv[0];
     const double twice = e1.x * e2.y - e1.y * e2.x;
     is_line_ = std::abs(twice) <= 1e-12 * (glm::dot(e1, e1) + glm::dot(e2, e2));
@@ -261,7 +278,8 @@ void SurfaceBake::place_surface(int band) {
     }
     return PositionPlane(uv, corners);
   };
-  const auto place = [&](std::size_t texel, std::uint32_t t, const PositionPlane& plane, int x, int y) {
+  const auto place = [&](std::size_t texel, std::uint32_t t, const PositionPlane& plane, int x,
+                         int y) {
     owner_[texel] = t;
     if (purpose_ == BakeFor::owners)
       weights_[texel] = plane.packed_weights(x + 0.5, y + 0.5);
@@ -271,7 +289,8 @@ void SurfaceBake::place_surface(int band) {
   std::vector<std::uint32_t> shared;
   for (const std::uint32_t t : triangles_of_band_[band]) {
     const CoverageRaster raster = raster_of(t);
-    // Most triangles of a dense scan cover little; the plane is worked out when the first texel asks for it.
+    // Most triangles of a dense scan cover little; the plane is worked out when the first texel
+    // asks for it.
     std::optional<PositionPlane> plane;
     raster.for_each_span(0, resolution_, y_low, y_high, [&](int y, int x0, int x1) {
       if (!plane) plane = plane_of(t);
@@ -279,7 +298,8 @@ void SurfaceBake::place_surface(int band) {
         const std::size_t texel = texel_index(x, y);
         const auto present = owner_[texel];
         if (present != kNobody) {
-          shared.push_back(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(resolution_) + x);
+          shared.push_back(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(resolution_) +
+                           x);
           if (triangle_area_[present] >= triangle_area_[t]) continue;
         }
         place(texel, t, *plane, x, y);
@@ -290,7 +310,8 @@ void SurfaceBake::place_surface(int band) {
   std::sort(shared.begin(), shared.end());
   overlaps_of_band_[band] = std::unique(shared.begin(), shared.end()) - shared.begin();
   for (const Claim& claim : claims_[band]) {
-    const int x = static_cast<int>(claim.texel % resolution_), y = static_cast<int>(claim.texel / resolution_);
+    const int x = static_cast<int>(claim.texel % resolution_),
+              y = static_cast<int>(claim.texel / resolution_);
     place(texel_index(x, y), claim.triangle, plane_of(claim.triangle), x, y);
   }
 }

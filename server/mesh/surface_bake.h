@@ -17,12 +17,14 @@ namespace strata::mesh {
 // What is kept of each texel: its position and area, or its triangle and its place there.
 enum class BakeFor { map, owners };
 
-// The steps of a surface map's baking. Work is cut into horizontal bands of the atlas, always the same ones, so that
-// the result does not depend on which thread does which. Within a band triangles come in ascending order.
-// For owners the steps end with place_gutter, and the map's positions and areas stay empty.
+// The steps of a surface map's baking. Work is cut into horizontal bands of the atlas, always the
+// same ones, so that the result does not depend on which thread does which. Within a band triangles
+// come in ascending order. For owners the steps end with place_gutter, and the map's positions and
+// areas stay empty.
 class SurfaceBake {
  public:
-  SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map, BakeFor purpose = BakeFor::map);
+  SurfaceBake(const Geometry& geometry, int resolution, SurfaceMap& map,
+              BakeFor purpose = BakeFor::map);
 
   int band_count() const { return band_count_; }
 
@@ -39,11 +41,13 @@ class SurfaceBake {
   void bound_tiles();              // after pack_slots of all bands
   void plant_tree(int threads);    // after pack_slots of all bands
 
-  // What place_surface and place_gutter found, for those who paint by triangle: 64 a slot, of surface texels only. Weights are of
-  // the second corner and << 16 of the third, in 1/65535. To be asked for once, at the end.
+  // What place_surface and place_gutter found, for those who paint by triangle: 64 a slot, of
+  // surface texels only. Weights are of the second corner and << 16 of the third, in 1/65535. To be
+  // asked for once, at the end.
   std::vector<std::uint32_t> take_owners() { return std::move(owner_); }
   std::vector<std::uint32_t> take_weights() { return std::move(weights_); }
-  struct Borrowed {  // a gutter texel that has the position of a surface texel; indices into the per-slot arrays
+  struct Borrowed {
+    // a gutter texel that has the position of a surface texel; indices into the per-slot arrays
     std::uint32_t gutter, owner;
   };
   const std::vector<Borrowed>& borrowed_in(int band) const { return borrowed_[band]; }
@@ -59,7 +63,9 @@ class SurfaceBake {
     float area;
   };
 
-  std::uint32_t vertex(std::uint32_t triangle, int k) const { return geometry_.indices[3 * std::size_t{triangle} + k]; }
+  std::uint32_t vertex(std::uint32_t triangle, int k) const {
+    return geometry_.indices[3 * std::size_t{triangle} + k];
+  }
   glm::dvec2 texels_at(std::uint32_t triangle, int k) const;
   CoverageRaster raster_of(std::uint32_t triangle) const;
   std::uint32_t centroid_texel(std::uint32_t triangle) const;  // y * resolution + x
@@ -72,8 +78,9 @@ class SurfaceBake {
   BlockTree::Part part_of(std::uint32_t slot) const;  // as if the block were one
   std::uint64_t block_mask(const std::vector<std::uint64_t>& masks, int block_x, int block_y) const;
   bool is_surface(int x, int y) const;
-  std::size_t texel_index(int x, int y) const;  // into the per-slot arrays; the block must have a slot
-  std::uint32_t owner(int x, int y) const;      // kNobody where no surface
+  // into the per-slot arrays; the block must have a slot
+  std::size_t texel_index(int x, int y) const;
+  std::uint32_t owner(int x, int y) const;  // kNobody where no surface
   bool nearest_surface(int x, int y, std::uint32_t island, glm::ivec2& found) const;
   glm::ivec2 heir_of(const Leftover& leftover) const;
 
@@ -91,9 +98,10 @@ class SurfaceBake {
   std::vector<std::vector<Borrowed>> borrowed_;
   std::vector<std::vector<Leftover>> leftovers_;
   std::vector<std::uint64_t> overlaps_of_band_;
-  std::vector<std::uint32_t> owner_;       // 64 a slot
-  std::vector<std::uint32_t> weights_;     // 64 a slot, for owners only
-  std::unique_ptr<glm::vec3[]> position_;  // 64 a slot, until they are packed; undefined where nothing is owned
+  std::vector<std::uint32_t> owner_;    // 64 a slot
+  std::vector<std::uint32_t> weights_;  // 64 a slot, for owners only
+  // 64 a slot, until they are packed; undefined where nothing is owned
+  std::unique_ptr<glm::vec3[]> position_;
   struct Box {
     glm::vec3 low{INFINITY}, high{-INFINITY};
   };

@@ -11,7 +11,8 @@ glm::vec3 SurfaceMap::position(std::uint32_t slot, int texel) const {
 TileMask SurfaceMap::owned_in_tile(TileAddress tile) const {
   return gather_tile_bits(*this, tile, [&](std::uint32_t slot) {
     std::uint64_t bits = 0;
-    for (int i = 0; i < 64; ++i) bits |= std::uint64_t{packed_position[std::size_t{slot} * 64 + i] != kNoPosition} << i;
+    for (int i = 0; i < 64; ++i)
+      bits |= std::uint64_t{packed_position[std::size_t{slot} * 64 + i] != kNoPosition} << i;
     return bits;
   });
 }
@@ -27,8 +28,8 @@ float SurfaceMap::area_of(TileAddress tile, int texel) const {
 
 std::size_t SurfaceMap::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return of(slot_of_block) + of(block_of_slot) + of(packed_position) + of(packed_box) + of(surface_mask) + of(area) +
-         of(bounds_of_slot) + of(bounds_of_tile) + tree.bytes();
+  return of(slot_of_block) + of(block_of_slot) + of(packed_position) + of(packed_box) +
+         of(surface_mask) + of(area) + of(bounds_of_slot) + of(bounds_of_tile) + tree.bytes();
 }
 
 }  // namespace strata::mesh

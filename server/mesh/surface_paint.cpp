@@ -29,18 +29,23 @@ void store(const glm::vec3& color, std::uint8_t* out) {
 void multiply_light(std::uint8_t* rgb, const glm::vec4& color) {
   const ColorTables& tables = color_tables();
   for (int c = 0; c < 3; ++c)
-    rgb[c] = tables.srgb[static_cast<std::size_t>(tables.linear[rgb[c]] * linear_of_srgb(color[c]) + 0.5)];
+    rgb[c] =
+        tables
+            .srgb[static_cast<std::size_t>(tables.linear[rgb[c]] * linear_of_srgb(color[c]) + 0.5)];
 }
 
 const Material& SurfacePaint::material_of(std::size_t triangle) const {
   static const Material plain;
-  const std::uint16_t material = mesh_.triangle_materials.empty() ? kNoMaterial : mesh_.triangle_materials[triangle];
+  const std::uint16_t material =
+      mesh_.triangle_materials.empty() ? kNoMaterial : mesh_.triangle_materials[triangle];
   return material == kNoMaterial ? plain : mesh_.materials[material];
 }
 
-// Calls put(x, y, weights of the corners, mark) for each texel of rows [row_begin, row_end), y upward.
+// Calls put(x, y, weights of the corners, mark) for each texel of rows [row_begin, row_end), y
+// upward.
 template <class Put>
-void SurfacePaint::raster(std::uint32_t t, glm::ivec2 size, int row_begin, int row_end, Put put) const {
+void SurfacePaint::raster(std::uint32_t t, glm::ivec2 size, int row_begin, int row_end,
+                          Put put) const {
   const glm::dvec2 a = atlas_uv(t, 0) * glm::dvec2(size), b = atlas_uv(t, 1) * glm::dvec2(size),
                    c = atlas_uv(t, 2) * glm::dvec2(size);
   const double low = std::min({a.y, b.y, c.y}) - 1, high = std::max({a.y, b.y, c.y}) + 1;
@@ -56,7 +61,8 @@ void SurfacePaint::raster(std::uint32_t t, glm::ivec2 size, int row_begin, int r
     }
     put(x, y, weights, mark);
   };
-  const CoverageRaster coverage(snap_to_subtexels(a.x, a.y), snap_to_subtexels(b.x, b.y), snap_to_subtexels(c.x, c.y));
+  const CoverageRaster coverage(snap_to_subtexels(a.x, a.y), snap_to_subtexels(b.x, b.y),
+                                snap_to_subtexels(c.x, c.y));
   bool covers = false;
   coverage.for_each_span(0, size.x, 0, size.y, [&](int y, int x_begin, int x_end) {
     covers = true;
@@ -72,7 +78,8 @@ void SurfacePaint::raster(std::uint32_t t, glm::ivec2 size, int row_begin, int r
   if (y >= row_begin && y < row_end) weigh(x, y, kClaimed);
 }
 
-void SurfacePaint::paint(std::span<const std::uint32_t> triangles, const Picture& source, Picture& picture) const {
+void SurfacePaint::paint(std::span<const std::uint32_t> triangles, const Picture& source,
+                         Picture& picture) const {
   const TextureSampler sampler(source);
   const glm::ivec2 size(picture.width, picture.height);
   const int rows = (size.y + kBands - 1) / kBands;
@@ -94,7 +101,8 @@ void SurfacePaint::shade(std::uint32_t t, const Material& material, const glm::d
                          const TextureSampler* sampler, std::uint8_t* out) const {
   out[0] = out[1] = out[2] = 255;
   if (sampler) {
-    const glm::dvec2 uv = texture_uv(t, 0) * weights.x + texture_uv(t, 1) * weights.y + texture_uv(t, 2) * weights.z;
+    const glm::dvec2 uv =
+        texture_uv(t, 0) * weights.x + texture_uv(t, 1) * weights.y + texture_uv(t, 2) * weights.z;
     store(sampler->sample(uv, material.wrap_u, material.wrap_v), out);
   }
   if (!is_white(material.color)) multiply_light(out, material.color);
@@ -121,7 +129,8 @@ void SurfacePaint::paint_moved(int texture, int ring, Picture& picture) const {
   std::unordered_map<std::uint32_t, std::uint32_t> corner_of;
   for (const auto t : atlas_.moved)
     if (!has_coordinates(t))
-      for (std::size_t k = 0; k < 3; ++k) corner_of.emplace(mesh_.triangles[3 * std::size_t{t} + k], 0xffffffffu);
+      for (std::size_t k = 0; k < 3; ++k)
+        corner_of.emplace(mesh_.triangles[3 * std::size_t{t} + k], 0xffffffffu);
   if (!corner_of.empty()) {
     std::vector<bool> moves(mesh_.triangle_count());
     for (const auto t : atlas_.moved) moves[t] = true;
@@ -147,7 +156,9 @@ void SurfacePaint::paint_moved(int texture, int ring, Picture& picture) const {
     std::array<std::uint8_t, 3> rgb;
   };
   std::vector<Texel> texels;
-  const auto index = [&](int x, int y) { return static_cast<std::uint32_t>(size.y - 1 - y) * size.x + x; };
+  const auto index = [&](int x, int y) {
+    return static_cast<std::uint32_t>(size.y - 1 - y) * size.x + x;
+  };
   for (const auto t : atlas_.moved) {
     const bool sampled = has_coordinates(t);
     std::array<glm::vec3, 3> corners{};
@@ -156,7 +167,8 @@ void SurfacePaint::paint_moved(int texture, int ring, Picture& picture) const {
       int known = 0;
       std::array<std::optional<glm::vec3>, 3> found;
       for (std::size_t k = 0; k < 3; ++k)
-        if ((found[k] = color_at_vertex(mesh_.triangles[3 * std::size_t{t} + k]))) sum += *found[k], ++known;
+        if ((found[k] = color_at_vertex(mesh_.triangles[3 * std::size_t{t} + k])))
+          sum += *found[k], ++known;
       const glm::vec3 mean = known > 0 ? sum / float(known) : glm::vec3(255);
       for (std::size_t k = 0; k < 3; ++k) corners[k] = found[k].value_or(mean);
     }
@@ -165,7 +177,8 @@ void SurfacePaint::paint_moved(int texture, int ring, Picture& picture) const {
       if (sampled)
         shade(t, material_of(t), weights, &sampler, texel.rgb.data());
       else
-        store(corners[0] * float(weights.x) + corners[1] * float(weights.y) + corners[2] * float(weights.z),
+        store(corners[0] * float(weights.x) + corners[1] * float(weights.y) +
+                  corners[2] * float(weights.z),
               texel.rgb.data());
       texels.push_back(texel);
     });
@@ -173,7 +186,8 @@ void SurfacePaint::paint_moved(int texture, int ring, Picture& picture) const {
 
   std::vector<bool> taken(std::size_t(size.x) * size.y);
   for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t)
-    raster(t, size, 0, size.y, [&](int x, int y, const glm::dvec3&, std::uint8_t) { taken[index(x, y)] = true; });
+    raster(t, size, 0, size.y,
+           [&](int x, int y, const glm::dvec3&, std::uint8_t) { taken[index(x, y)] = true; });
   const auto write = [&](const Texel& texel) {
     std::copy(texel.rgb.begin(), texel.rgb.end(), &picture.rgba[std::size_t{texel.at} * 4]);
     picture.rgba[std::size_t{texel.at} * 4 + 3] = 255;

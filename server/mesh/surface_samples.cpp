@@ -35,14 +35,16 @@ std::uint64_t facing(const glm::vec3& n) {
 
 }  // namespace
 
-// The pieces are made, grouped and forgotten in bands across the model's longest axis, always the same ones.
+// The pieces are made, grouped and forgotten in bands across the model's longest axis, always the
+// same ones.
 class SampleBands {
  public:
   SampleBands(const Geometry& geometry, SurfaceSamples& samples)
       : geometry_(geometry), samples_(samples), cell_(samples.radius_ / kCellsPerRadius) {
     const glm::vec3 extent = geometry.box_max - geometry.box_min;
     axis_ = longest_axis(extent);
-    cells_ = static_cast<int>(std::min(std::floor(extent[axis_] / cell_) + 1.0f, static_cast<float>(kMostCells)));
+    cells_ = static_cast<int>(
+        std::min(std::floor(extent[axis_] / cell_) + 1.0f, static_cast<float>(kMostCells)));
     bands_.resize(std::min(kMostBands, cells_));
     triangles_of_band_ = triangles_by_band();
   }
@@ -57,7 +59,8 @@ class SampleBands {
     const auto triangles = triangles_of_band_[which];
     pieces.reserve(2 * triangles.size());
     for (const std::uint32_t t : triangles) cut(t, first_cell, end_cell, pieces);
-    std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& p, const Piece& q) { return p.group < q.group; });
+    std::stable_sort(pieces.begin(), pieces.end(),
+                     [](const Piece& p, const Piece& q) { return p.group < q.group; });
 
     struct Keyed {
       std::uint64_t cell;
@@ -73,12 +76,13 @@ class SampleBands {
         position += double{pieces[i].area} * glm::dvec3(pieces[i].position);
         normal += double{pieces[i].area} * glm::dvec3(pieces[i].normal);
       }
-      const SurfaceSamples::Sample sample{glm::vec3(position / area), glm::vec3(glm::normalize(normal)),
-                                          static_cast<float>(area)};
+      const SurfaceSamples::Sample sample{
+          glm::vec3(position / area), glm::vec3(glm::normalize(normal)), static_cast<float>(area)};
       keyed.push_back({SurfaceSamples::key_of(samples_.cell_of(sample.position)), sample});
     }
     pieces = {};
-    std::stable_sort(keyed.begin(), keyed.end(), [](const Keyed& p, const Keyed& q) { return p.cell < q.cell; });
+    std::stable_sort(keyed.begin(), keyed.end(),
+                     [](const Keyed& p, const Keyed& q) { return p.cell < q.cell; });
     band.samples.reserve(keyed.size());
     for (const Keyed& k : keyed) {
       if (band.runs.empty() || band.runs.back().cell != k.cell) band.runs.push_back({k.cell, 0});
@@ -123,7 +127,9 @@ class SampleBands {
     std::vector<Run> runs;
   };
 
-  int first_cell_of(int band) const { return static_cast<int>(static_cast<std::int64_t>(cells_) * band / count()); }
+  int first_cell_of(int band) const {
+    return static_cast<int>(static_cast<std::int64_t>(cells_) * band / count());
+  }
   // Of places beside the box, too.
   int band_of(int cell) const {
     const auto inside = static_cast<std::int64_t>(std::clamp(cell, 0, cells_ - 1));
@@ -140,18 +146,21 @@ class SampleBands {
               const auto cell_at = [&](float at) {
                 return static_cast<int>(std::floor((at - samples_.low_[axis_]) / cell_));
               };
-              return std::pair{band_of(cell_at(std::min({a, b, c})) - 1), band_of(cell_at(std::max({a, b, c})) + 1)};
+              return std::pair{band_of(cell_at(std::min({a, b, c})) - 1),
+                               band_of(cell_at(std::max({a, b, c})) + 1)};
             }};
   }
 
   // Appends the pieces of a triangle that lie in cells [first, end) along the axis.
   void cut(std::uint32_t triangle, int first, int end, std::vector<Piece>& pieces) const {
-    const glm::vec3 a = corner(triangle, 0), ab = corner(triangle, 1) - a, ac = corner(triangle, 2) - a;
+    const glm::vec3 a = corner(triangle, 0), ab = corner(triangle, 1) - a,
+                    ac = corner(triangle, 2) - a;
     const glm::vec3 cross = glm::cross(ab, ac);
     const float length = glm::length(cross);
     if (!(length > 0)) return;
     const glm::vec3 normal = cross / length;
-    const float longest = std::sqrt(std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(ac - ab, ac - ab)}));
+    const float longest =
+        std::sqrt(std::max({glm::dot(ab, ab), glm::dot(ac, ac), glm::dot(ac - ab, ac - ab)}));
     const int cuts = std::max(1, static_cast<int>(std::ceil(longest / cell_)));
     const float area = length / 2 / static_cast<float>(cuts * cuts);
     const auto add = [&](float i, float j) {
@@ -161,7 +170,8 @@ class SampleBands {
       if (along < first || along >= end) return;
       const std::uint64_t group = (std::uint64_t(std::uint32_t(fine.x) & 0xfffff) << 3) |
                                   (std::uint64_t(std::uint32_t(fine.y) & 0xfffff) << 23) |
-                                  (std::uint64_t(std::uint32_t(fine.z) & 0xfffff) << 43) | facing(normal);
+                                  (std::uint64_t(std::uint32_t(fine.z) & 0xfffff) << 43) |
+                                  facing(normal);
       pieces.push_back({group, position, normal, area});
     };
     for (int i = 0; i < cuts; ++i) {
@@ -171,14 +181,16 @@ class SampleBands {
         const double at = (a[axis_] + double{ab[axis_]} * i / cuts - samples_.low_[axis_]) / cell_;
         const double step = double{ac[axis_]} / cuts / cell_;
         const double low = (first - 2 - at) / step, high = (end + 2 - at) / step;
-        if (!std::isnan(low) && !std::isnan(high)) {  // infinite for a row along the band: in it or not
+        if (!std::isnan(low) && !std::isnan(high)) {
+          // infinite for a row along the band: in it or not
           j_begin = static_cast<int>(std::clamp(std::min(low, high) - 1, 0.0, double(j_end)));
           j_end = static_cast<int>(std::clamp(std::max(low, high) + 2, 0.0, double(j_end)));
         }
       }
       for (int j = j_begin; j < j_end; ++j) {
         add(static_cast<float>(i) + 1.0f / 3, static_cast<float>(j) + 1.0f / 3);
-        if (i + j + 1 < cuts) add(static_cast<float>(i) + 2.0f / 3, static_cast<float>(j) + 2.0f / 3);
+        if (i + j + 1 < cuts)
+          add(static_cast<float>(i) + 2.0f / 3, static_cast<float>(j) + 2.0f / 3);
       }
     }
   }
@@ -197,7 +209,8 @@ double SurfaceSamples::least_radius(double area, const glm::dvec3& extent) {
   return std::max(by_pieces, by_cells);
 }
 
-Result<SurfaceSamples> SurfaceSamples::make(const Geometry& geometry, float radius, Progress& progress, int threads) {
+Result<SurfaceSamples> SurfaceSamples::make(const Geometry& geometry, float radius,
+                                            Progress& progress, int threads) {
   progress.report(0, kSampling);
   SurfaceSamples samples(geometry.box_min, radius);
   SampleBands bands(geometry, samples);

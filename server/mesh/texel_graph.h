@@ -12,16 +12,19 @@
 
 namespace strata::mesh {
 
-// Which surface texels of a map touch each other on the surface: the four neighbours of a texel in the atlas where they
-// belong to the same island, and links where the atlas does not show it. Links are made along the mesh's edges: across seams,
-// from one side's texels to the other's; and within an island where it is thinner than a texel. Texels are numbered as in the
-// arrays of the map: 64 * slot + y * 8 + x.
+// Which surface texels of a map touch each other on the surface: the four neighbours of a texel in
+// the atlas where they belong to the same island, and links where the atlas does not show it. Links
+// are made along the mesh's edges: across seams, from one side's texels to the other's; and within
+// an island where it is thinner than a texel. Texels are numbered as in the arrays of the map: 64 *
+// slot + y * 8 + x.
 //
-// A gap within an island that is narrower than a texel does not part its sides; an island without a texel of its own joins nothing.
+// A gap within an island that is narrower than a texel does not part its sides; an island without a
+// texel of its own joins nothing.
 struct TexelGraph {
   std::vector<std::uint64_t> to_right,
-      to_upper;                          // a slot: bits of the texels that are joined to their right, upper neighbour
-  std::vector<std::uint64_t> has_links;  // a slot: bits of the texels that begin a link
+      // a slot: bits of the texels that are joined to their right, upper neighbour
+      to_upper;
+  std::vector<std::uint64_t> has_links;     // a slot: bits of the texels that begin a link
   std::vector<std::uint64_t> at_open_edge;  // a slot: bits of the texels where the mesh ends
   using Link = std::pair<std::uint32_t, std::uint32_t>;
   std::vector<Link> links;  // ascending; each stands here in both directions
@@ -31,20 +34,24 @@ struct TexelGraph {
 };
 
 // `map` is of this geometry. Refused when cancelled.
-Result<TexelGraph> build_texel_graph(const Geometry& geometry, const SurfaceMap& map, Progress& progress,
-                                     int threads = 2);
+Result<TexelGraph> build_texel_graph(const Geometry& geometry, const SurfaceMap& map,
+                                     Progress& progress, int threads = 2);
 
-// The surface texel at a texture coordinate, or the one that the gutter there follows; nothing where the atlas is empty.
+// The surface texel at a texture coordinate, or the one that the gutter there follows; nothing
+// where the atlas is empty.
 std::optional<std::uint32_t> surface_texel_at(const SurfaceMap& map, glm::vec2 uv);
 
 enum class Way { right, upper, left, lower };
 constexpr std::uint32_t kNoNeighbour = 0xffffffffu;
 
 // The texel beside another one in the atlas, where both are joined; kNoNeighbour: they are not.
-inline std::uint32_t neighbour(const SurfaceMap& map, const TexelGraph& graph, std::uint32_t texel, Way way) {
+inline std::uint32_t neighbour(const SurfaceMap& map, const TexelGraph& graph, std::uint32_t texel,
+                               Way way) {
   const std::uint32_t slot = texel / 64, i = texel % 64, block = map.block_of_slot[slot];
   const auto side = static_cast<std::uint32_t>(map.blocks_per_side);
-  const auto has = [](std::uint64_t bits, std::uint32_t index) { return ((bits >> index) & 1u) != 0; };
+  const auto has = [](std::uint64_t bits, std::uint32_t index) {
+    return ((bits >> index) & 1u) != 0;
+  };
   switch (way) {
     case Way::right:
       if (!has(graph.to_right[slot], i)) return kNoNeighbour;
@@ -62,7 +69,8 @@ inline std::uint32_t neighbour(const SurfaceMap& map, const TexelGraph& graph, s
       if (i >= 8) return has(graph.to_upper[slot], i - 8) ? texel - 8 : kNoNeighbour;
       if (block < side) return kNoNeighbour;
       const std::uint32_t lower = map.slot_of_block[block - side];
-      return lower != kNoSlot && has(graph.to_upper[lower], i + 56) ? lower * 64 + i + 56 : kNoNeighbour;
+      return lower != kNoSlot && has(graph.to_upper[lower], i + 56) ? lower * 64 + i + 56
+                                                                    : kNoNeighbour;
     }
   }
   return kNoNeighbour;
@@ -70,9 +78,11 @@ inline std::uint32_t neighbour(const SurfaceMap& map, const TexelGraph& graph, s
 
 // Calls visit(neighbour) for each texel that `texel` is joined to.
 template <class Visit>
-void for_each_neighbour(const SurfaceMap& map, const TexelGraph& graph, std::uint32_t texel, Visit&& visit) {
+void for_each_neighbour(const SurfaceMap& map, const TexelGraph& graph, std::uint32_t texel,
+                        Visit&& visit) {
   for (const Way way : {Way::right, Way::upper, Way::left, Way::lower})
-    if (const std::uint32_t next = neighbour(map, graph, texel, way); next != kNoNeighbour) visit(next);
+    if (const std::uint32_t next = neighbour(map, graph, texel, way); next != kNoNeighbour)
+      visit(next);
   if (((graph.has_links[texel / 64] >> texel % 64) & 1u) != 0)
     for (const TexelGraph::Link& link : graph.links_of(texel)) visit(link.second);
 }

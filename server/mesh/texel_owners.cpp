@@ -21,12 +21,14 @@ class TileSorter {
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
       const auto block = owners.block_of_slot[slot];
       const auto x = block % owners.blocks_per_side, y = block / owners.blocks_per_side;
-      slots_[{static_cast<std::uint16_t>(x / kBlocksPerTileSide), static_cast<std::uint16_t>(y / kBlocksPerTileSide)}]
+      slots_[{static_cast<std::uint16_t>(x / kBlocksPerTileSide),
+              static_cast<std::uint16_t>(y / kBlocksPerTileSide)}]
           .push_back(slot);
     }
   }
 
-  TileMap sort(const std::vector<std::uint32_t>& bits, const std::vector<std::uint64_t>& valid) const {
+  TileMap sort(const std::vector<std::uint32_t>& bits,
+               const std::vector<std::uint64_t>& valid) const {
     TileMap tiles;
     for (const auto& [address, slots] : slots_) {
       TileData tile(type_);
@@ -36,8 +38,9 @@ class TileSorter {
                    by = static_cast<int>(block / owners_.blocks_per_side) % kBlocksPerTileSide;
         for (std::uint64_t left = valid[slot]; left; left &= left - 1) {
           const int i = std::countr_zero(left);
-          tile.write((by * kBlockSize + i / kBlockSize) * kTileSize + bx * kBlockSize + i % kBlockSize,
-                     bits[std::size_t{slot} * 64 + i]);
+          tile.write(
+              (by * kBlockSize + i / kBlockSize) * kTileSize + bx * kBlockSize + i % kBlockSize,
+              bits[std::size_t{slot} * 64 + i]);
         }
       }
       if (tile.valid.any()) tiles[address] = std::make_shared<const TileData>(std::move(tile));
@@ -53,8 +56,10 @@ class TileSorter {
 
 }  // namespace
 
-Result<TexelOwners> bake_texel_owners(const Geometry& geometry, int resolution, Progress& progress, int threads) {
-  if (auto possible = check_map_resolution(resolution); !possible) return tl::unexpected(possible.error());
+Result<TexelOwners> bake_texel_owners(const Geometry& geometry, int resolution, Progress& progress,
+                                      int threads) {
+  if (auto possible = check_map_resolution(resolution); !possible)
+    return tl::unexpected(possible.error());
   SurfaceMap map;
   progress.report(0, kLocating);
   SurfaceBake bake(geometry, resolution, map, BakeFor::owners);
@@ -84,13 +89,14 @@ Result<TexelOwners> bake_texel_owners(const Geometry& geometry, int resolution, 
   for (int band = 0; band < bake.band_count(); ++band) gutter += bake.borrowed_in(band).size();
   owners.gutter.reserve(gutter);
   for (int band = 0; band < bake.band_count(); ++band)
-    for (const auto& [texel, owner] : bake.borrowed_in(band)) owners.gutter.push_back({texel, owner});
+    for (const auto& [texel, owner] : bake.borrowed_in(band))
+      owners.gutter.push_back({texel, owner});
   progress.report(1, kLocating);
   return owners;
 }
 
-Result<void> for_each_texel(const TexelOwners& owners, const TexelVisit& visit, const char* message, Progress& progress,
-                            int threads) {
+Result<void> for_each_texel(const TexelOwners& owners, const TexelVisit& visit, const char* message,
+                            Progress& progress, int threads) {
   constexpr auto kSlotsAtOnce = static_cast<std::uint32_t>(kTexelsAtOnce / 64);
   const auto slots = static_cast<std::uint32_t>(owners.block_of_slot.size());
   std::mutex mutex;
@@ -108,8 +114,8 @@ Result<void> for_each_texel(const TexelOwners& owners, const TexelVisit& visit, 
   return {};
 }
 
-Result<TileMap> paint_texels(const TexelOwners& owners, ValueType type, const TexelBits& bits_at, Progress& progress,
-                             int threads) {
+Result<TileMap> paint_texels(const TexelOwners& owners, ValueType type, const TexelBits& bits_at,
+                             Progress& progress, int threads) {
   std::vector<std::uint32_t> bits(owners.triangle.size());
   std::vector<std::uint64_t> valid(owners.block_of_slot.size(), 0);
   const auto paint = [&](std::size_t texel) {

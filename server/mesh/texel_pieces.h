@@ -8,7 +8,8 @@
 
 namespace strata::mesh {
 
-// The exact area of a triangle within each texel of the grid, by signed areas right of its edges summed along rows.
+// The exact area of a triangle within each texel of the grid, by signed areas right of its edges
+// summed along rows.
 class TexelPieces {
  public:
   // Corners in texels, not negative.
@@ -30,7 +31,9 @@ class TexelPieces {
   int first_row() const { return static_cast<int>(low_.y); }
   int last_row() const { return std::max(first_row(), static_cast<int>(std::ceil(high_.y)) - 1); }
   int first_column() const { return static_cast<int>(low_.x); }
-  int last_column() const { return std::max(first_column(), static_cast<int>(std::ceil(high_.x)) - 1); }
+  int last_column() const {
+    return std::max(first_column(), static_cast<int>(std::ceil(high_.x)) - 1);
+  }
 
   // visit(x, y, area) for each texel of rows [y_low, y_high) that holds a piece, row by row.
   template <class Visit>
@@ -58,7 +61,8 @@ class TexelPieces {
   }
 
  private:
-  // Adds what lies right of the edge's part within row y: after a running sum each column holds its signed area.
+  // Adds what lies right of the edge's part within row y: after a running sum each column holds its
+  // signed area.
   void add_edge(glm::dvec2 from, glm::dvec2 to, int y, int x0, int columns) {
     const double direction = from.y < to.y ? 1 : -1;
     if (direction < 0) std::swap(from, to);

@@ -9,16 +9,18 @@
 
 namespace strata::mesh {
 
-// Which texel centres a triangle covers, as OpenGL implementations find it: vertices snapped to 1/256 texel, integer
-// edge functions, and a centre on an edge belongs to the triangle whose left or lower side that edge is. So the texels
-// of two triangles that share an edge are disjoint, and no texel between them is lost.
+// Which texel centres a triangle covers, as OpenGL implementations find it: vertices snapped to
+// 1/256 texel, integer edge functions, and a centre on an edge belongs to the triangle whose left
+// or lower side that edge is. So the texels of two triangles that share an edge are disjoint, and
+// no texel between them is lost.
 constexpr int kSubtexels = 256;
 
 // A point of the texture in 1/256 texel; resolution 16384 takes 22 bits, products of two fit 64.
 using SnappedPoint = glm::ivec2;
 
 inline SnappedPoint snap_to_subtexels(double x_texels, double y_texels) {
-  return {static_cast<int>(std::lrint(x_texels * kSubtexels)), static_cast<int>(std::lrint(y_texels * kSubtexels))};
+  return {static_cast<int>(std::lrint(x_texels * kSubtexels)),
+          static_cast<int>(std::lrint(y_texels * kSubtexels))};
 }
 
 class CoverageRaster {
@@ -37,7 +39,8 @@ class CoverageRaster {
       edge.step_x = -dy * kSubtexels;
       edge.step_y = dx * kSubtexels;
       // Value at the centre of texel (0, 0); inside is ≥ 0.
-      edge.at_origin = dx * (kSubtexels / 2 - from.y) - dy * (kSubtexels / 2 - from.x) - (owns_its_points ? 0 : 1);
+      edge.at_origin = dx * (kSubtexels / 2 - from.y) - dy * (kSubtexels / 2 - from.x) -
+                       (owns_its_points ? 0 : 1);
     }
     x_first_ = first_centre(std::min({a.x, b.x, c.x}));
     x_last_ = last_centre(std::max({a.x, b.x, c.x}));
@@ -47,8 +50,9 @@ class CoverageRaster {
 
   std::int64_t twice_area() const { return twice_area_; }  // in (1/256 texel)², signed as given
 
-  // Calls visit(y, x_begin, x_end) for each row of the window [x_low, x_high) × [y_low, y_high) that has covered
-  // texels, upward; it stops when visit returns false, and says whether it ran to the end.
+  // Calls visit(y, x_begin, x_end) for each row of the window [x_low, x_high) × [y_low, y_high)
+  // that has covered texels, upward; it stops when visit returns false, and says whether it ran to
+  // the end.
   template <class Visit>
   bool for_each_span(int x_low, int x_high, int y_low, int y_high, Visit&& visit) const {
     if (twice_area_ == 0) return true;

@@ -27,7 +27,8 @@ Picture halve(const Picture& picture) {
     for (int x = 0; x < half.width; ++x, out += 4) {
       std::uint32_t light[3] = {2, 2, 2}, alpha = 2;
       for (int k = 0; k < 4; ++k) {
-        const int sx = std::min(2 * x + k % 2, picture.width - 1), sy = std::min(2 * y + k / 2, picture.height - 1);
+        const int sx = std::min(2 * x + k % 2, picture.width - 1),
+                  sy = std::min(2 * y + k / 2, picture.height - 1);
         const std::uint8_t* p = &picture.rgba[(std::size_t(sy) * picture.width + sx) * 4];
         for (int c = 0; c < 3; ++c) light[c] += tables.linear[p[c]];
         alpha += p[3];
@@ -39,16 +40,20 @@ Picture halve(const Picture& picture) {
 }
 
 glm::vec4 TextureSampler::sample_with_alpha(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const {
-  // Far away coordinates keep their fraction as well as a double does; what is no number is at the origin.
+  // Far away coordinates keep their fraction as well as a double does; what is no number is at the
+  // origin.
   const auto finite = [](double value) { return std::abs(value) < 1e9 ? value : 0.0; };
-  const double x = finite(uv.x) * picture_.width - 0.5, y = (1 - finite(uv.y)) * picture_.height - 0.5;
+  const double x = finite(uv.x) * picture_.width - 0.5,
+               y = (1 - finite(uv.y)) * picture_.height - 0.5;
   const double x_floor = std::floor(x), y_floor = std::floor(y);
   const auto x_share = static_cast<float>(x - x_floor), y_share = static_cast<float>(y - y_floor);
   const auto left = static_cast<std::int64_t>(x_floor), top = static_cast<std::int64_t>(y_floor);
-  const int x0 = wrapped(left, picture_.width, wrap_u), x1 = wrapped(left + 1, picture_.width, wrap_u);
-  const int y0 = wrapped(top, picture_.height, wrap_v), y1 = wrapped(top + 1, picture_.height, wrap_v);
-  return glm::mix(glm::mix(pixel(x0, y0), pixel(x1, y0), x_share), glm::mix(pixel(x0, y1), pixel(x1, y1), x_share),
-                  y_share);
+  const int x0 = wrapped(left, picture_.width, wrap_u),
+            x1 = wrapped(left + 1, picture_.width, wrap_u);
+  const int y0 = wrapped(top, picture_.height, wrap_v),
+            y1 = wrapped(top + 1, picture_.height, wrap_v);
+  return glm::mix(glm::mix(pixel(x0, y0), pixel(x1, y0), x_share),
+                  glm::mix(pixel(x0, y1), pixel(x1, y1), x_share), y_share);
 }
 
 }  // namespace strata::mesh

@@ -10,13 +10,16 @@ namespace strata::mesh {
 // Half as wide and half as high (1 at least), each pixel the mean light of four.
 Picture halve(const Picture& picture);
 
-// A decoded texture, looked up as a GPU does: texel centres at (i + 0.5) / size, uv origin lower left, mixed of the four nearest.
+// A decoded texture, looked up as a GPU does: texel centres at (i + 0.5) / size, uv origin lower
+// left, mixed of the four nearest.
 class TextureSampler {
  public:
   explicit TextureSampler(const Picture& picture) : picture_(picture) {}
 
   // Red, green, blue as stored, 0…255.
-  glm::vec3 sample(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const { return sample_with_alpha(uv, wrap_u, wrap_v); }
+  glm::vec3 sample(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const {
+    return sample_with_alpha(uv, wrap_u, wrap_v);
+  }
   // The same, and alpha, which is not multiplied in.
   glm::vec4 sample_with_alpha(glm::dvec2 uv, Wrap wrap_u, Wrap wrap_v) const;
 

@@ -16,14 +16,16 @@ constexpr std::size_t kMostNotes = 200;
 
 std::string printable(std::string_view text) {
   std::string result;
-  for (const char c : text.substr(0, 200)) result += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
+  for (const char c : text.substr(0, 200))
+    result += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
   return mended_utf8(result);
 }
 
 }  // namespace
 
 void TextureShelf::missing(std::string_view reference) {
-  if (repairs_.size() < kMostNotes) note(repairs_, "texture not among the files: " + printable(reference), 1);
+  if (repairs_.size() < kMostNotes)
+    note(repairs_, "texture not among the files: " + printable(reference), 1);
 }
 
 int TextureShelf::of_file(std::string_view reference) {
@@ -62,14 +64,18 @@ void adopt_lone_picture(const InputFiles& files, TriangleMesh& mesh, std::vector
   }
   if (!lone || !inspect_picture(lone->bytes)) return;
   mesh.textures.push_back({printable(lone->name), {lone->bytes.begin(), lone->bytes.end()}});
-  mesh.materials = {Material{.name = mesh.materials.empty() ? std::string() : mesh.materials[0].name, .texture = 0}};
+  mesh.materials = {Material{
+      .name = mesh.materials.empty() ? std::string() : mesh.materials[0].name, .texture = 0}};
   mesh.triangle_materials.assign(mesh.triangle_count(), 0);
   note(repairs, "texture taken because it is the only picture: " + printable(lone->name), 1);
 }
 
-bool UdimTiles::is_pattern(std::string_view reference) { return reference.find(kUdim) != std::string_view::npos; }
+bool UdimTiles::is_pattern(std::string_view reference) {
+  return reference.find(kUdim) != std::string_view::npos;
+}
 
-void UdimTiles::resolve(TextureShelf& shelf, const std::vector<std::string>& references, TriangleMesh& mesh) {
+void UdimTiles::resolve(TextureShelf& shelf, const std::vector<std::string>& references,
+                        TriangleMesh& mesh) {
   if (std::none_of(references.begin(), references.end(), is_pattern)) return;
   for (std::size_t m = 0; m < references.size(); ++m)
     if (is_pattern(references[m])) mesh.materials[m].texture = -1;
@@ -77,11 +83,15 @@ void UdimTiles::resolve(TextureShelf& shelf, const std::vector<std::string>& ref
   std::map<std::pair<std::uint16_t, int>, std::uint16_t> of_tile;
   for (std::size_t t = 0; t < mesh.triangle_materials.size(); ++t) {
     const std::uint16_t material = mesh.triangle_materials[t];
-    if (material == kNoMaterial || material >= references.size() || !is_pattern(references[material])) continue;
-    const glm::vec2 middle = (mesh.corner_uvs[3 * t] + mesh.corner_uvs[3 * t + 1] + mesh.corner_uvs[3 * t + 2]) / 3.0f;
+    if (material == kNoMaterial || material >= references.size() ||
+        !is_pattern(references[material]))
+      continue;
+    const glm::vec2 middle =
+        (mesh.corner_uvs[3 * t] + mesh.corner_uvs[3 * t + 1] + mesh.corner_uvs[3 * t + 2]) / 3.0f;
     const int column = static_cast<int>(std::floor(std::clamp(middle.x, -1.0f, 1000.0f))),
               row = static_cast<int>(std::floor(std::clamp(middle.y, -1.0f, 1000.0f)));
-    const bool on_grid = column >= 0 && column < kMostUdimColumns && row >= 0 && row < kMostUdimRows;
+    const bool on_grid =
+        column >= 0 && column < kMostUdimColumns && row >= 0 && row < kMostUdimRows;
     const int tile = on_grid ? 1001 + column + 10 * row : 0;
     auto found = of_tile.find({material, tile});
     if (found == of_tile.end()) {

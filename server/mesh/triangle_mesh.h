@@ -20,8 +20,9 @@ struct Texture {
 
 struct Material {
   std::string name = {};
-  glm::vec4 color{1};  // sRGB, 0…1; where there is a texture its texels are multiplied by it, in linear light
-  int texture = -1;    // of TriangleMesh::textures; -1: the colour alone
+  // sRGB, 0…1; where there is a texture its texels are multiplied by it, in linear light
+  glm::vec4 color{1};
+  int texture = -1;  // of TriangleMesh::textures; -1: the colour alone
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
 };
 
@@ -30,14 +31,17 @@ constexpr std::uint16_t kNoMaterial = 0xffff;
 // A mesh as files give it: plain arrays, double coordinates in world units. No GL, no connectivity.
 struct TriangleMesh {
   std::vector<glm::dvec3> positions;
-  std::vector<std::uint32_t> triangles;      // 3 position indices a triangle
-  std::vector<glm::vec2> corner_uvs;         // empty, or 3 a triangle; uv origin lower left of the material's texture
+  std::vector<std::uint32_t> triangles;  // 3 position indices a triangle
+  // empty, or 3 a triangle; uv origin lower left of the material's texture
+  std::vector<glm::vec2> corner_uvs;
   std::vector<std::uint32_t> vertex_colors;  // empty, or RGBA8 (red in the low byte) a position
 
-  std::vector<std::uint16_t> triangle_materials;  // empty, or one a triangle: of `materials`, or kNoMaterial
+  // empty, or one a triangle: of `materials`, or kNoMaterial
+  std::vector<std::uint16_t> triangle_materials;
   std::vector<Material> materials;
   std::vector<Texture> textures;
-  bool colors_tint_materials = false;  // vertex colours multiply materials (glTF); otherwise a texture hides them
+  // vertex colours multiply materials (glTF); otherwise a texture hides them
+  bool colors_tint_materials = false;
 
   std::size_t triangle_count() const { return triangles.size() / 3; }
 };

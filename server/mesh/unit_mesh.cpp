@@ -22,14 +22,16 @@ UnitMesh to_unit_mesh(const TriangleMesh& mesh) {
   return unit;
 }
 
-FaceFrames face_frames(std::span<const std::uint32_t> triangles, std::span<const glm::vec3> positions) {
+FaceFrames face_frames(std::span<const std::uint32_t> triangles,
+                       std::span<const glm::vec3> positions) {
   FaceFrames frames;
   const std::size_t count = triangles.size() / 3;
   frames.normals.resize(count);
   frames.areas.resize(count);
   for (std::size_t f = 0; f < count; ++f) {
     const glm::vec3 a = positions[triangles[3 * f]];
-    const glm::dvec3 ab = positions[triangles[3 * f + 1]] - a, ac = positions[triangles[3 * f + 2]] - a;
+    const glm::dvec3 ab = positions[triangles[3 * f + 1]] - a,
+                     ac = positions[triangles[3 * f + 2]] - a;
     const glm::dvec3 normal = glm::cross(ab, ac);
     const double length = glm::length(normal);
     // Thinner than what float positions can tell from a line.
@@ -42,8 +44,9 @@ FaceFrames face_frames(std::span<const std::uint32_t> triangles, std::span<const
   return frames;
 }
 
-std::vector<glm::vec3> averaged_normals(std::span<const std::uint32_t> triangles, std::size_t vertex_count,
-                                        const FaceFrames& frames, int rounds) {
+std::vector<glm::vec3> averaged_normals(std::span<const std::uint32_t> triangles,
+                                        std::size_t vertex_count, const FaceFrames& frames,
+                                        int rounds) {
   const std::size_t count = triangles.size() / 3;
   std::vector<glm::vec3> of_face = frames.normals;
   std::vector<glm::vec3> at_vertex(vertex_count);
@@ -52,8 +55,8 @@ std::vector<glm::vec3> averaged_normals(std::span<const std::uint32_t> triangles
     for (std::size_t f = 0; f < count; ++f)
       for (int k = 0; k < 3; ++k) at_vertex[triangles[3 * f + k]] += of_face[f] * frames.areas[f];
     for (std::size_t f = 0; f < count; ++f) {
-      const glm::vec3 sum =
-          at_vertex[triangles[3 * f]] + at_vertex[triangles[3 * f + 1]] + at_vertex[triangles[3 * f + 2]];
+      const glm::vec3 sum = at_vertex[triangles[3 * f]] + at_vertex[triangles[3 * f + 1]] +
+                            at_vertex[triangles[3 * f + 2]];
       const float length = glm::length(sum);
       if (length > 0) of_face[f] = sum / length;
     }

@@ -35,7 +35,8 @@ class ScratchFile {
     file.descriptor_ = ::mkstemp(path.data());
     if (file.descriptor_ < 0)
       return fail(507, "No room to unpack",
-                  "A file for unpacking cannot be made in " + folder.string() + ": " + std::strerror(errno) + ".");
+                  "A file for unpacking cannot be made in " + folder.string() + ": " +
+                      std::strerror(errno) + ".");
     ::unlink(path.c_str());
     return file;
   }
@@ -56,7 +57,9 @@ class ScratchFile {
     }
     return {};
   }
-  Result<MappedFile> map() const { return MappedFile::open("/proc/self/fd/" + std::to_string(descriptor_)); }
+  Result<MappedFile> map() const {
+    return MappedFile::open("/proc/self/fd/" + std::to_string(descriptor_));
+  }
 
  private:
   ScratchFile() = default;
@@ -71,8 +74,8 @@ bool is_hidden(std::string_view name) {
 
 class Unpacker {
  public:
-  Unpacker(std::span<const std::uint8_t> zip, const std::filesystem::path& scratch, Progress& progress,
-           const std::function<bool(std::string_view)>& wanted)
+  Unpacker(std::span<const std::uint8_t> zip, const std::filesystem::path& scratch,
+           Progress& progress, const std::function<bool(std::string_view)>& wanted)
       : zip_(zip),
         scratch_(scratch),
         progress_(progress),
@@ -83,7 +86,8 @@ class Unpacker {
     if (auto opened = open(); !opened) return tl::unexpected(opened.error());
     const zip_int64_t count = zip_get_num_entries(archive_.get(), 0);
     if (count < 0 || static_cast<std::uint64_t>(count) > kMostArchiveEntries)
-      return refuse_file("The zip holds " + std::to_string(count) + " files; " + std::to_string(kMostArchiveEntries) +
+      return refuse_file("The zip holds " + std::to_string(count) + " files; " +
+                         std::to_string(kMostArchiveEntries) +
                          " may be. Pack one scan with its pictures only.");
     std::vector<InputFiles::Entry> entries;
     for (zip_int64_t i = 0; i < count; ++i) {
@@ -115,13 +119,15 @@ class Unpacker {
 
   Result<InputFiles::Entry> unpack(zip_uint64_t index, const std::string& name) {
     std::string shown;
-    for (const char c : name.substr(0, 200)) shown += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
+    for (const char c : name.substr(0, 200))
+      shown += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
     const auto damaged = [&](const std::string& why) {
       return refuse_file("\"" + shown + "\" in the zip cannot be unpacked: " + why + ".");
     };
     zip_stat_t stat;
     zip_stat_init(&stat);
-    if (zip_stat_index(archive_.get(), index, 0, &stat) != 0) return damaged(zip_strerror(archive_.get()));
+    if (zip_stat_index(archive_.get(), index, 0, &stat) != 0)
+      return damaged(zip_strerror(archive_.get()));
     if ((stat.valid & ZIP_STAT_ENCRYPTION_METHOD) != 0 && stat.encryption_method != ZIP_EM_NONE)
       return damaged("it is encrypted. Pack it without a password");
     const std::unique_ptr<zip_file_t, CloseEntry> file(zip_fopen_index(archive_.get(), index, 0));
@@ -159,17 +165,18 @@ class Unpacker {
 }  // namespace
 
 bool is_scan_file(std::string_view name) {
-  static constexpr std::array<std::string_view, 11> kCompanions{".mtl",  ".bin",  ".jpg", ".jpeg", ".png", ".tif",
-                                                                ".tiff", ".webp", ".bmp", ".tga",  ".ktx2"};
+  static constexpr std::array<std::string_view, 11> kCompanions{
+      ".mtl", ".bin", ".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp", ".bmp", ".tga", ".ktx2"};
   if (input_kind(name) != InputKind::companion) return true;
   std::string lower(name.substr(name.find_last_of("/\\") + 1));
   for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return std::any_of(kCompanions.begin(), kCompanions.end(), [&](auto ending) { return lower.ends_with(ending); });
+  return std::any_of(kCompanions.begin(), kCompanions.end(),
+                     [&](auto ending) { return lower.ends_with(ending); });
 }
 
-Result<std::vector<InputFiles::Entry>> unpack_archive(std::span<const std::uint8_t> zip,
-                                                      const std::filesystem::path& scratch, Progress& progress,
-                                                      const std::function<bool(std::string_view)>& wanted) {
+Result<std::vector<InputFiles::Entry>> unpack_archive(
+    std::span<const std::uint8_t> zip, const std::filesystem::path& scratch, Progress& progress,
+    const std::function<bool(std::string_view)>& wanted) {
   return Unpacker(zip, scratch, progress, wanted).run();
 }
 

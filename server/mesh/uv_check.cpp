@@ -25,13 +25,14 @@ std::string percent(double share) {
 }
 
 Result<Atlas> refuse(const std::string& reason) {
-  return fail(422, kTitle, reason + " An atlas of its own is made for this model instead.", "texture_coordinates");
+  return fail(422, kTitle, reason + " An atlas of its own is made for this model instead.",
+              "texture_coordinates");
 }
 
 bool has_surface(const TriangleMesh& mesh, std::size_t t) {
   const auto a = mesh.positions[mesh.triangles[3 * t]];
-  return glm::cross(mesh.positions[mesh.triangles[3 * t + 1]] - a, mesh.positions[mesh.triangles[3 * t + 2]] - a) !=
-         glm::dvec3(0);
+  return glm::cross(mesh.positions[mesh.triangles[3 * t + 1]] - a,
+                    mesh.positions[mesh.triangles[3 * t + 2]] - a) != glm::dvec3(0);
 }
 
 UvFaults no_faults(const TriangleMesh& mesh) {
@@ -47,7 +48,8 @@ Result<Atlas> refuse_faults(const TriangleMesh& mesh, const UvFaults& faults) {
     if (faults.count[fault] > faults.count[worst]) worst = fault;
   const auto fault = static_cast<UvFault>(worst);
   return refuse("Texture coordinates of " + std::to_string(faults.count[worst]) + " of " +
-                std::to_string(mesh.triangle_count()) + " triangles " + std::string(words_of(fault)) +
+                std::to_string(mesh.triangle_count()) + " triangles " +
+                std::string(words_of(fault)) +
                 (fault == UvFault::outside ? " (a repeating texture, or several tiles)." : "."));
 }
 
@@ -64,12 +66,14 @@ void note_moved(const UvFaults& faults, float scale, std::vector<Repair>& repair
          "moved to free places of the texture, as their texture coordinates " +
              std::string(words_of(static_cast<UvFault>(fault))) + ": triangles",
          faults.count[fault]);
-  if (scale < 1) note(repairs, "texture coordinates made smaller to make room for them: by " + percent(1 - scale), 1);
+  if (scale < 1)
+    note(repairs,
+         "texture coordinates made smaller to make room for them: by " + percent(1 - scale), 1);
 }
 
 // Moves what cannot stay.
-Result<void> move_faults(const TriangleMesh& mesh, UvFaults& faults, int lowest_resolution, Progress& progress,
-                         Atlas& atlas) {
+Result<void> move_faults(const TriangleMesh& mesh, UvFaults& faults, int lowest_resolution,
+                         Progress& progress, Atlas& atlas) {
   // Triangles without surface need no place.
   for (std::size_t t = 0; t < faults.of_triangle.size(); ++t) {
     if (faults.of_triangle[t] == UvFault::none || has_surface(mesh, t)) continue;
@@ -102,25 +106,28 @@ Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress
   const double surface = surface_area(mesh);
   const auto too_many = [&] { return faults.area > kMostMoved * surface; };
   // A little surface may stay without a place; to move it would cost the texture's own bytes.
-  const bool only_without_area =
-      faults.count[static_cast<int>(UvFault::not_finite)] == 0 && faults.count[static_cast<int>(UvFault::outside)] == 0;
+  const bool only_without_area = faults.count[static_cast<int>(UvFault::not_finite)] == 0 &&
+                                 faults.count[static_cast<int>(UvFault::outside)] == 0;
   if (only_without_area && faults.area <= kMostAreaWithoutUv * surface) faults = no_faults(mesh);
   if (too_many()) return refuse_faults(mesh, faults);
   for (std::size_t corner = 0; corner < mesh.corner_uvs.size(); ++corner) {
     const bool stays = faults.of_triangle[corner / 3] == UvFault::none;
-    atlas.corner_uvs.push_back(stays ? glm::clamp(mesh.corner_uvs[corner], glm::vec2(0), glm::vec2(1)) : glm::vec2(0));
+    atlas.corner_uvs.push_back(
+        stays ? glm::clamp(mesh.corner_uvs[corner], glm::vec2(0), glm::vec2(1)) : glm::vec2(0));
   }
   if (progress.cancelled()) return cancelled_problem();
 
   auto owners = count_owners(mesh, atlas.corner_uvs, lowest_resolution);
   if (owners.covered == 0) return refuse("The texture coordinates cover no texel.");
-  const auto shared = [&] { return static_cast<double>(owners.shared) / static_cast<double>(owners.covered); };
+  const auto shared = [&] {
+    return static_cast<double>(owners.shared) / static_cast<double>(owners.covered);
+  };
   if (const double before = shared(); before > kMostOverlap) {
     find_overlaps(mesh, atlas.corner_uvs, lowest_resolution, faults);
     if (too_many())
-      return refuse("Triangles overlap in the texture: " + percent(before) + " of the covered texels at " +
-                    std::to_string(lowest_resolution) + " have more than one owner; " + percent(kMostOverlap) +
-                    " may.");
+      return refuse("Triangles overlap in the texture: " + percent(before) +
+                    " of the covered texels at " + std::to_string(lowest_resolution) +
+                    " have more than one owner; " + percent(kMostOverlap) + " may.");
   }
   if (progress.cancelled()) return cancelled_problem();
   if (faults.area > 0 || !numbers_of(faults).empty()) {
@@ -135,7 +142,8 @@ Result<Atlas> keep_uvs(const TriangleMesh& mesh, int lowest_resolution, Progress
   const auto measure = measure_areas(mesh, atlas.corner_uvs);
 
   std::vector<std::uint32_t> indices;
-  const auto vertices = weld_corners(mesh.triangles, atlas.corner_uvs, mesh.positions.size(), indices);
+  const auto vertices =
+      weld_corners(mesh.triangles, atlas.corner_uvs, mesh.positions.size(), indices);
   atlas.report = make_report(mesh, atlas.corner_uvs, lowest_resolution, owners, measure);
   atlas.report.source = "file";
   atlas.report.limits = limits_of_file(atlas.report.coverage);

@@ -13,8 +13,8 @@ constexpr float kRoundingOutside = 1.f / 65536;  // writers round 1 up to a litt
 
 double surface_of(const TriangleMesh& mesh, std::size_t t) {
   const auto a = mesh.positions[mesh.triangles[3 * t]];
-  return glm::length(
-             glm::cross(mesh.positions[mesh.triangles[3 * t + 1]] - a, mesh.positions[mesh.triangles[3 * t + 2]] - a)) /
+  return glm::length(glm::cross(mesh.positions[mesh.triangles[3 * t + 1]] - a,
+                                mesh.positions[mesh.triangles[3 * t + 2]] - a)) /
          2;
 }
 
@@ -29,10 +29,12 @@ UvFault fault_of(std::span<const glm::vec2> uvs) {
 }
 
 template <class Visit>
-void for_each_texel(std::span<const glm::vec2> corner_uvs, std::size_t t, int resolution, Visit visit) {
+void for_each_texel(std::span<const glm::vec2> corner_uvs, std::size_t t, int resolution,
+                    Visit visit) {
   const auto snapped = [&](std::size_t k) {
     const glm::dvec2 uv =
-        glm::dvec2(glm::clamp(corner_uvs[3 * t + k], glm::vec2(0), glm::vec2(1))) * double(resolution);
+        glm::dvec2(glm::clamp(corner_uvs[3 * t + k], glm::vec2(0), glm::vec2(1))) *
+        double(resolution);
     return snap_to_subtexels(uv.x, uv.y);
   };
   CoverageRaster(snapped(0), snapped(1), snapped(2))
@@ -68,18 +70,22 @@ UvFaults find_single_faults(const TriangleMesh& mesh, std::span<const glm::vec2>
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const UvFault fault = fault_of(corner_uvs.subspan(3 * t, 3));
     if (fault == UvFault::none) continue;
-    if (const double area = surface_of(mesh, t); area > 0 || fault != UvFault::no_area) faults.set(t, fault, area);
+    if (const double area = surface_of(mesh, t); area > 0 || fault != UvFault::no_area)
+      faults.set(t, fault, area);
   }
   return faults;
 }
 
-void find_overlaps(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution, UvFaults& faults) {
+void find_overlaps(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution,
+                   UvFaults& faults) {
   constexpr std::uint16_t kMany = std::numeric_limits<std::uint16_t>::max();
-  std::vector<std::uint16_t> owners(static_cast<std::size_t>(resolution) * static_cast<std::size_t>(resolution), 0);
+  std::vector<std::uint16_t> owners(
+      static_cast<std::size_t>(resolution) * static_cast<std::size_t>(resolution), 0);
   const std::size_t count = mesh.triangle_count();
   for (std::size_t t = 0; t < count; ++t)
     if (faults.of_triangle[t] == UvFault::none)
-      for_each_texel(corner_uvs, t, resolution, [&](std::size_t at) { owners[at] += owners[at] != kMany; });
+      for_each_texel(corner_uvs, t, resolution,
+                     [&](std::size_t at) { owners[at] += owners[at] != kMany; });
   const auto shared_texels = [&](std::size_t t) {
     std::uint32_t shared = 0;
     for_each_texel(corner_uvs, t, resolution, [&](std::size_t at) { shared += owners[at] > 1; });
@@ -98,7 +104,8 @@ void find_overlaps(const TriangleMesh& mesh, std::span<const glm::vec2> corner_u
   });
   for (const Sharer& sharer : sharers) {
     if (shared_texels(sharer.triangle) == 0) continue;
-    for_each_texel(corner_uvs, sharer.triangle, resolution, [&](std::size_t at) { owners[at] -= owners[at] != kMany; });
+    for_each_texel(corner_uvs, sharer.triangle, resolution,
+                   [&](std::size_t at) { owners[at] -= owners[at] != kMany; });
     faults.set(sharer.triangle, UvFault::overlap, surface_of(mesh, sharer.triangle));
   }
 }

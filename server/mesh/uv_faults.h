@@ -23,12 +23,14 @@ struct UvFaults {
   void set(std::size_t triangle, UvFault fault, double surface_area);
 };
 
-// What can be seen of each triangle alone. `corner_uvs` are the mesh's; triangles without surface have no fault.
+// What can be seen of each triangle alone. `corner_uvs` are the mesh's; triangles without surface
+// have no fault.
 UvFaults find_single_faults(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs);
 
-// Adds triangles that share texels with others at `resolution`, until no two of the rest do: those with the most shared texels
-// first, so that one that lies over many others is found, and of two alike the later one. Every coordinate of triangles
-// without a fault lies in [0,1]².
-void find_overlaps(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution, UvFaults& faults);
+// Adds triangles that share texels with others at `resolution`, until no two of the rest do: those
+// with the most shared texels first, so that one that lies over many others is found, and of two
+// alike the later one. Every coordinate of triangles without a fault lies in [0,1]².
+void find_overlaps(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs, int resolution,
+                   UvFaults& faults);
 
 }  // namespace strata::mesh

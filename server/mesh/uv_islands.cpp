@@ -40,8 +40,9 @@ CornerWelder::Number CornerWelder::number(std::uint32_t position, glm::vec2 uv) 
   return {added, true};
 }
 
-std::size_t weld_corners(std::span<const std::uint32_t> position_of_corner, std::span<const glm::vec2> uv_of_corner,
-                         std::size_t position_count, std::vector<std::uint32_t>& indices) {
+std::size_t weld_corners(std::span<const std::uint32_t> position_of_corner,
+                         std::span<const glm::vec2> uv_of_corner, std::size_t position_count,
+                         std::vector<std::uint32_t>& indices) {
   CornerWelder welder(position_count);
   indices.resize(position_of_corner.size());
   for (std::size_t c = 0; c < indices.size(); ++c) {

@@ -7,8 +7,8 @@
 
 namespace strata::mesh {
 
-// Pieces of a parametrisation: triangles are of one island when a chain of corners that share position and UV joins
-// them.
+// Pieces of a parametrisation: triangles are of one island when a chain of corners that share
+// position and UV joins them.
 struct UvIslands {
   std::vector<std::uint32_t> of_triangle;  // numbered from 0 in the order of their first triangle
   std::uint32_t count = 0;
@@ -40,7 +40,8 @@ class CornerWelder {
 UvIslands find_islands(std::span<const std::uint32_t> indices, std::size_t vertex_count);
 
 // Such indices by a CornerWelder. Returns the number of distinct ones.
-std::size_t weld_corners(std::span<const std::uint32_t> position_of_corner, std::span<const glm::vec2> uv_of_corner,
-                         std::size_t position_count, std::vector<std::uint32_t>& indices);
+std::size_t weld_corners(std::span<const std::uint32_t> position_of_corner,
+                         std::span<const glm::vec2> uv_of_corner, std::size_t position_count,
+                         std::vector<std::uint32_t>& indices);
 
 }  // namespace strata::mesh

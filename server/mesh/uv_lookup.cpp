@@ -43,15 +43,18 @@ Nearest nearest_in(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
 
 UvLookup::UvLookup(const Geometry& geometry)
     : geometry_(geometry),
-      side_(std::clamp(static_cast<int>(std::sqrt(static_cast<double>(geometry.triangle_count()))), 1, kMostCells)) {
+      side_(std::clamp(static_cast<int>(std::sqrt(static_cast<double>(geometry.triangle_count()))),
+                       1, kMostCells)) {
   first_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_) + 1, 0);
   const std::size_t count = geometry.triangle_count();
-  for (std::size_t i = 0; i < count; ++i) for_each_cell(i, [&](std::size_t cell) { ++first_[cell + 1]; });
+  for (std::size_t i = 0; i < count; ++i)
+    for_each_cell(i, [&](std::size_t cell) { ++first_[cell + 1]; });
   for (std::size_t cell = 1; cell < first_.size(); ++cell) first_[cell] += first_[cell - 1];
   triangles_.resize(first_.back());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   for (std::size_t i = 0; i < count; ++i)
-    for_each_cell(i, [&](std::size_t cell) { triangles_[next[cell]++] = static_cast<std::uint32_t>(i); });
+    for_each_cell(
+        i, [&](std::size_t cell) { triangles_[next[cell]++] = static_cast<std::uint32_t>(i); });
 }
 
 int UvLookup::cell_of(double coordinate) const {
@@ -61,7 +64,8 @@ int UvLookup::cell_of(double coordinate) const {
 
 template <class Visit>
 void UvLookup::for_each_cell(std::size_t triangle, Visit&& visit) const {
-  glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
+  glm::dvec2 low(std::numeric_limits<double>::infinity()),
+      high(-std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < 3; ++k) {
     const glm::dvec2 uv(geometry_.vertices[geometry_.indices[3 * triangle + k]].uv);
     low = glm::min(low, uv);
@@ -69,12 +73,14 @@ void UvLookup::for_each_cell(std::size_t triangle, Visit&& visit) const {
   }
   for (int y = cell_of(low.y - kRounding); y <= cell_of(high.y + kRounding); ++y)
     for (int x = cell_of(low.x - kRounding); x <= cell_of(high.x + kRounding); ++x)
-      visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(x));
+      visit(static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) +
+            static_cast<std::size_t>(x));
 }
 
 std::optional<glm::dvec3> UvLookup::place_at(glm::dvec2 uv) const {
-  const std::size_t cell = static_cast<std::size_t>(cell_of(uv.y)) * static_cast<std::size_t>(side_) +
-                           static_cast<std::size_t>(cell_of(uv.x));
+  const std::size_t cell =
+      static_cast<std::size_t>(cell_of(uv.y)) * static_cast<std::size_t>(side_) +
+      static_cast<std::size_t>(cell_of(uv.x));
   double nearest = std::numeric_limits<double>::infinity();
   std::optional<glm::dvec3> place;
   for (std::uint32_t i = first_[cell]; i < first_[cell + 1]; ++i) {

@@ -25,29 +25,37 @@ struct Attempt {
   float scale;     // of what stays
   double density;  // of what moves, relative to what stays
 };
-constexpr std::array<Attempt, 7> kAttempts{
-    {{1, 1}, {1, 0.7}, {1, 0.5}, {0.9375f, 0.9375}, {0.875f, 0.875}, {0.75f, 0.75}, {0.75f, 0.375}}};
+constexpr std::array<Attempt, 7> kAttempts{{{1, 1},
+                                            {1, 0.7},
+                                            {1, 0.5},
+                                            {0.9375f, 0.9375},
+                                            {0.875f, 0.875},
+                                            {0.75f, 0.75},
+                                            {0.75f, 0.375}}};
 
 // The triangles that move as a mesh of their own.
 TriangleMesh part_of(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
   TriangleMesh part;
   std::vector<std::uint32_t> known;
   for (const auto t : triangles)
-    known.insert(known.end(), &mesh.triangles[3 * std::size_t{t}], &mesh.triangles[3 * std::size_t{t}] + 3);
+    known.insert(known.end(), &mesh.triangles[3 * std::size_t{t}],
+                 &mesh.triangles[3 * std::size_t{t}] + 3);
   std::sort(known.begin(), known.end());
   known.erase(std::unique(known.begin(), known.end()), known.end());
   for (const auto vertex : known) part.positions.push_back(mesh.positions[vertex]);
   for (const auto t : triangles)
     for (std::size_t k = 0; k < 3; ++k)
       part.triangles.push_back(static_cast<std::uint32_t>(
-          std::lower_bound(known.begin(), known.end(), mesh.triangles[3 * std::size_t{t} + k]) - known.begin()));
+          std::lower_bound(known.begin(), known.end(), mesh.triangles[3 * std::size_t{t} + k]) -
+          known.begin()));
   return part;
 }
 
 // The texels that triangles touch with their centres or corners.
 class Taken {
  public:
-  explicit Taken(int side) : side_(side), taken_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side)) {}
+  explicit Taken(int side)
+      : side_(side), taken_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side)) {}
 
   void add(const std::array<glm::dvec2, 3>& texels) {
     std::array<SnappedPoint, 3> snapped;
@@ -70,7 +78,8 @@ class Taken {
       for (int x = 0; x < side_;) {
         const int begin = x;
         while (x < side_ && taken_[at(x, y)]) ++x;
-        if (x > begin) mask.runs.push_back({static_cast<std::int16_t>(begin), static_cast<std::int16_t>(x)});
+        if (x > begin)
+          mask.runs.push_back({static_cast<std::int16_t>(begin), static_cast<std::int16_t>(x)});
         while (x < side_ && !taken_[at(x, y)]) ++x;
       }
       mask.first_run.push_back(static_cast<std::uint32_t>(mask.runs.size()));
@@ -80,7 +89,8 @@ class Taken {
 
  private:
   std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) +
+           static_cast<std::size_t>(x);
   }
   const int side_;
   std::vector<bool> taken_;
@@ -107,15 +117,16 @@ struct Unfolded {
   std::vector<Outline> outlines;
 };
 
-std::optional<std::vector<Placement>> place(const Unfolded& unfolded, double texels_per_unit, int side,
-                                            Canvas& canvas) {
+std::optional<std::vector<Placement>> place(const Unfolded& unfolded, double texels_per_unit,
+                                            int side, Canvas& canvas) {
   std::vector<Placement> placements(unfolded.charts.size());
   std::vector<std::uint32_t> order(placements.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto longer = [&](std::uint32_t i) {
     return std::max(unfolded.outlines[i].size.x, unfolded.outlines[i].size.y);
   };
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return longer(a) > longer(b); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](auto a, auto b) { return longer(a) > longer(b); });
   for (const auto i : order) {
     if (longer(i) * texels_per_unit >= side) return std::nullopt;
     auto placement = placed(canvas, make_shape(unfolded.outlines[i], texels_per_unit), side);
@@ -127,8 +138,10 @@ std::optional<std::vector<Placement>> place(const Unfolded& unfolded, double tex
 
 }  // namespace
 
-std::optional<MovedUvs> move_triangles(const TriangleMesh& mesh, std::span<const glm::vec2> corner_uvs,
-                                       std::span<const std::uint32_t> moved, int resolution, Progress& progress) {
+std::optional<MovedUvs> move_triangles(const TriangleMesh& mesh,
+                                       std::span<const glm::vec2> corner_uvs,
+                                       std::span<const std::uint32_t> moved, int resolution,
+                                       Progress& progress) {
   std::vector<bool> moves(mesh.triangle_count());
   for (const auto t : moved) moves[t] = true;
   const double side = resolution;
@@ -183,10 +196,13 @@ std::optional<MovedUvs> move_triangles(const TriangleMesh& mesh, std::span<const
     for (std::size_t c = 0; c < unfolded.charts.size(); ++c)
       for (const auto face : unfolded.charts[c].faces)
         for (std::size_t k = 0; k < 3; ++k) {
-          const glm::vec2 local = unfolded.outlines[c].from_chart(unfolded.plane[3 * std::size_t{face} + k]);
-          glm::dvec2 texels = glm::round((glm::dvec2(local) * density + kNear) * kUvSteps) / kUvSteps;
+          const glm::vec2 local =
+              unfolded.outlines[c].from_chart(unfolded.plane[3 * std::size_t{face} + k]);
+          glm::dvec2 texels =
+              glm::round((glm::dvec2(local) * density + kNear) * kUvSteps) / kUvSteps;
           texels = glm::clamp(texels, glm::dvec2(0), glm::dvec2((*placements)[c].box));
-          result.corner_uvs[3 * std::size_t{moved[face]} + k] = glm::vec2((*placements)[c].to_atlas(texels) / side);
+          result.corner_uvs[3 * std::size_t{moved[face]} + k] =
+              glm::vec2((*placements)[c].to_atlas(texels) / side);
         }
     return result;
   }

@@ -8,14 +8,17 @@
 namespace strata::mesh {
 
 inline std::uint32_t channel_byte(double value) {
-  return value >= 0 ? static_cast<std::uint32_t>(std::lround(std::min(value, 255.0))) : 0u;  // NaN is 0, too
+  // NaN is 0, too
+  return value >= 0 ? static_cast<std::uint32_t>(std::lround(std::min(value, 255.0))) : 0u;
 }
 
 inline std::uint32_t pack_color(double red, double green, double blue, double alpha) {
-  return channel_byte(red) | channel_byte(green) << 8 | channel_byte(blue) << 16 | channel_byte(alpha) << 24;
+  return channel_byte(red) | channel_byte(green) << 8 | channel_byte(blue) << 16 |
+         channel_byte(alpha) << 24;
 }
 
-// One channel, 0…1, from light to what pictures store (IEC 61966-2-1), and back. What is outside, and NaN, is clamped.
+// One channel, 0…1, from light to what pictures store (IEC 61966-2-1), and back. What is outside,
+// and NaN, is clamped.
 inline double srgb_of_linear(double value) {
   value = value >= 0 ? std::min(value, 1.0) : 0.0;
   return value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
@@ -25,8 +28,9 @@ inline double linear_of_srgb(double value) {
   return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
-// Colours given as real numbers are 0…1 in some files and 0…255 in others, and no header says which. They are taken as
-// 0…1 until a channel exceeds 1; then those stored so far are rescaled (each was 0 or about 1 of 255).
+// Colours given as real numbers are 0…1 in some files and 0…255 in others, and no header says
+// which. They are taken as 0…1 until a channel exceeds 1; then those stored so far are rescaled
+// (each was 0 or about 1 of 255).
 class RealColorScale {
  public:
   // `stored` holds the colours that this packed before; without alpha a colour is opaque.
@@ -42,7 +46,8 @@ class RealColorScale {
       }
     }
     const double scale = bytes_ ? 1.0 : 255.0;
-    return pack_color(rgba[0] * scale, rgba[1] * scale, rgba[2] * scale, has_alpha ? rgba[3] * scale : 255.0);
+    return pack_color(rgba[0] * scale, rgba[1] * scale, rgba[2] * scale,
+                      has_alpha ? rgba[3] * scale : 255.0);
   }
 
  private:

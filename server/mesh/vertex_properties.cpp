@@ -44,7 +44,8 @@ constexpr std::array<std::string_view, 24> kKnown{"x",
 struct PlaceHash {
   std::size_t operator()(const glm::dvec3& p) const {
     std::uint64_t h = 0;
-    for (int k = 0; k < 3; ++k) h = (h ^ std::bit_cast<std::uint64_t>(p[k] + 0.0)) * 0x9e3779b97f4a7c15ULL;
+    for (int k = 0; k < 3; ++k)
+      h = (h ^ std::bit_cast<std::uint64_t>(p[k] + 0.0)) * 0x9e3779b97f4a7c15ULL;
     return h ^ h >> 29;
   }
 };
@@ -59,24 +60,30 @@ bool skip_list(Source& source, const PlyProperty& property) {
 template <class Source>
 Result<VertexProperty> read(Source source, const PlyHeader& header, const std::string& wanted) {
   const auto broken = [&](const PlyElement& element, std::uint64_t i) {
-    return refuse_file("The file ends or cannot be read at " + source.place() + ", in " + element.name + " " +
-                       std::to_string(i + 1) + " of " + std::to_string(element.count) + ".");
+    return refuse_file("The file ends or cannot be read at " + source.place() + ", in " +
+                       element.name + " " + std::to_string(i + 1) + " of " +
+                       std::to_string(element.count) + ".");
   };
   for (const PlyElement& element : header.elements) {
     const bool is_vertex = element.name == "vertex";
-    const auto x = element.find({"x"}), y = element.find({"y"}), z = element.find({"z"}), at = element.find({wanted});
-    const auto is_number = [&](const std::optional<int>& k) { return k && !element.properties[*k].count_type; };
+    const auto x = element.find({"x"}), y = element.find({"y"}), z = element.find({"z"}),
+               at = element.find({wanted});
+    const auto is_number = [&](const std::optional<int>& k) {
+      return k && !element.properties[*k].count_type;
+    };
     if (is_vertex && !(is_number(x) && is_number(y) && is_number(z)))
       return refuse_file("The element \"vertex\" has no properties x, y and z.");
     if (is_vertex && !is_number(at))
-      return fail(422, "No such property", "The vertices of the file have no number \"" + wanted + "\".",
+      return fail(422, "No such property",
+                  "The vertices of the file have no number \"" + wanted + "\".",
                   "compute.property");
     VertexProperty found;
     std::vector<double> values(element.properties.size());
     for (std::uint64_t i = 0; i < element.count; ++i) {
       for (std::size_t k = 0; k < values.size(); ++k) {
         const PlyProperty& property = element.properties[k];
-        const bool good = property.count_type ? skip_list(source, property) : source.value(property.type, values[k]);
+        const bool good = property.count_type ? skip_list(source, property)
+                                              : source.value(property.type, values[k]);
         if (!good) return broken(element, i);
       }
       if (!values.empty()) source.end_element();
@@ -111,19 +118,24 @@ std::vector<std::string> vertex_property_names(std::span<const std::uint8_t> beg
   return names;
 }
 
-Result<VertexProperty> read_vertex_property(std::span<const std::uint8_t> file, const std::string& property) {
+Result<VertexProperty> read_vertex_property(std::span<const std::uint8_t> file,
+                                            const std::string& property) {
   const auto header = parse_ply_header(file);
   if (!header) return tl::unexpected(header.error());
-  if (header->encoding == PlyEncoding::ascii) return read(PlyAsciiSource(file, *header), *header, property);
-  return read(PlyBinarySource(file, header->data_offset, header->encoding == PlyEncoding::big_endian), *header,
-              property);
+  if (header->encoding == PlyEncoding::ascii)
+    return read(PlyAsciiSource(file, *header), *header, property);
+  return read(
+      PlyBinarySource(file, header->data_offset, header->encoding == PlyEncoding::big_endian),
+      *header, property);
 }
 
-Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan, const std::string& filename,
-                                       std::string_view csv, Progress& progress) {
+Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan,
+                                       const std::string& filename, std::string_view csv,
+                                       Progress& progress) {
   const InputKind kind = input_kind(filename);
   if (kind != InputKind::ply && kind != InputKind::obj)
-    return fail(422, "Order not known", "Vertices have an order of their own in PLY and OBJ files only.", "source");
+    return fail(422, "Order not known",
+                "Vertices have an order of their own in PLY and OBJ files only.", "source");
   std::vector<InputFiles::Entry> entries;
   entries.push_back({filename, scan, std::nullopt});
   const auto files = InputFiles::of(std::move(entries), {}, progress);
@@ -144,25 +156,30 @@ Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan, const
     while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
     while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
     double value = std::numeric_limits<double>::quiet_NaN();
-    if (!text.empty() && text != "nan" && text != "NaN" && (!parse_number(text, value) || !std::isfinite(value))) {
+    if (!text.empty() && text != "nan" && text != "NaN" &&
+        (!parse_number(text, value) || !std::isfinite(value))) {
       if (line == 1) continue;
-      return refuse(line, "\"" + std::string(text.substr(0, 40)) + "\" is no number; give one value a line.");
+      return refuse(
+          line, "\"" + std::string(text.substr(0, 40)) + "\" is no number; give one value a line.");
     }
     if (property.values.size() == property.positions.size()) {
       if (text.empty()) continue;  // blank lines at the end
-      return refuse(line, "the scan has only " + std::to_string(property.positions.size()) + " vertices.");
+      return refuse(
+          line, "the scan has only " + std::to_string(property.positions.size()) + " vertices.");
     }
     property.values.push_back(value);
   }
   if (property.values.size() != property.positions.size())
     return fail(422, "CSV not usable",
-                "There are values for " + std::to_string(property.values.size()) + " of the scan's " +
-                    std::to_string(property.positions.size()) + " vertices; give one line for each.",
+                "There are values for " + std::to_string(property.values.size()) +
+                    " of the scan's " + std::to_string(property.positions.size()) +
+                    " vertices; give one line for each.",
                 "body");
   return property;
 }
 
-std::vector<double> values_at_positions(const Geometry& geometry, const VertexProperty& property, bool is_key) {
+std::vector<double> values_at_positions(const Geometry& geometry, const VertexProperty& property,
+                                        bool is_key) {
   struct Sum {
     double sum = 0;
     int count = 0;
@@ -184,13 +201,14 @@ std::vector<double> values_at_positions(const Geometry& geometry, const VertexPr
   return values;
 }
 
-double value_in_triangle(const Geometry& geometry, const std::vector<double>& of_positions, std::uint32_t triangle,
-                         const glm::vec3& weights, bool is_key) {
+double value_in_triangle(const Geometry& geometry, const std::vector<double>& of_positions,
+                         std::uint32_t triangle, const glm::vec3& weights, bool is_key) {
   double sum = 0, weight = 0, nearest = std::numeric_limits<double>::quiet_NaN();
   float largest = -1;
   for (int k = 0; k < 3; ++k) {
     const double value =
-        of_positions[geometry.vertices[geometry.indices[3 * std::size_t{triangle} + k]].position_index];
+        of_positions[geometry.vertices[geometry.indices[3 * std::size_t{triangle} + k]]
+                         .position_index];
     if (std::isnan(value)) continue;
     sum += weights[k] * value;
     weight += weights[k];

@@ -40,12 +40,14 @@ std::uint64_t weld_equal(TriangleMesh& mesh, const std::vector<bool>& used) {
     p += 0.0;
     const auto hash = hash_of(std::bit_cast<std::uint64_t>(p.x), std::bit_cast<std::uint64_t>(p.y),
                               std::bit_cast<std::uint64_t>(p.z));
-    return table.find_or_insert(hash, i, [&](std::uint32_t other) { return mesh.positions[other] == p; });
+    return table.find_or_insert(hash, i,
+                                [&](std::uint32_t other) { return mesh.positions[other] == p; });
   });
 }
 
 std::uint64_t weld_near(TriangleMesh& mesh, const std::vector<bool>& used, double distance) {
-  // Cells as wide as the distance: whatever is near enough is in the same cell or in one of the 26 around it.
+  // Cells as wide as the distance: whatever is near enough is in the same cell or in one of the 26
+  // around it.
   const auto cell_of = [&](double coordinate) { return std::floor(coordinate / distance); };
   const auto hash = [](const glm::dvec3& cell) {
     const glm::dvec3 plain = cell + 0.0;  // −0 is 0

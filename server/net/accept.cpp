@@ -33,7 +33,9 @@ int closeness(const std::string& range, const std::string& type) {
   if (range == type) return 4;
   const bool is_json = type.starts_with("application/") && type.ends_with("+json");
   if (range == "application/json" && is_json) return 3;
-  if (range.ends_with("/*") && range != "*/*" && type.starts_with(range.substr(0, range.size() - 1))) return 2;
+  if (range.ends_with("/*") && range != "*/*" &&
+      type.starts_with(range.substr(0, range.size() - 1)))
+    return 2;
   return range == "*/*" || range == "*" ? 1 : 0;
 }
 

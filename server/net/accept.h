@@ -4,7 +4,8 @@
 #include <string_view>
 #include <vector>
 
-// What a client takes (RFC 9110, 12.4 and 12.5): lists of values with a quality from 0, which refuses, to 1.
+// What a client takes (RFC 9110, 12.4 and 12.5): lists of values with a quality from 0, which
+// refuses, to 1.
 namespace strata::net {
 
 struct Accepted {
@@ -14,7 +15,8 @@ struct Accepted {
 // The entries of an Accept or Accept-Encoding header; a malformed quality counts as 0.
 std::vector<Accepted> accepted_values(std::string_view header);
 
-// Whether an Accept header takes a content of this type. An absent header takes all; `application/json` also takes `application/…+json`.
+// Whether an Accept header takes a content of this type. An absent header takes all;
+// `application/json` also takes `application/…+json`.
 bool accepts_type(std::string_view accept, std::string_view content_type);
 
 std::string_view trim_blanks(std::string_view text);  // spaces and tabs at both ends

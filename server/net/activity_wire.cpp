@@ -7,9 +7,12 @@
 namespace strata::net {
 
 nlohmann::json to_json(const store::Activity& line) {
-  nlohmann::json json{
-      {"id", line.id}, {"time", utc_text(line.time)}, {"begun", utc_text(line.begun)}, {"kind", line.kind},
-      {"op", line.op}, {"count", line.count}};
+  nlohmann::json json{{"id", line.id},
+                      {"time", utc_text(line.time)},
+                      {"begun", utc_text(line.begun)},
+                      {"kind", line.kind},
+                      {"op", line.op},
+                      {"count", line.count}};
   const auto put_text = [&](const char* name, const std::string& text) {
     if (!text.empty()) json[name] = text;
   };
@@ -48,7 +51,8 @@ std::optional<store::ActivityPlace> place_of(std::string_view text) {
     return error == std::errc() && end == digits.data() + digits.size();
   };
   store::ActivityPlace place;
-  if (!number(text.substr(0, dash), 16, place.time_us) || !number(text.substr(dash + 1), 15, place.id))
+  if (!number(text.substr(0, dash), 16, place.time_us) ||
+      !number(text.substr(dash + 1), 15, place.id))
     return std::nullopt;
   return place;
 }

@@ -8,7 +8,8 @@
 
 namespace strata::net {
 
-// Adds routes of things that everybody reads and annotators write, or a higher role: bodies are JSON, and answers to changes are kept for repeats.
+// Adds routes of things that everybody reads and annotators write, or a higher role: bodies are
+// JSON, and answers to changes are kept for repeats.
 class AnnotatedRoutes {
  public:
   using Answer = Result<Response> (*)(const RouteContext&, const Request&);
@@ -16,7 +17,8 @@ class AnnotatedRoutes {
   AnnotatedRoutes(Router& router, const RouteContext& context, Role least = Role::annotator)
       : router_(router), context_(context), least_(least) {}
 
-  void read(std::string pattern, Answer answer, std::vector<std::string> query = {}, StateOf state = {}) {
+  void read(std::string pattern, Answer answer, std::vector<std::string> query = {},
+            StateOf state = {}) {
     router_.add({.method = Method::get,
                  .pattern = std::move(pattern),
                  .handler = handler(answer),
@@ -37,7 +39,8 @@ class AnnotatedRoutes {
 
  private:
   Handler handler(Answer answer) const {
-    return answering([&context = context_, answer](const Request& request) { return answer(context, request); });
+    return answering(
+        [&context = context_, answer](const Request& request) { return answer(context, request); });
   }
 
   Router& router_;

@@ -7,13 +7,15 @@ namespace strata::net {
 std::string scoped_key(const Request& request) {
   const std::string_view key = request.header("idempotency-key");
   if (key.empty()) return {};
-  return sha256_hex(request.user() + '\n' + std::string(name(request.method)) + '\n' + request.target + '\n' +
-                    std::string(key));
+  return sha256_hex(request.user() + '\n' + std::string(name(request.method)) + '\n' +
+                    request.target + '\n' + std::string(key));
 }
 
-// Bodies in files are told apart by their length: hashing gigabytes to compare a retry is not worth it.
+// Bodies in files are told apart by their length: hashing gigabytes to compare a retry is not worth
+// it.
 std::string fingerprint(const Request& request) {
-  return request.body_file.empty() ? sha256_hex(request.body) : "file:" + std::to_string(request.body_bytes);
+  return request.body_file.empty() ? sha256_hex(request.body)
+                                   : "file:" + std::to_string(request.body_bytes);
 }
 
 nlohmann::json kept_answer(const Response& response, std::string request_fingerprint) {
@@ -39,13 +41,15 @@ Result<std::optional<nlohmann::json>> AnswerBook::begin(const Request& request) 
   {
     std::lock_guard lock(mutex_);
     if (!at_work_.insert(scoped).second)
-      return fail(409, "Still at work", "The first call with this Idempotency-Key has not ended yet; ask again later.",
+      return fail(409, "Still at work",
+                  "The first call with this Idempotency-Key has not ended yet; ask again later.",
                   "Idempotency-Key");
   }
   auto kept = store_.find_answer(scoped);
   if (kept && *kept && (*kept)->value("request", std::string()) != fingerprint(request))
     kept = fail(422, "Key used for another call",
-                "This Idempotency-Key was used with another body; take a new key for a new call.", "Idempotency-Key");
+                "This Idempotency-Key was used with another body; take a new key for a new call.",
+                "Idempotency-Key");
   if (!kept || *kept) end(request);
   return kept;
 }

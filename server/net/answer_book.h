@@ -11,10 +11,11 @@
 
 namespace strata::net {
 
-// Idempotency-Key: the first successful answer to a key is kept in the database, in the transaction of what the call did, and
-// given again to a repeat. A key belongs to one person, method and address; the same key with another body is refused (422), and
-// a repeat while the first call is still at work too (409). Refusals are not kept: the call changed nothing and may be tried
-// again. Thread-safe, blocks.
+// Idempotency-Key: the first successful answer to a key is kept in the database, in the transaction
+// of what the call did, and given again to a repeat. A key belongs to one person, method and
+// address; the same key with another body is refused (422), and a repeat while the first call is
+// still at work too (409). Refusals are not kept: the call changed nothing and may be tried again.
+// Thread-safe, blocks.
 class AnswerBook {
  public:
   explicit AnswerBook(store::Store& store) : store_(store) {}
@@ -39,8 +40,9 @@ Response response_of(const nlohmann::json& kept);
 
 // For the call that has the effect: keeps `respond(effect)` with it where the request has a key.
 template <class... Effect>
-store::FirstAnswer<Effect...> first_answer(const Request& request,
-                                           std::type_identity_t<std::function<Response(const Effect&...)>> respond) {
+store::FirstAnswer<Effect...> first_answer(
+    const Request& request,
+    std::type_identity_t<std::function<Response(const Effect&...)>> respond) {
   return {scoped_key(request),
           [print = fingerprint(request), respond = std::move(respond)](const Effect&... effect) {
             return kept_answer(respond(effect...), print);

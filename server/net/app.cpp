@@ -20,18 +20,22 @@ namespace {
 constexpr std::size_t kMaxKey = 255;
 constexpr std::size_t kMaxWaitingQueries = 256;
 
-bool changes(Method method) { return method != Method::get && method != Method::head && method != Method::options; }
+bool changes(Method method) {
+  return method != Method::get && method != Method::head && method != Method::options;
+}
 
-Result<void> check_record(store::Store& store, std::int64_t project_id, const EditorBook::Record& record) {
+Result<void> check_record(store::Store& store, std::int64_t project_id,
+                          const EditorBook::Record& record) {
   const auto table = store.table(std::to_string(record.table), Role::viewer);
   if (!table && table.error().status != 404) return tl::unexpected(table.error());
   if (!table || table->project_id != project_id)
-    return fail(404, "No such table", "The model's project has no table " + std::to_string(record.table) + ".",
-                "table");
+    return fail(404, "No such table",
+                "The model's project has no table " + std::to_string(record.table) + ".", "table");
   const auto missing = store.missing_records(record.table, std::vector{record.key});
   if (!missing) return tl::unexpected(missing.error());
   if (!missing->empty())
-    return fail(404, "No such record", table->name + " has no record " + std::to_string(record.key) + ".", "key");
+    return fail(404, "No such record",
+                table->name + " has no record " + std::to_string(record.key) + ".", "key");
   return {};
 }
 
@@ -86,8 +90,10 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       workers_(options_.worker_threads, options_.max_waiting_requests),
       questions_({.threads = options_.question_threads, .waiting = options_.max_waiting_requests}),
       bin_keeper_(store.bin(), std::chrono::days(options_.bin_days)),
-      context_{options_,          store,    rooms,      jobs,    renderer,   auth_,      edit_book_, *shared_->sockets,
-               *shared_->metrics, workers_, questions_, *tools_, templates_, bin_keeper_},
+      context_{options_,          store,      rooms,      jobs,
+               renderer,          auth_,      edit_book_, *shared_->sockets,
+               *shared_->metrics, workers_,   questions_, *tools_,
+               templates_,        bin_keeper_},
       recomputer_(context_) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);
@@ -130,7 +136,9 @@ App::App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
   page_.pattern = "/";
   page_.role = std::nullopt;
   page_.any_query = true;
-  page_.handler = [this](const Request& request, const Respond& respond) { respond(files_.serve(request)); };
+  page_.handler = [this](const Request& request, const Respond& respond) {
+    respond(files_.serve(request));
+  };
   live_.pattern = "/api/v1/models/{model}/live";
 }
 
@@ -152,11 +160,13 @@ const Route* App::find_route(Request& request, Response& refusal) const {
   forget_codings(request);
   const bool is_api = !request.segments.empty() && request.segments.front() == "api";
   if (request.method == Method::unknown) {
-    refusal = problem_response({405, "Unknown method", "Use GET, HEAD, POST, PUT, PATCH, DELETE or OPTIONS.", {}});
+    refusal = problem_response(
+        {405, "Unknown method", "Use GET, HEAD, POST, PUT, PATCH, DELETE or OPTIONS.", {}});
     return nullptr;
   }
   if (is_live_address(request) && request.method == Method::get) {
-    refusal = problem_response({426, "Upgrade required", "This address speaks WebSocket, subprotocol strata.v1.", {}});
+    refusal = problem_response(
+        {426, "Upgrade required", "This address speaks WebSocket, subprotocol strata.v1.", {}});
     refusal.with("Upgrade", "websocket");
     return nullptr;
   }
@@ -165,10 +175,14 @@ const Route* App::find_route(Request& request, Response& refusal) const {
     request.params = std::move(match.params);
     return match.route;
   }
-  if (match.allowed.empty() && !is_api) match.allowed = {Method::get, Method::head, Method::options};
+  if (match.allowed.empty() && !is_api)
+    match.allowed = {Method::get, Method::head, Method::options};
   if (match.allowed.empty()) {
     refusal = problem_response(
-        {404, "Not found", "There is nothing at " + request.path + ". The addresses are listed at /api/v1/docs.", {}});
+        {404,
+         "Not found",
+         "There is nothing at " + request.path + ". The addresses are listed at /api/v1/docs.",
+         {}});
     return nullptr;
   }
   if (!is_api && (request.method == Method::get || request.method == Method::head)) return &page_;
@@ -176,7 +190,8 @@ const Route* App::find_route(Request& request, Response& refusal) const {
   if (request.method == Method::options) {
     refusal = empty_response(204);
   } else {
-    refusal = problem_response({405, "Method not allowed", "This address takes: " + allow + ".", {}});
+    refusal =
+        problem_response({405, "Method not allowed", "This address takes: " + allow + ".", {}});
   }
   refusal.with("Allow", allow);
   return nullptr;
@@ -186,9 +201,11 @@ Result<void> App::identify(Request& request, const Route& route) {
   auto principal = auth_.identify(request);
   if (!principal) return tl::unexpected(principal.error());
   request.principal = std::move(*principal);
-  if (!request.principal) return fail(401, "Not signed in", "Sign in, or send `Authorization: Bearer TOKEN`.");
-  const auto inside = request.principal->kiosk ? enter_as_kiosk(context_, request, route)
-                                               : enter_project(context_, request, route.project_in_query);
+  if (!request.principal)
+    return fail(401, "Not signed in", "Sign in, or send `Authorization: Bearer TOKEN`.");
+  const auto inside = request.principal->kiosk
+                          ? enter_as_kiosk(context_, request, route)
+                          : enter_project(context_, request, route.project_in_query);
   if (!inside) return inside;
   const Role least = *route.role;
   if (request.principal->role < least)
@@ -199,17 +216,21 @@ Result<void> App::identify(Request& request, const Route& route) {
 }
 
 std::optional<Response> App::admit(Request& request, const Route& route) {
-  // What is open to everyone must work with a stale cookie, too: the page itself, signing in, health.
+  // What is open to everyone must work with a stale cookie, too: the page itself, signing in,
+  // health.
   if (route.role)
     if (auto known = identify(request, route); !known) return problem_response(known.error());
   if (changes(request.method))
-    if (auto own = check_same_origin(request, options_.allowed_origins); !own) return problem_response(own.error());
+    if (auto own = check_same_origin(request, options_.allowed_origins); !own)
+      return problem_response(own.error());
   if (auto known = check_query(route, request); !known) return problem_response(known.error());
-  if (auto named = check_precondition(context_, request, route); !named) return problem_response(named.error());
+  if (auto named = check_precondition(context_, request, route); !named)
+    return problem_response(named.error());
   if (route.check)
     if (auto good = route.check(request); !good) return problem_response(good.error());
   if (request.header("idempotency-key").size() > kMaxKey)
-    return problem_response({400, "Key too long", "An Idempotency-Key has at most 255 characters.", "Idempotency-Key"});
+    return problem_response(
+        {400, "Key too long", "An Idempotency-Key has at most 255 characters.", "Idempotency-Key"});
   return std::nullopt;
 }
 
@@ -217,30 +238,36 @@ std::optional<Response> App::admit_again(Request& request, const Route& route) {
   if (!route.role) return std::nullopt;
   const std::string user = request.user();
   if (auto known = identify(request, route); !known) return problem_response(known.error());
-  if (request.user() != user) return problem_response({401, "Not signed in", "Somebody else is signed in now.", {}});
+  if (request.user() != user)
+    return problem_response({401, "Not signed in", "Somebody else is signed in now.", {}});
   return std::nullopt;
 }
 
 void App::handle(const Request& request, const Route& route, const Respond& send) {
   const bool reads = request.method == Method::get || request.method == Method::head;
-  const Respond respond([send, coding = std::string(request.header("accept-encoding")), known = request.known_tags,
-                         accept = reads ? std::string(request.header("accept")) : std::string()](Response response) {
-    // What was changed is told in any case; what was only read can be asked for in another way.
-    if (response.status == 200 && !response.events && !accepts_type(accept, response.header("Content-Type")))
-      response = problem_response({406, "Not acceptable",
-                                   "This address answers with " + std::string(response.header("Content-Type")) +
-                                       ", which `Accept` does not take.",
-                                   "Accept"});
-    compress(response, coding, known);
-    send(std::move(response));
-  });
-  if (reads) return answer_failures(request, respond, [&] { answer_read(request, route, respond); });
+  const Respond respond(
+      [send, coding = std::string(request.header("accept-encoding")), known = request.known_tags,
+       accept = reads ? std::string(request.header("accept")) : std::string()](Response response) {
+        // What was changed is told in any case; what was only read can be asked for in another way.
+        if (response.status == 200 && !response.events &&
+            !accepts_type(accept, response.header("Content-Type")))
+          response = problem_response({406, "Not acceptable",
+                                       "This address answers with " +
+                                           std::string(response.header("Content-Type")) +
+                                           ", which `Accept` does not take.",
+                                       "Accept"});
+        compress(response, coding, known);
+        send(std::move(response));
+      });
+  if (reads)
+    return answer_failures(request, respond, [&] { answer_read(request, route, respond); });
   const bool remembered = route.keeps_answer && !request.header("idempotency-key").empty();
   if (remembered) {
     auto kept = answers_.begin(request);
     if (!kept) return respond(kept.error());
     if (*kept) {
-      auto response = route.replay ? route.replay(request, **kept) : Result<Response>(response_of(**kept));
+      auto response =
+          route.replay ? route.replay(request, **kept) : Result<Response>(response_of(**kept));
       if (!response) return respond(response.error());
       return respond(std::move(response->with("Idempotency-Replayed", "true")));
     }
@@ -254,7 +281,8 @@ void App::handle(const Request& request, const Route& route, const Respond& send
   answer_failures(request, answer, [&] { route.handler(request, answer); });
 }
 
-void App::answer_failures(const Request& request, const Respond& answer, const std::function<void()>& work) {
+void App::answer_failures(const Request& request, const Respond& answer,
+                          const std::function<void()>& work) {
   try {
     work();
   } catch (const QuestionEnded& ended) {
@@ -262,13 +290,14 @@ void App::answer_failures(const Request& request, const Respond& answer, const s
   } catch (const std::exception& error) {
     // The address of a kiosk is its secret.
     const bool is_secret = !request.segments.empty() && request.segments.front() == "kiosk";
-    log::error("request " + std::string(name(request.method)) + " " + (is_secret ? "/kiosk/…" : request.path) +
-               " failed: " + error.what());
+    log::error("request " + std::string(name(request.method)) + " " +
+               (is_secret ? "/kiosk/…" : request.path) + " failed: " + error.what());
     answer(Problem{500, "Internal error", "The server made a mistake; its log says more.", {}});
   }
 }
 
-// What is open to everyone is the page, which has tags of its own, and health, which nobody should keep.
+// What is open to everyone is the page, which has tags of its own, and health, which nobody should
+// keep.
 void App::answer_read(const Request& request, const Route& route, const Respond& respond) {
   if (!route.role) return route.handler(request, respond);
   const auto known = request.header("if-none-match");
@@ -276,17 +305,20 @@ void App::answer_read(const Request& request, const Route& route, const Respond&
     const auto state = route.state ? route.state(request) : std::nullopt;
     return state ? std::optional(tag_of_state(request, *state)) : std::nullopt;
   };
-  // Before the work, which is what it saves. `Accept` is part of such tags. Whether there is anything that `*` could stand for shows afterwards.
+  // Before the work, which is what it saves. `Accept` is part of such tags. Whether there is
+  // anything that `*` could stand for shows afterwards.
   const auto before = state_now();
   if (before && known != "*" && names_tag(known, *before))
     return respond(std::move(empty_response(304).with("ETag", *before).with("Vary", "Accept")));
-  const Respond with_tag([respond, known_tags = std::string(known), before, state_now](Response response) {
+  const Respond with_tag([respond, known_tags = std::string(known), before,
+                          state_now](Response response) {
     if (response.status != 200) return respond(std::move(response));
     // Nothing changed while the answer was made: it shows that state and no other.
     if (before && response.header("ETag").empty() && state_now() == before) {
       if (response.header("Vary").empty()) response.with("Vary", "Accept");
       response.with("ETag", *before);
-      return respond(names_tag(known_tags, *before) ? not_modified(std::move(response)) : std::move(response));
+      return respond(names_tag(known_tags, *before) ? not_modified(std::move(response))
+                                                    : std::move(response));
     }
     const auto tag = tag_of_body(response);
     if (!tag) return respond(std::move(response));
@@ -306,7 +338,8 @@ Result<App::LiveEntry> App::admit_live(Request& request) {
   request.params["model"] = request.segments[3];
   if (auto own = check_host(request, own_names_); !own) return tl::unexpected(own.error());
   if (auto known = identify(request, live_); !known) return tl::unexpected(known.error());
-  if (auto own = check_upgrade_origin(request, options_.allowed_origins); !own) return tl::unexpected(own.error());
+  if (auto own = check_upgrade_origin(request, options_.allowed_origins); !own)
+    return tl::unexpected(own.error());
   auto room = rooms_.open(request.segments[3], request.role());
   if (!room) return tl::unexpected(room.error());
   auto project = store_.project(std::to_string((*room)->model().project_id));
@@ -332,9 +365,9 @@ bool App::is_still_welcome(const std::string& secret, std::int64_t project_id, R
 }
 
 std::shared_ptr<LiveSession> App::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {
-  auto session = std::make_shared<LiveSession>(shared_, std::move(entry.room), std::move(entry.project_slug),
-                                               std::move(entry.principal), std::move(entry.portrait),
-                                               std::move(entry.personal_view), socket);
+  auto session = std::make_shared<LiveSession>(
+      shared_, std::move(entry.room), std::move(entry.project_slug), std::move(entry.principal),
+      std::move(entry.portrait), std::move(entry.personal_view), socket);
   live_sockets().add(std::move(socket), session, std::move(entry.secret));
   return session;
 }

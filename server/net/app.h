@@ -24,11 +24,12 @@
 
 namespace strata::net {
 
-// Everything between the sockets and the rooms: which route, who asks, may they, was it asked before. Knows no socket library.
+// Everything between the sockets and the rooms: which route, who asks, may they, was it asked
+// before. Knows no socket library.
 class App {
  public:
-  App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer,
-      TemplateShelf templates);
+  App(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
+      render::Renderer& renderer, TemplateShelf templates);
   ~App();
 
   const ServerOptions& options() const { return options_; }
@@ -36,16 +37,19 @@ class App {
   WorkerPool& workers() { return workers_; }
   QuestionDesk& questions() { return questions_; }
 
-  // Once the request's head is read; does not block. Puts the path's parameters into the request. Null: `refusal` is the answer.
+  // Once the request's head is read; does not block. Puts the path's parameters into the request.
+  // Null: `refusal` is the answer.
   const Route* find_route(Request& request, Response& refusal) const;
   // On a worker, before the body is read: the refusal, if any.
   std::optional<Response> admit(Request& request, const Route& route);
-  // On a worker, once the body is there, which may have taken long: who asks may be in no longer, or may do less.
+  // On a worker, once the body is there, which may have taken long: who asks may be in no longer,
+  // or may do less.
   std::optional<Response> admit_again(Request& request, const Route& route);
   // On a worker, with the body.
   void handle(const Request& request, const Route& route, const Respond& respond);
 
-  // The live connection of a model: whether this is its address; and who may come in (blocks: opens the room).
+  // The live connection of a model: whether this is its address; and who may come in (blocks: opens
+  // the room).
   static bool is_live_address(const Request& request);
   struct LiveEntry {
     std::shared_ptr<room::Room> room;
@@ -57,7 +61,8 @@ class App {
   };
   Result<LiveEntry> admit_live(Request& request);
   std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket);
-  // Whether who came in with this may stay in the project as who it was (blocks). While the database is away nobody is sent out.
+  // Whether who came in with this may stay in the project as who it was (blocks). While the
+  // database is away nobody is sent out.
   bool is_still_welcome(const std::string& secret, std::int64_t project_id, Role role);
   LiveSockets& live_sockets() { return *shared_->sockets; }
 
@@ -65,7 +70,8 @@ class App {
 
  private:
   void answer_read(const Request& request, const Route& route, const Respond& respond);
-  static void answer_failures(const Request& request, const Respond& answer, const std::function<void()>& work);
+  static void answer_failures(const Request& request, const Respond& answer,
+                              const std::function<void()>& work);
   // Who asks, and that they may do there what takes the role.
   Result<void> identify(Request& request, const Route& route);
 

@@ -16,19 +16,23 @@ std::optional<protocol::At> as_of(const Request& request) {
   return text;
 }
 
-Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context, const room::Room& room,
+Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context,
+                                                  const room::Room& room,
                                                   const std::optional<protocol::At>& at) {
   if (!at) return std::nullopt;
   if (const auto* sequence = std::get_if<std::int64_t>(&*at)) {
     if (*sequence >= 0 && *sequence <= room.sequence()) return *sequence;
     return fail(422, "Not yet there",
-                "`at` is a sequence from 0 to " + std::to_string(room.sequence()) + ", the newest of this model.",
+                "`at` is a sequence from 0 to " + std::to_string(room.sequence()) +
+                    ", the newest of this model.",
                 "at");
   }
   const auto utc = utc_timestamp(std::get<std::string>(*at));
   if (!utc)
-    return fail(422, "Not a time",
-                "`at` is a sequence of the model or a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).", "at");
+    return fail(
+        422, "Not a time",
+        "`at` is a sequence of the model or a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).",
+        "at");
   auto sequence = context.store.sequence_at(room.model().id, *utc);
   if (!sequence) return tl::unexpected(sequence.error());
   return *sequence;

@@ -14,8 +14,9 @@ constexpr std::size_t kMaxTokenLength = 512;
 constexpr std::string_view kScheme = "bearer ";
 
 tl::unexpected<Problem> unknown_secret() {
-  return fail(401, "Not signed in",
-              "This token or session is unknown, expired or revoked. Sign in again, or make a new token.");
+  return fail(
+      401, "Not signed in",
+      "This token or session is unknown, expired or revoked. Sign in again, or make a new token.");
 }
 
 constexpr std::string_view kKioskPrefix = "kiosk ", kHostPrefix = "__Host-";
@@ -27,7 +28,8 @@ Principal principal_of(const store::Kiosk& kiosk) {
   return principal;
 }
 
-std::string cookie_of(std::string_view name, const std::string& value, std::chrono::seconds lifetime, bool secure) {
+std::string cookie_of(std::string_view name, const std::string& value,
+                      std::chrono::seconds lifetime, bool secure) {
   return std::string(secure ? kHostPrefix : "") + std::string(name) + "=" + value +
          "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(lifetime.count()) +
          (secure ? "; Secure" : "");
@@ -59,12 +61,17 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
   if (!stored) return tl::unexpected(stored.error());
   // Links are traded for sessions; they are no tokens of their own.
   using store::TokenKind;
-  if (*stored && (*stored)->kind != TokenKind::session && (*stored)->kind != TokenKind::script) return std::nullopt;
+  if (*stored && (*stored)->kind != TokenKind::session && (*stored)->kind != TokenKind::script)
+    return std::nullopt;
   Principal principal;
   if (*stored) {
     const Roles& roles = (*stored)->roles;
-    principal = {
-        (*stored)->user, roles.everywhere, false, (*stored)->kind == TokenKind::script, (*stored)->token, roles};
+    principal = {(*stored)->user,
+                 roles.everywhere,
+                 false,
+                 (*stored)->kind == TokenKind::script,
+                 (*stored)->token,
+                 roles};
   } else {
     auto kiosk = store_.kiosks().find(token);
     if (!kiosk) return tl::unexpected(kiosk.error());
@@ -78,7 +85,8 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
   return principal;
 }
 
-// Once somebody can sign in who may do everything, the token has done its work: whoever reads the environment must not own the site for ever.
+// Once somebody can sign in who may do everything, the token has done its work: whoever reads the
+// environment must not own the site for ever.
 Result<Principal> Authenticator::owner_by_token() {
   const auto principal = [](bool is_script) {
     const Role role = is_script ? Role::administrator : Role::owner;
@@ -104,46 +112,57 @@ std::string Authenticator::secret_of(const Request& request) {
     const std::string cookie(request.as_kiosk ? kKioskCookie : kSessionCookie);
     std::string secret = cookie_value(request.header("cookie"), std::string(kHostPrefix) + cookie);
     // By https the plain name counts for nothing: a neighbouring host may have set it.
-    if (secret.empty() && !came_by_https(request)) secret = cookie_value(request.header("cookie"), cookie);
+    if (secret.empty() && !came_by_https(request))
+      secret = cookie_value(request.header("cookie"), cookie);
     return secret;
   }
-  return to_lower(authorization.substr(0, kScheme.size())) == kScheme ? authorization.substr(kScheme.size())
-                                                                      : std::string();
+  return to_lower(authorization.substr(0, kScheme.size())) == kScheme
+             ? authorization.substr(kScheme.size())
+             : std::string();
 }
 
 Result<std::optional<Principal>> Authenticator::identify(const Request& request) {
   const bool by_cookie = request.header("authorization").empty();
   const std::string secret = secret_of(request);
   if (secret.empty() && by_cookie) return std::nullopt;
-  if (secret.empty()) return fail(401, "Not signed in", "The Authorization header is `Bearer TOKEN`.", "Authorization");
+  if (secret.empty())
+    return fail(401, "Not signed in", "The Authorization header is `Bearer TOKEN`.",
+                "Authorization");
   auto principal = identify_token(secret);
   if (!principal) return principal;
   if (!*principal) return unknown_secret();
-  // A cookie tells only what it is for: whoever can set one makes no kiosk of a person's page by it, and the other way round.
+  // A cookie tells only what it is for: whoever can set one makes no kiosk of a person's page by
+  // it, and the other way round.
   const bool is_kiosk = (*principal)->kiosk.has_value();
   if (request.as_kiosk ? !is_kiosk : by_cookie && is_kiosk) return unknown_secret();
-  // What scripts are given is no session: it does not end with the browser's, and no page shows it among the sessions.
+  // What scripts are given is no session: it does not end with the browser's, and no page shows it
+  // among the sessions.
   const bool is_session = (*principal)->secret != 0 && !(*principal)->is_script;
   if (by_cookie && !is_kiosk && !is_session) return unknown_secret();
   (*principal)->by_cookie = by_cookie;
   return principal;
 }
 
-Result<std::string> Authenticator::session_for_password(const std::string& user, const std::string& password,
+Result<std::string> Authenticator::session_for_password(const std::string& user,
+                                                        const std::string& password,
                                                         const std::string& agent) {
   const auto hash = store_.password_of(user);
   if (!hash) return tl::unexpected(hash.error());
   const auto fits = store::password_fits(*hash, password);
   if (!fits) return tl::unexpected(fits.error());
   if (!*fits)
-    return fail(401, "Not signed in", "Name and password do not fit together. Whoever invited you can send a new link.",
+    return fail(401, "Not signed in",
+                "Name and password do not fit together. Whoever invited you can send a new link.",
                 "password");
-  auto session = store_.create_token(store::TokenKind::session, user, Role::viewer, kSessionLifetime, agent, *hash);
-  if (!session) return session.error().status == 404 ? unknown_secret() : tl::unexpected(session.error());
+  auto session = store_.create_token(store::TokenKind::session, user, Role::viewer,
+                                     kSessionLifetime, agent, *hash);
+  if (!session)
+    return session.error().status == 404 ? unknown_secret() : tl::unexpected(session.error());
   return std::move(session->secret);
 }
 
-Result<std::string> Authenticator::session_for_token(const std::string& token, const std::string& agent) {
+Result<std::string> Authenticator::session_for_token(const std::string& token,
+                                                     const std::string& agent) {
   if (token.size() > kMaxTokenLength) return unknown_secret();
   auto by_link = store_.redeem_owner_link(token, kSessionLifetime, agent);
   if (!by_link) return tl::unexpected(by_link.error());
@@ -157,18 +176,21 @@ Result<std::string> Authenticator::session_for_token(const std::string& token, c
         403, "Not for signing in",
         "This token is for scripts, as `Authorization: Bearer TOKEN`. In a browser sign in with name and password.",
         "token");
-  auto session =
-      store_.create_token(store::TokenKind::session, (*principal)->user, Role::owner, kSessionLifetime, agent);
+  auto session = store_.create_token(store::TokenKind::session, (*principal)->user, Role::owner,
+                                     kSessionLifetime, agent);
   if (!session) return tl::unexpected(session.error());
   return std::move(session->secret);
 }
 
-Result<std::string> Authenticator::session_for_link(const std::string& link, const std::string& agent) {
+Result<std::string> Authenticator::session_for_link(const std::string& link,
+                                                    const std::string& agent) {
   auto session = store_.redeem_owner_link(link, kSessionLifetime, agent);
   if (!session) return tl::unexpected(session.error());
   if (!*session)
-    return fail(401, "Link not valid",
-                "This sign-in link is unknown or revoked. The server prints a valid one when it starts.", "link");
+    return fail(
+        401, "Link not valid",
+        "This sign-in link is unknown or revoked. The server prints a valid one when it starts.",
+        "link");
   return **session;
 }
 

@@ -10,7 +10,8 @@ constexpr std::chrono::minutes kAfterFailure{1};  // the database may be back by
 
 }  // namespace
 
-BinKeeper::BinKeeper(store::Bin& bin, std::chrono::days keep) : bin_(bin), keep_(keep), thread_([this] { run(); }) {}
+BinKeeper::BinKeeper(store::Bin& bin, std::chrono::days keep)
+    : bin_(bin), keep_(keep), thread_([this] { run(); }) {}
 
 void BinKeeper::look() {
   const std::lock_guard lock(mutex_);
@@ -45,7 +46,8 @@ void BinKeeper::run() {
     Result<bool> some = expired ? Result<bool>(true) : tl::unexpected(expired.error());
     while (some && *some && !is_stopping()) some = bin_.erase_some();
     pause = some ? std::chrono::minutes(kBetweenLooks) : kAfterFailure;
-    if (!some && !is_stopping()) log::warning("the Bin could not be emptied, trying again: " + some.error().detail);
+    if (!some && !is_stopping())
+      log::warning("the Bin could not be emptied, trying again: " + some.error().detail);
   }
 }
 

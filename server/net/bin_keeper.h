@@ -9,8 +9,9 @@
 
 namespace strata::net {
 
-// Erases what has been in the Bin for long enough, at start and every hour, and at once what people erase, in small steps that nobody waits
-// for. What is left when the server ends goes on at its next start.
+// Erases what has been in the Bin for long enough, at start and every hour, and at once what people
+// erase, in small steps that nobody waits for. What is left when the server ends goes on at its
+// next start.
 class BinKeeper {
  public:
   BinKeeper(store::Bin& bin, std::chrono::days keep);  // the Bin must outlive it

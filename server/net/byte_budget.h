@@ -8,7 +8,8 @@
 
 namespace strata::net {
 
-// Bounds the memory that large answers and bodies hold together. One larger than the budget may have it all. Thread-safe.
+// Bounds the memory that large answers and bodies hold together. One larger than the budget may
+// have it all. Thread-safe.
 class ByteBudget {
  public:
   explicit ByteBudget(std::uint64_t total) : total_(total) {}
@@ -18,14 +19,17 @@ class ByteBudget {
     std::uint64_t held = held_->load();
     do {
       if (held > 0 && held + bytes > total_)
-        return fail(503, "Too many rasters", "Other large rasters are being read or written; ask again in a moment.");
+        return fail(503, "Too many rasters",
+                    "Other large rasters are being read or written; ask again in a moment.");
     } while (!held_->compare_exchange_weak(held, held + bytes));
-    return std::shared_ptr<const void>(held_.get(), [held = held_, bytes](const void*) { *held -= bytes; });
+    return std::shared_ptr<const void>(held_.get(),
+                                       [held = held_, bytes](const void*) { *held -= bytes; });
   }
 
  private:
   const std::uint64_t total_;
-  const std::shared_ptr<std::atomic<std::uint64_t>> held_ = std::make_shared<std::atomic<std::uint64_t>>(0);
+  const std::shared_ptr<std::atomic<std::uint64_t>> held_ =
+      std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 
 }  // namespace strata::net

@@ -10,8 +10,9 @@ struct ByteRange {
   std::uint64_t begin = 0, end = 0;  // before `end`
 };
 
-// What a Range header asks of a content of so many bytes (RFC 9110, 14.2). Ranges of other units, several at once and malformed ones are
-// passed over, as the RFC allows: then it is all of it. Nothing: no byte of it is there (416).
+// What a Range header asks of a content of so many bytes (RFC 9110, 14.2). Ranges of other units,
+// several at once and malformed ones are passed over, as the RFC allows: then it is all of it.
+// Nothing: no byte of it is there (416).
 struct AskedRange {
   ByteRange range;
   bool is_part = false;

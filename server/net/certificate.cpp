@@ -20,8 +20,10 @@ Problem unusable(const fs::path& file, const std::string& why, const char* optio
 // A file without rights would be told like one that is not PEM.
 Result<void> check_readable(const fs::path& file, const char* option) {
   std::error_code error;
-  if (!fs::is_regular_file(file, error)) return tl::unexpected(unusable(file, "there is no such file", option));
-  if (!std::ifstream(file)) return tl::unexpected(unusable(file, "the server may not read it", option));
+  if (!fs::is_regular_file(file, error))
+    return tl::unexpected(unusable(file, "there is no such file", option));
+  if (!std::ifstream(file))
+    return tl::unexpected(unusable(file, "the server may not read it", option));
   return {};
 }
 
@@ -33,25 +35,32 @@ Certificate::Times Certificate::written() const {
 }
 
 Result<std::shared_ptr<ssl::context>> Certificate::read() const {
-  if (auto readable = check_readable(chain_, "--tls-cert"); !readable) return tl::unexpected(readable.error());
-  if (auto readable = check_readable(key_, "--tls-key"); !readable) return tl::unexpected(readable.error());
+  if (auto readable = check_readable(chain_, "--tls-cert"); !readable)
+    return tl::unexpected(readable.error());
+  if (auto readable = check_readable(key_, "--tls-key"); !readable)
+    return tl::unexpected(readable.error());
   auto context = std::make_shared<ssl::context>(ssl::context::tls_server);
   boost::system::error_code error;
-  context->set_options(ssl::context::default_workarounds | ssl::context::no_tlsv1 | ssl::context::no_tlsv1_1, error);
-  // Of TLS 1.2 only what 1.3 has, too: keys that are made for each connection, and ciphers that authenticate what they encrypt. (RFC 9325, 4.2)
+  context->set_options(
+      ssl::context::default_workarounds | ssl::context::no_tlsv1 | ssl::context::no_tlsv1_1, error);
+  // Of TLS 1.2 only what 1.3 has, too: keys that are made for each connection, and ciphers that
+  // authenticate what they encrypt. (RFC 9325, 4.2)
   SSL_CTX_set_cipher_list(context->native_handle(), "ECDHE+AESGCM:ECDHE+CHACHA20");
   if (!error) context->use_certificate_chain_file(chain_.string(), error);
   if (error)
-    return tl::unexpected(unusable(chain_, "it holds no certificate in PEM: " + error.message(), "--tls-cert"));
+    return tl::unexpected(
+        unusable(chain_, "it holds no certificate in PEM: " + error.message(), "--tls-cert"));
   // A key with a passphrase would be asked for at a terminal that nobody watches.
-  context->set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, error);
+  context->set_password_callback(
+      [](std::size_t, ssl::context::password_purpose) { return std::string(); }, error);
   context->use_private_key_file(key_.string(), ssl::context::pem, error);
   // A key of another kind is taken as that of a second certificate, which is not there.
   const bool is_its_key = !error && SSL_CTX_check_private_key(context->native_handle()) == 1;
   ERR_clear_error();
   if (!is_its_key)
     return tl::unexpected(
-        unusable(key_, "it is not the key of the certificate, in PEM and without a passphrase", "--tls-key"));
+        unusable(key_, "it is not the key of the certificate, in PEM and without a passphrase",
+                 "--tls-key"));
   return context;
 }
 

@@ -41,7 +41,8 @@ std::string palette_label(const Layer& layer, double value) {
   return {};
 }
 
-std::string quantity_label(const query::Quantity& quantity, const Layer& layer, const RecordNames& names) {
+std::string quantity_label(const query::Quantity& quantity, const Layer& layer,
+                           const RecordNames& names) {
   if (layer.kind == LayerKind::database) {
     const auto name = names.find(static_cast<std::int64_t>(*quantity.value));
     return name == names.end() ? std::string() : name->second;
@@ -62,8 +63,9 @@ std::string quantity_text(const query::Quantity& quantity, const std::string& la
   return "all";
 }
 
-Result<std::vector<std::string>> class_names(const RouteContext& context, const Layer& layer, Role seen_by,
-                                             const std::vector<double>& values, std::optional<std::int64_t> at,
+Result<std::vector<std::string>> class_names(const RouteContext& context, const Layer& layer,
+                                             Role seen_by, const std::vector<double>& values,
+                                             std::optional<std::int64_t> at,
                                              const std::string& language) {
   RecordNames records;
   if (layer.table) {
@@ -76,9 +78,10 @@ Result<std::vector<std::string>> class_names(const RouteContext& context, const 
   std::vector<std::string> names;
   for (const double value : values) {
     const auto record = records.find(static_cast<std::int64_t>(value));
-    const std::string name = layer.table ? (record == records.end() ? std::string() : record->second)
-                             : layer.palette.mode == PaletteMode::categorical ? palette_label(layer, value)
-                                                                              : std::string();
+    const std::string name =
+        layer.table ? (record == records.end() ? std::string() : record->second)
+        : layer.palette.mode == PaletteMode::categorical ? palette_label(layer, value)
+                                                         : std::string();
     names.push_back(name.empty() ? csv_number(value, ',') : name);
   }
   return names;

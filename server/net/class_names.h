@@ -11,9 +11,11 @@
 // What the values of layers are called in tables that people read.
 namespace strata::net {
 
-using RecordNames = std::map<std::int64_t, std::string>;  // by key; of those that are there, also without a name
+// by key; of those that are there, also without a name
+using RecordNames = std::map<std::int64_t, std::string>;
 
-// Names of records as `seen_by` reads them, after an edit of the table where `at` names one; terms by their labels in `language`.
+// Names of records as `seen_by` reads them, after an edit of the table where `at` names one; terms
+// by their labels in `language`.
 Result<RecordNames> record_names(const RouteContext& context, std::int64_t table_id, Role seen_by,
                                  std::vector<std::int64_t> keys, std::optional<std::int64_t> at,
                                  const std::string& language);
@@ -22,13 +24,16 @@ Result<RecordNames> record_names(const RouteContext& context, std::int64_t table
 std::string palette_label(const Layer& layer, double value);
 
 // What a class is called: the record's name, the label of the legend, or nothing.
-std::string quantity_label(const query::Quantity& quantity, const Layer& layer, const RecordNames& names);
+std::string quantity_label(const query::Quantity& quantity, const Layer& layer,
+                           const RecordNames& names);
 // As people read it in a column of its own: its label, or its value or range.
 std::string quantity_text(const query::Quantity& quantity, const std::string& label);
 
-// Names of values of a layer, in their order: the record's name, or the label of the legend, or else the number.
-Result<std::vector<std::string>> class_names(const RouteContext& context, const Layer& layer, Role seen_by,
-                                             const std::vector<double>& values, std::optional<std::int64_t> at,
+// Names of values of a layer, in their order: the record's name, or the label of the legend, or
+// else the number.
+Result<std::vector<std::string>> class_names(const RouteContext& context, const Layer& layer,
+                                             Role seen_by, const std::vector<double>& values,
+                                             std::optional<std::int64_t> at,
                                              const std::string& language);
 
 }  // namespace strata::net

@@ -11,13 +11,17 @@ constexpr std::chrono::milliseconds kBetweenLooks{100};
 
 bool has_gone(int socket) {
   pollfd watched{socket, POLLRDHUP, 0};
-  return ::poll(&watched, 1, 0) > 0 && (watched.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
+  return ::poll(&watched, 1, 0) > 0 &&
+         (watched.revents & (POLLRDHUP | POLLHUP | POLLERR | POLLNVAL)) != 0;
 }
 
 struct ClientWatch::Watched : std::enable_shared_from_this<Watched> {
-  Watched(const boost::asio::any_io_executor& executor, int its_socket, std::shared_ptr<Question> its_question,
-          std::function<void()> when_gone)
-      : timer(executor), socket(its_socket), question(std::move(its_question)), on_gone(std::move(when_gone)) {}
+  Watched(const boost::asio::any_io_executor& executor, int its_socket,
+          std::shared_ptr<Question> its_question, std::function<void()> when_gone)
+      : timer(executor),
+        socket(its_socket),
+        question(std::move(its_question)),
+        on_gone(std::move(when_gone)) {}
 
   void look_later() {
     timer.expires_after(kBetweenLooks);
@@ -38,9 +42,10 @@ struct ClientWatch::Watched : std::enable_shared_from_this<Watched> {
   const std::function<void()> on_gone;
 };
 
-ClientWatch::ClientWatch(const boost::asio::any_io_executor& executor, int socket, std::shared_ptr<Question> question,
-                         std::function<void()> on_gone)
-    : watched_(std::make_shared<Watched>(executor, socket, std::move(question), std::move(on_gone))) {
+ClientWatch::ClientWatch(const boost::asio::any_io_executor& executor, int socket,
+                         std::shared_ptr<Question> question, std::function<void()> on_gone)
+    : watched_(
+          std::make_shared<Watched>(executor, socket, std::move(question), std::move(on_gone))) {
   watched_->look_later();
 }
 

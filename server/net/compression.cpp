@@ -15,13 +15,14 @@ namespace strata::net {
 namespace {
 
 constexpr std::size_t kMinBytes = 1024;  // below, a packet is a packet
-constexpr int kGzipLevel = 5;            // texts are coded while their client waits: the middle, not the smallest
-constexpr int kBrotliQuality = 4;        // likewise
+// texts are coded while their client waits: the middle, not the smallest
+constexpr int kGzipLevel = 5;
+constexpr int kBrotliQuality = 4;  // likewise
 
 bool is_text(std::string_view content_type) {
   const std::string type = to_lower(trim_blanks(content_type.substr(0, content_type.find(';'))));
-  return type.starts_with("text/") || type == "application/json" || type.ends_with("+json") || type.ends_with("+xml") ||
-         type == "application/xml" || type == "application/javascript";
+  return type.starts_with("text/") || type == "application/json" || type.ends_with("+json") ||
+         type.ends_with("+xml") || type == "application/xml" || type == "application/javascript";
 }
 
 struct Gzip {
@@ -46,7 +47,8 @@ struct Gzip {
       do {
         stream.next_out = piece.data();
         stream.avail_out = piece.size();
-        if (deflate(&stream, flush) == Z_STREAM_ERROR) throw std::logic_error("deflate: used out of order");
+        if (deflate(&stream, flush) == Z_STREAM_ERROR)
+          throw std::logic_error("deflate: used out of order");
         out.insert(out.end(), piece.data(), piece.data() + (piece.size() - stream.avail_out));
       } while (stream.avail_out == 0);
     } while (!bytes.empty());
@@ -59,7 +61,8 @@ struct Brotli {
   Brotli() : encoder(BrotliEncoderCreateInstance(nullptr, nullptr, nullptr)) {
     if (!encoder) throw std::bad_alloc();
     BrotliEncoderSetParameter(encoder, BROTLI_PARAM_QUALITY, kBrotliQuality);
-    BrotliEncoderSetParameter(encoder, BROTLI_PARAM_LGWIN, 18);  // 256 KiB a stream, where 4 MiB are the default
+    // 256 KiB a stream, where 4 MiB are the default
+    BrotliEncoderSetParameter(encoder, BROTLI_PARAM_LGWIN, 18);
     BrotliEncoderSetParameter(encoder, BROTLI_PARAM_MODE, BROTLI_MODE_TEXT);
   }
   ~Brotli() { BrotliEncoderDestroyInstance(encoder); }
@@ -80,7 +83,8 @@ struct Brotli {
         out.insert(out.end(), ready, ready + size);
         size = 0;
       }
-    } while (left > 0 || BrotliEncoderHasMoreOutput(encoder) || (last && !BrotliEncoderIsFinished(encoder)));
+    } while (left > 0 || BrotliEncoderHasMoreOutput(encoder) ||
+             (last && !BrotliEncoderIsFinished(encoder)));
   }
 
   BrotliEncoderState* encoder;
@@ -89,7 +93,8 @@ struct Brotli {
 // `"v3"` becomes `"v3-br"`; a weak one keeps its mark.
 std::string with_coding(std::string_view etag, Coding coding) {
   std::string text(etag);
-  if (text.size() >= 2 && text.back() == '"') text.insert(text.size() - 1, "-" + std::string(name(coding)));
+  if (text.size() >= 2 && text.back() == '"')
+    text.insert(text.size() - 1, "-" + std::string(name(coding)));
   return text;
 }
 
@@ -108,7 +113,8 @@ void name_known_tag(Response& response, std::string_view known_tags) {
   const std::string etag(response.header("ETag"));
   if (etag.empty() || known_tags.find(etag) != std::string_view::npos) return;
   for (const Coding coding : {Coding::gzip, Coding::brotli})
-    if (const std::string coded = with_coding(etag, coding); known_tags.find(coded) != std::string_view::npos)
+    if (const std::string coded = with_coding(etag, coding);
+        known_tags.find(coded) != std::string_view::npos)
       return set(response, "ETag", coded);
 }
 
@@ -127,7 +133,8 @@ std::optional<Coding> accepted_coding(std::string_view accept_encoding) {
     if (coding == "br") brotli = quality;
     if (coding == "*") any = quality;
   }
-  const double of_gzip = gzip.value_or(any.value_or(0)), of_brotli = brotli.value_or(any.value_or(0));
+  const double of_gzip = gzip.value_or(any.value_or(0)),
+               of_brotli = brotli.value_or(any.value_or(0));
   if (of_gzip <= 0 && of_brotli <= 0) return std::nullopt;
   return of_brotli >= of_gzip ? Coding::brotli : Coding::gzip;
 }
@@ -155,7 +162,8 @@ std::vector<std::uint8_t> Compressor::add(std::span<const std::uint8_t> bytes, b
 
 void compress(Response& response, std::string_view accept_encoding, std::string_view known_tags) {
   if (response.status == 304) return name_known_tag(response, known_tags);
-  if (!is_text(response.header("Content-Type")) || response.events || !response.file.empty()) return;
+  if (!is_text(response.header("Content-Type")) || response.events || !response.file.empty())
+    return;
   for (const char* of_its_own : {"Content-Encoding", "Content-Range", "Accept-Ranges"})
     if (!response.header(of_its_own).empty()) return;
   if (response.header("Cache-Control") == "no-store") return;  // a secret
@@ -176,11 +184,13 @@ void compress(Response& response, std::string_view accept_encoding, std::string_
     };
   } else {
     Compressor compressor(*coding);
-    response.bytes = compressor.add(response.bytes.empty() ? bytes_of(response.body) : response.bytes, true);
+    response.bytes =
+        compressor.add(response.bytes.empty() ? bytes_of(response.body) : response.bytes, true);
     response.body.clear();
   }
   response.with("Content-Encoding", std::string(name(*coding)));
-  if (const auto etag = response.header("ETag"); !etag.empty()) set(response, "ETag", with_coding(etag, *coding));
+  if (const auto etag = response.header("ETag"); !etag.empty())
+    set(response, "ETag", with_coding(etag, *coding));
 }
 
 void forget_codings(Request& request) {

@@ -25,24 +25,26 @@ Result<void> check_other_model(store::Store& store, const jobs::ShapeRecipe& rec
   if (other) return {};
   Problem problem = other.error();
   if (problem.status == 404)
-    problem = {422, "No such model", "There is no model \"" + recipe.model + "\".", "compute.model"};
+    problem = {422, "No such model", "There is no model \"" + recipe.model + "\".",
+               "compute.model"};
   return tl::unexpected(std::move(problem));
 }
 
 }  // namespace
 
 Result<Response> start_computing(const RouteContext& context, JobBook& book, const Request& request,
-                                 const std::shared_ptr<room::Room>& room, const protocol::LayerCreate& asked,
-                                 Layer wish) {
+                                 const std::shared_ptr<room::Room>& room,
+                                 const protocol::LayerCreate& asked, Layer wish) {
   auto recipe = jobs::completed(recipe_of(*asked.compute), room->model());
   if (!recipe) return tl::unexpected(recipe.error());
-  if (auto known = check_other_model(context.store, *recipe); !known) return tl::unexpected(known.error());
+  if (auto known = check_other_model(context.store, *recipe); !known)
+    return tl::unexpected(known.error());
   auto make = [&store = context.store, room, wish = std::move(wish), recipe = std::move(*recipe),
-               has_palette = asked.palette.has_value(),
-               user = request.user()](NewLayers& layers, Progress& progress) -> Result<nlohmann::json> {
+               has_palette = asked.palette.has_value(), user = request.user()](
+                  NewLayers& layers, Progress& progress) -> Result<nlohmann::json> {
     const Model model = room->model();
-    auto computed =
-        jobs::compute_shape_layer(store, model, room->geometry(), recipe, wish.type, wish.resolution, progress);
+    auto computed = jobs::compute_shape_layer(store, model, room->geometry(), recipe, wish.type,
+                                              wish.resolution, progress);
     if (!computed) return tl::unexpected(computed.error());
     Layer layer = wish;
     layer.origin = LayerOrigin::shape;
@@ -50,10 +52,12 @@ Result<Response> start_computing(const RouteContext& context, JobBook& book, con
     layer.description += (layer.description.empty() ? "" : "\n\n") + computed->description;
     if (!has_palette) layer.palette = std::move(computed->palette);
     progress.report(1, "Saving");
-    auto made = layers.add(std::move(layer), std::move(computed->tiles), std::move(computed->recipe));
+    auto made =
+        layers.add(std::move(layer), std::move(computed->tiles), std::move(computed->recipe));
     if (!made) return tl::unexpected(made.error());
     // Others see it once they want to.
-    if (auto shown = store.show_layer_to(user, made->model_id, made->id); !shown) return tl::unexpected(shown.error());
+    if (auto shown = store.show_layer_to(user, made->model_id, made->id); !shown)
+      return tl::unexpected(shown.error());
     return nlohmann::json();
   };
   return start_layer_job(context, book, request, room, std::move(make));

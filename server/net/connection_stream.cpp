@@ -11,15 +11,16 @@ namespace {
 constexpr auto kUseResult = asio::as_tuple(asio::use_awaitable);
 }
 
-ConnectionStream::ConnectionStream(asio::ip::tcp::socket socket) : stream_(next_layer_type(std::move(socket))) {}
+ConnectionStream::ConnectionStream(asio::ip::tcp::socket socket)
+    : stream_(next_layer_type(std::move(socket))) {}
 
 ConnectionStream::next_layer_type& ConnectionStream::next_layer() noexcept {
   if (auto* tls = std::get_if<Tls>(&stream_)) return tls->next_layer();
   return *std::get_if<next_layer_type>(&stream_);
 }
 
-asio::awaitable<std::tuple<beast::error_code, std::size_t>> ConnectionStream::start_tls(asio::ssl::context& context,
-                                                                                        asio::const_buffer first) {
+asio::awaitable<std::tuple<beast::error_code, std::size_t>> ConnectionStream::start_tls(
+    asio::ssl::context& context, asio::const_buffer first) {
   next_layer_type plain = std::move(next_layer());
   Tls& tls = stream_.emplace<Tls>(std::move(plain), context);
   auto result = co_await tls.async_handshake(asio::ssl::stream_base::server, first, kUseResult);

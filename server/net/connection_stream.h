@@ -18,8 +18,9 @@
 
 namespace strata::net {
 
-// What follows when a read or a write ended, of one type whatever it is: otherwise each operation of HTTP and WebSocket would compile
-// TLS anew, which took more time than all other units of the room.
+// What follows when a read or a write ended, of one type whatever it is: otherwise each operation
+// of HTTP and WebSocket would compile TLS anew, which took more time than all other units of the
+// room.
 class IoDone {
  public:
   template <class Handler>
@@ -50,7 +51,8 @@ class SomeBuffers {
   template <class Sequence>
   explicit SomeBuffers(const Sequence& sequence) {
     const auto end = boost::asio::buffer_sequence_end(sequence);
-    for (auto at = boost::asio::buffer_sequence_begin(sequence); at != end && count_ < buffers_.size(); ++at)
+    for (auto at = boost::asio::buffer_sequence_begin(sequence);
+         at != end && count_ < buffers_.size(); ++at)
       if (const Buffer buffer(*at); buffer.size() > 0) buffers_[count_++] = buffer;
   }
   const_iterator begin() const { return buffers_.data(); }
@@ -61,7 +63,8 @@ class SomeBuffers {
   std::size_t count_ = 0;
 };
 
-// A TCP connection, with TLS or without: an asynchronous stream whose users need not know which. Moved only while nothing is under way.
+// A TCP connection, with TLS or without: an asynchronous stream whose users need not know which.
+// Moved only while nothing is under way.
 class ConnectionStream {
  public:
   using next_layer_type = boost::beast::tcp_stream;
@@ -73,7 +76,8 @@ class ConnectionStream {
   next_layer_type& next_layer() noexcept;
 
   bool has_tls() const noexcept { return std::holds_alternative<Tls>(stream_); }
-  // From here on the connection speaks TLS. `first`: bytes of the client that were read already; gives how many of them were used.
+  // From here on the connection speaks TLS. `first`: bytes of the client that were read already;
+  // gives how many of them were used.
   boost::asio::awaitable<std::tuple<boost::beast::error_code, std::size_t>> start_tls(
       boost::asio::ssl::context& context, boost::asio::const_buffer first);
   // Tells the client that this was all; of a connection with TLS.
@@ -98,12 +102,12 @@ class ConnectionStream {
 
   // How a WebSocket ends the connection below it; found by Beast.
   template <class Handler>
-  friend void async_teardown(boost::beast::role_type role, ConnectionStream& connection, Handler&& handler) {
+  friend void async_teardown(boost::beast::role_type role, ConnectionStream& connection,
+                             Handler&& handler) {
     const boost::asio::any_io_executor executor =
         boost::asio::get_associated_executor(handler, connection.get_executor());
-    auto ended = [handler = std::forward<Handler>(handler)](boost::beast::error_code error, std::size_t) mutable {
-      handler(error);
-    };
+    auto ended = [handler = std::forward<Handler>(handler)](
+                     boost::beast::error_code error, std::size_t) mutable { handler(error); };
     connection.tear_down(role, boost::asio::bind_executor(executor, IoDone(std::move(ended))));
   }
 
@@ -113,7 +117,8 @@ class ConnectionStream {
 
   template <class Handler>
   Done done(Handler handler) {
-    const boost::asio::any_io_executor executor = boost::asio::get_associated_executor(handler, get_executor());
+    const boost::asio::any_io_executor executor =
+        boost::asio::get_associated_executor(handler, get_executor());
     return boost::asio::bind_executor(executor, IoDone(std::move(handler)));
   }
   void read_some(const SomeBuffers<boost::asio::mutable_buffer>& into, Done done);

@@ -21,7 +21,9 @@ const json& resolve(const json& contract, const json& object) {
   return contract.contains(pointer) ? contract.at(pointer) : object;
 }
 
-std::string last_part(const std::string& reference) { return reference.substr(reference.rfind('/') + 1); }
+std::string last_part(const std::string& reference) {
+  return reference.substr(reference.rfind('/') + 1);
+}
 
 std::string type_of(const json& schema) {
   if (schema.contains("$ref")) {
@@ -64,16 +66,18 @@ std::string table_of(std::initializer_list<const char*> heads, const std::string
   return table + "</tr></thead><tbody>" + rows + "</tbody></table>";
 }
 
-void add_operation(std::string& page, const json& contract, const std::string& path, const std::string& method,
-                   const json& operation, const json& shared_parameters) {
-  page += "<section class=\"operation\"><h3><span class=\"method " + html_escape(method) + "\">" + html_escape(method) +
-          "</span> <code>" + html_escape(path) + "</code></h3>";
+void add_operation(std::string& page, const json& contract, const std::string& path,
+                   const std::string& method, const json& operation,
+                   const json& shared_parameters) {
+  page += "<section class=\"operation\"><h3><span class=\"method " + html_escape(method) + "\">" +
+          html_escape(method) + "</span> <code>" + html_escape(path) + "</code></h3>";
   if (auto summary = text_of(operation, "summary"); !summary.empty())
     page += "<p><strong>" + html_escape(summary) + "</strong></p>";
   if (auto description = text_of(operation, "description"); !description.empty())
     page += "<p>" + html_escape(description) + "</p>";
   std::string rows;
-  for (const json* list : {&shared_parameters, operation.contains("parameters") ? &operation["parameters"] : nullptr}) {
+  for (const json* list : {&shared_parameters,
+                           operation.contains("parameters") ? &operation["parameters"] : nullptr}) {
     if (!list || !list->is_array()) continue;
     for (const auto& entry : *list) {
       const json& parameter = resolve(contract, entry);
@@ -84,22 +88,25 @@ void add_operation(std::string& page, const json& contract, const std::string& p
     }
   }
   if (!rows.empty()) page += table_of({"parameter", "in", "type", "description"}, rows);
-  if (operation.contains("requestBody")) page += "<p>Body:" + content_of(contract, operation["requestBody"]) + "</p>";
+  if (operation.contains("requestBody"))
+    page += "<p>Body:" + content_of(contract, operation["requestBody"]) + "</p>";
   if (auto responses = operation.find("responses"); responses != operation.end()) {
     page += "<ul>";
     for (const auto& [status, response] : responses->items())
       page += "<li><code>" + html_escape(status) + "</code> " +
-              html_escape(text_of(resolve(contract, response), "description")) + content_of(contract, response) +
-              "</li>";
+              html_escape(text_of(resolve(contract, response), "description")) +
+              content_of(contract, response) + "</li>";
     page += "</ul>";
   }
   page += "</section>";
 }
 
 void add_schema(std::string& page, const std::string& name, const json& schema) {
-  page += "<section class=\"schema\"><h3 id=\"schema-" + html_escape(name) + "\">" + html_escape(name) + "</h3>";
+  page += "<section class=\"schema\"><h3 id=\"schema-" + html_escape(name) + "\">" +
+          html_escape(name) + "</h3>";
   for (const char* member : {"title", "description"})
-    if (auto text = text_of(schema, member); !text.empty()) page += "<p>" + html_escape(text) + "</p>";
+    if (auto text = text_of(schema, member); !text.empty())
+      page += "<p>" + html_escape(text) + "</p>";
   auto properties = schema.find("properties");
   if (properties == schema.end()) {
     page += "<p>" + type_of(schema) + "</p></section>";
@@ -110,8 +117,9 @@ void add_schema(std::string& page, const std::string& name, const json& schema) 
     bool required = false;
     if (auto list = schema.find("required"); list != schema.end())
       for (const auto& item : *list) required = required || item == member;
-    rows += "<tr><td><code>" + html_escape(member) + "</code>" + (required ? "" : " <em>optional</em>") + "</td><td>" +
-            type_of(entry) + "</td><td>" + html_escape(text_of(entry, "description")) + "</td></tr>";
+    rows += "<tr><td><code>" + html_escape(member) + "</code>" +
+            (required ? "" : " <em>optional</em>") + "</td><td>" + type_of(entry) + "</td><td>" +
+            html_escape(text_of(entry, "description")) + "</td></tr>";
   }
   page += table_of({"member", "type", "description"}, rows) + "</section>";
 }
@@ -140,10 +148,12 @@ std::string docs_html(const json& contract) {
       "<link rel=\"icon\" href=\"/favicon.svg\" type=\"image/svg+xml\"><title>" +
       html_escape(info.value("title", "API")) +
       "</title><link rel=\"stylesheet\" href=\"/api/v1/docs.css\"></head><body><main><h1>" +
-      html_escape(info.value("title", "API")) + " <small>" + html_escape(info.value("version", "")) + "</small></h1>";
+      html_escape(info.value("title", "API")) + " <small>" +
+      html_escape(info.value("version", "")) + "</small></h1>";
   if (auto description = text_of(info, "description"); !description.empty())
     page += "<p>" + html_escape(description) + "</p>";
-  page += "<p>The same as a file: <a href=\"/api/v1/openapi.json\">openapi.json</a></p><h2>Addresses</h2>";
+  page +=
+      "<p>The same as a file: <a href=\"/api/v1/openapi.json\">openapi.json</a></p><h2>Addresses</h2>";
   const json paths = contract.value("paths", json::object());
   for (const auto& [path, item] : paths.items()) {
     const json shared = item.value("parameters", json::array());
@@ -151,7 +161,8 @@ std::string docs_html(const json& contract) {
       if (operation.is_object() && operation.contains("responses"))
         add_operation(page, contract, path, method, operation, shared);
   }
-  const json schemas = contract.value("components", json::object()).value("schemas", json::object());
+  const json schemas =
+      contract.value("components", json::object()).value("schemas", json::object());
   if (!schemas.empty()) page += "<h2>Objects</h2>";
   for (const auto& [name, schema] : schemas.items()) add_schema(page, name, schema);
   return page + "</main></body></html>";

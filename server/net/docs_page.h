@@ -8,7 +8,8 @@
 
 namespace strata::net {
 
-// A readable page of the contract, made from openapi.json on the server: no scripts, one style sheet of our own.
+// A readable page of the contract, made from openapi.json on the server: no scripts, one style
+// sheet of our own.
 Result<Response> docs_page(const std::filesystem::path& openapi_json);
 std::string docs_html(const nlohmann::json& contract);
 std::string_view docs_style();

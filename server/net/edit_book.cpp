@@ -5,7 +5,8 @@ namespace {
 
 tl::unexpected<Problem> used_for_another() {
   return fail(422, "Key used for another edit",
-              "This Idempotency-Key was used with another edit; take a new key for a new one.", "Idempotency-Key");
+              "This Idempotency-Key was used with another edit; take a new key for a new one.",
+              "Idempotency-Key");
 }
 
 }  // namespace

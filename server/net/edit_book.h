@@ -9,8 +9,9 @@
 
 namespace strata::net {
 
-// Keeps an Idempotency-Key to one edit. The journal gives a repeat its first answer, by the id that follows from the key; here
-// another edit with the key of one that is in the journal, or on its way there, is refused (422). Thread-safe, blocks.
+// Keeps an Idempotency-Key to one edit. The journal gives a repeat its first answer, by the id that
+// follows from the key; here another edit with the key of one that is in the journal, or on its way
+// there, is refused (422). Thread-safe, blocks.
 class EditBook {
  public:
   explicit EditBook(store::Store& store) : store_(store) {}

@@ -4,19 +4,21 @@
 
 namespace strata::net {
 
-Result<void> EditorBook::begin(std::int64_t project_id, const Record& record, const Editor& editor, bool take_over,
-                               const Tell& tell) {
+Result<void> EditorBook::begin(std::int64_t project_id, const Record& record, const Editor& editor,
+                               bool take_over, const Tell& tell) {
   std::lock_guard lock(mutex_);
   const auto found = held_.find(record);
   if (found != held_.end()) {
     const Uuid& holder = found->second.editor.session;
     if (holder == editor.session || !take_over) return {};
   }
-  const auto own =
-      std::ranges::count_if(held_, [&](const auto& entry) { return entry.second.editor.session == editor.session; });
+  const auto own = std::ranges::count_if(
+      held_, [&](const auto& entry) { return entry.second.editor.session == editor.session; });
   if (static_cast<std::size_t>(own) >= kMostOfSession)
-    return fail(422, "Too many records",
-                "A connection edits at most " + std::to_string(kMostOfSession) + " records at once.", "key");
+    return fail(
+        422, "Too many records",
+        "A connection edits at most " + std::to_string(kMostOfSession) + " records at once.",
+        "key");
   held_[record] = {project_id, editor};
   tell(project_id, {{record, editor}});
   return {};

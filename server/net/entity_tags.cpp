@@ -12,7 +12,9 @@ namespace {
 constexpr std::size_t kMostHashedBytes = 4u << 20;
 constexpr std::size_t kTagDigits = 32;
 
-std::string tag_of(std::string_view text) { return '"' + sha256_hex(text).substr(0, kTagDigits) + '"'; }
+std::string tag_of(std::string_view text) {
+  return '"' + sha256_hex(text).substr(0, kTagDigits) + '"';
+}
 
 std::string_view without_weakness(std::string_view tag) {
   if (tag.starts_with("W/")) tag.remove_prefix(2);
@@ -29,7 +31,9 @@ std::string_view trimmed(std::string_view text) {
 void add(std::string& text, std::string_view part) {
   text.append(std::to_string(part.size())).append(":").append(part);
 }
-void add(std::string& text, std::int64_t number) { text.append(std::to_string(number)).append(","); }
+void add(std::string& text, std::int64_t number) {
+  text.append(std::to_string(number)).append(",");
+}
 
 // The sequence of the model that the query names as `at`.
 std::optional<std::int64_t> past_sequence(const Request& request) {
@@ -39,7 +43,8 @@ std::optional<std::int64_t> past_sequence(const Request& request) {
   return sequence ? std::optional(*sequence) : std::nullopt;
 }
 
-// What the room has in memory, which follows the database a moment later. `past`: an answer shows that sequence in place of the newest.
+// What the room has in memory, which follows the database a moment later. `past`: an answer shows
+// that sequence in place of the newest.
 bool add_room(std::string& text, const room::Room& room, std::optional<std::int64_t> past = {}) {
   const std::int64_t durable = room.durable_sequence();
   const bool is_past = past && *past <= durable;
@@ -51,7 +56,8 @@ bool add_room(std::string& text, const room::Room& room, std::optional<std::int6
   for (const Layer& layer : room.layers()) {
     add(text, layer.id);
     add(text, layer.version);
-    add(text, to_json(layer).at("palette").dump());  // may come from terms, whose records change by themselves
+    // may come from terms, whose records change by themselves
+    add(text, to_json(layer).at("palette").dump());
   }
   text += ';';
   for (const Look& look : room.looks()) {
@@ -73,7 +79,8 @@ std::optional<std::string> model_state(const RouteContext& context, const Reques
                                        std::optional<std::int64_t> past = {}) {
   const auto room = context.rooms.open(request.param("model"), request.role());
   std::string text;
-  if (!room || !add_room(text, **room, past) || !add_project(text, context, (*room)->model().project_id))
+  if (!room || !add_room(text, **room, past) ||
+      !add_project(text, context, (*room)->model().project_id))
     return std::nullopt;
   return text;
 }
@@ -95,7 +102,8 @@ Response not_modified(Response response) {
   Response unchanged = empty_response(304);
   for (auto& [name, value] : response.headers) {
     const std::string lower = to_lower(name);
-    if (!lower.starts_with("content-") && lower != "accept-ranges") unchanged.with(std::move(name), std::move(value));
+    if (!lower.starts_with("content-") && lower != "accept-ranges")
+      unchanged.with(std::move(name), std::move(value));
   }
   return unchanged;
 }
@@ -104,7 +112,8 @@ std::optional<std::string> tag_of_body(const Response& response) {
   const bool is_in_memory = response.file.empty() && !response.stream && !response.events;
   const std::size_t size = response.bytes.empty() ? response.body.size() : response.bytes.size();
   if (!is_in_memory || size == 0 || size > kMostHashedBytes) return std::nullopt;
-  if (!response.header("ETag").empty() || !response.header("Cache-Control").empty()) return std::nullopt;
+  if (!response.header("ETag").empty() || !response.header("Cache-Control").empty())
+    return std::nullopt;
   if (response.bytes.empty()) return tag_of(response.body);
   return tag_of({reinterpret_cast<const char*>(response.bytes.data()), size});
 }
@@ -129,7 +138,9 @@ std::string tag_of_state(const Request& request, std::string_view state) {
 }
 
 StateOf state_of_model(const RouteContext& context) {
-  return [&context](const Request& request) { return model_state(context, request, past_sequence(request)); };
+  return [&context](const Request& request) {
+    return model_state(context, request, past_sequence(request));
+  };
 }
 
 StateOf state_of_records(const RouteContext& context) {
@@ -158,7 +169,8 @@ StateOf state_of_painted_table(const RouteContext& context) {
       const auto room = context.rooms.open(std::to_string(model), request.role());
       if (!room || !add_room(text, **room)) return std::nullopt;
     }
-    return add_project(text, context, table->project_id) ? std::optional(std::move(text)) : std::nullopt;
+    return add_project(text, context, table->project_id) ? std::optional(std::move(text))
+                                                         : std::nullopt;
   };
 }
 

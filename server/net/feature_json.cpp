@@ -13,7 +13,8 @@ constexpr int kDecimals = 6;  // a micrometre of a model in metres
 
 void append_number(std::string& text, double value) {
   char digits[400];  // the widest double has 309 digits before its point
-  char* end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, kDecimals).ptr;
+  char* end =
+      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, kDecimals).ptr;
   while (end[-1] == '0') --end;
   if (end[-1] == '.') --end;
   const std::string_view number(digits, static_cast<std::size_t>(end - digits));
@@ -36,12 +37,13 @@ void append_path(std::string& text, const query::FlatRing& ring, bool closed) {
   text += ']';
 }
 
-void append_geometry(std::string& text, FeatureKind kind, const std::vector<query::FlatPolygon>& geometry) {
+void append_geometry(std::string& text, FeatureKind kind,
+                     const std::vector<query::FlatPolygon>& geometry) {
   if (geometry.empty()) return void(text += "null");
   if (kind != FeatureKind::areas) {
     const query::FlatRing& path = geometry.front().rings.front();
-    text +=
-        kind == FeatureKind::points ? R"({"type":"Point","coordinates":)" : R"({"type":"LineString","coordinates":)";
+    text += kind == FeatureKind::points ? R"({"type":"Point","coordinates":)"
+                                        : R"({"type":"LineString","coordinates":)";
     if (kind == FeatureKind::points)
       append_place(text, path.front());
     else
@@ -72,10 +74,12 @@ nlohmann::json json_of(const FeatureValue& value) {
 }
 
 std::string head(const FeatureSet& set) {
-  nlohmann::json members{{"type", "FeatureCollection"}, {"name", set.name}, {"unit", set.unit}, {"axes", set.axes}};
+  nlohmann::json members{
+      {"type", "FeatureCollection"}, {"name", set.name}, {"unit", set.unit}, {"axes", set.axes}};
   if (set.epsg != 0)
-    members["crs"] = {{"type", "name"},
-                      {"properties", {{"name", "urn:ogc:def:crs:EPSG::" + std::to_string(set.epsg)}}}};
+    members["crs"] = {
+        {"type", "name"},
+        {"properties", {{"name", "urn:ogc:def:crs:EPSG::" + std::to_string(set.epsg)}}}};
   std::string text = members.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   text.back() = ',';
   return text + R"("features":[)";
@@ -84,7 +88,8 @@ std::string head(const FeatureSet& set) {
 void append_feature(std::string& text, const FeatureTable& table, const Feature& feature) {
   nlohmann::json properties = nlohmann::json::object();
   properties["kind"] = table.name;
-  for (std::size_t i = 0; i < table.fields.size(); ++i) properties[table.fields[i].name] = json_of(feature.values[i]);
+  for (std::size_t i = 0; i < table.fields.size(); ++i)
+    properties[table.fields[i].name] = json_of(feature.values[i]);
   text += R"({"type":"Feature","properties":)";
   text += properties.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   text += R"(,"geometry":)";
@@ -116,7 +121,8 @@ Response feature_json(FeatureSet set) {
   Response response;
   response.with("Content-Type", kGeoJsonType);
   name_download(response, held->name + ".geojson");
-  response.stream = Response::Stream{{}, [held](const Response::Sink& sink) { return write(*held, sink); }};
+  response.stream =
+      Response::Stream{{}, [held](const Response::Sink& sink) { return write(*held, sink); }};
   return response;
 }
 

@@ -7,7 +7,8 @@
 
 #include "query/flat_area.h"
 
-// What a layer has on its model, as programs for maps know it: areas, lines and points with attributes.
+// What a layer has on its model, as programs for maps know it: areas, lines and points with
+// attributes.
 namespace strata::net {
 
 using FeatureValue = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
@@ -22,7 +23,8 @@ enum class FeatureKind { areas, lines, points };
 
 struct Feature {
   std::vector<FeatureValue> values;  // one for each field
-  // An area: any number of polygons. A line: one polygon of one ring, which is not closed. A point: that with one place.
+  // An area: any number of polygons. A line: one polygon of one ring, which is not closed. A point:
+  // that with one place.
   std::vector<query::FlatPolygon> geometry;
 };
 

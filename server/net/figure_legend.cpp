@@ -10,11 +10,14 @@
 namespace strata::net {
 namespace {
 
-constexpr double kMostCells = 250'000;   // of the grid in which the drawing is looked at: some tenths of a second
+// of the grid in which the drawing is looked at: some tenths of a second
+constexpr double kMostCells = 250'000;
 constexpr std::size_t kMostPlaces = 32;  // of a line that are looked at
 constexpr double kOpaque = 0.99;
-constexpr double kLeastCosine = 1.0 / 12;  // surfaces that are steeper to the eye hide what is behind them, too
-constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;  // as far below the surface as marks are drawn
+// surfaces that are steeper to the eye hide what is behind them, too
+constexpr double kLeastCosine = 1.0 / 12;
+// as far below the surface as marks are drawn
+constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;
 
 // How each layer is drawn, as the picture has it.
 const Palette& palette_of(const FigureWish& wish, const Layer& layer) {
@@ -24,12 +27,15 @@ const Palette& palette_of(const FigureWish& wish, const Layer& layer) {
 
 query::LayerCover cover_of(const FigureWish& wish, const Layer& layer) {
   const Palette& palette = palette_of(wish, layer);
-  const double opacity = std::clamp(wish.shown.shown.of(layer.id).opacity.value_or(layer.opacity), 0.0, 1.0);
+  const double opacity =
+      std::clamp(wish.shown.shown.of(layer.id).opacity.value_or(layer.opacity), 0.0, 1.0);
   query::LayerCover cover;
   cover.tells_values = lists_values(palette);
   if (!palette.column.empty()) {
     // Its colours are those of records: some may let through what lies below.
-    cover.of = [opacity](double) { return opacity > 0 ? query::Cover::some : query::Cover::nothing; };
+    cover.of = [opacity](double) {
+      return opacity > 0 ? query::Cover::some : query::Cover::nothing;
+    };
     return cover;
   }
   cover.of = [&palette, opacity](double value) {
@@ -42,25 +48,31 @@ query::LayerCover cover_of(const FigureWish& wish, const Layer& layer) {
   return cover;
 }
 
-// Whether a mark's place is in the drawing, and no surface lies before it: as the picture decides it (mark_sight_pass.comp), a
-// place may lie anywhere before the surface, and behind it as far as it reaches, measured square to the surface.
-Result<bool> is_seen(const FigureWish& wish, const Camera& camera, const glm::dvec3& place, double reach) {
-  const auto is_cut_off = [&](const glm::dvec4& plane) { return glm::dot(plane, glm::dvec4(place, 1)) < 0; };
+// Whether a mark's place is in the drawing, and no surface lies before it: as the picture decides
+// it (mark_sight_pass.comp), a place may lie anywhere before the surface, and behind it as far as
+// it reaches, measured square to the surface.
+Result<bool> is_seen(const FigureWish& wish, const Camera& camera, const glm::dvec3& place,
+                     double reach) {
+  const auto is_cut_off = [&](const glm::dvec4& plane) {
+    return glm::dot(plane, glm::dvec4(place, 1)) < 0;
+  };
   if (std::ranges::any_of(camera.section, is_cut_off)) return false;
   const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(place, 1);
   const glm::dvec2 pixel((clip.x + 1) / 2 * camera.width, (1 - clip.y) / 2 * camera.height);
-  if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x <= camera.width && pixel.y <= camera.height)) return false;
+  if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x <= camera.width && pixel.y <= camera.height))
+    return false;
   const auto hit = wish.room->pick(camera, pixel.x, pixel.y, {}, {});
   if (!hit) return tl::unexpected(hit.error());
   if (!hit->hit) return true;
   const glm::dvec3 apart = place - glm::dvec3(hit->position);
   if ((camera.view * glm::dvec4(apart, 0)).z >= 0) return true;  // nearer than the surface
-  return std::max(std::abs(glm::dot(apart, glm::dvec3(hit->normal))), kLeastCosine * glm::length(apart)) <= reach;
+  return std::max(std::abs(glm::dot(apart, glm::dvec3(hit->normal))),
+                  kLeastCosine * glm::length(apart)) <= reach;
 }
 
 // Keys of records whose lines or points the drawing shows. They lie over all layers.
-Result<std::set<double>> marked_keys(const RouteContext& context, const FigureWish& wish, const Layer& layer,
-                                     const Camera& camera) {
+Result<std::set<double>> marked_keys(const RouteContext& context, const FigureWish& wish,
+                                     const Layer& layer, const Camera& camera) {
   const Model model = wish.room->model();
   std::optional<std::int64_t> at;  // of the table; none: now, as the picture has it
   if (*wish.shown.at < wish.room->durable_sequence()) {
@@ -71,7 +83,8 @@ Result<std::set<double>> marked_keys(const RouteContext& context, const FigureWi
   const auto marks = context.store.marks(*layer.table, wish.role, model.id, at);
   if (!marks) return tl::unexpected(marks.error());
   const double pixel = 2 / (std::abs(camera.projection[0][0]) * camera.width);
-  const double reach = kPlaceReach_px * pixel + kPlaceReachOfSize * glm::distance(model.bounds_min, model.bounds_max);
+  const double reach = kPlaceReach_px * pixel +
+                       kPlaceReachOfSize * glm::distance(model.bounds_min, model.bounds_max);
   std::set<double> keys;
   for (const auto& [key, mark] : *marks) {
     const auto value = static_cast<double>(key);
@@ -100,8 +113,9 @@ Result<std::vector<figure::Legend>> legends_of(const RouteContext& context, cons
   }
   std::vector<figure::Legend> legends;
   if (refs.empty()) return legends;
-  const auto seen = wish.room->seen_layers(refs, covers, camera, std::max(1, static_cast<int>(camera.width / coarser)),
-                                           std::max(1, static_cast<int>(camera.height / coarser)), wish.shown.at);
+  const auto seen = wish.room->seen_layers(
+      refs, covers, camera, std::max(1, static_cast<int>(camera.width / coarser)),
+      std::max(1, static_cast<int>(camera.height / coarser)), wish.shown.at);
   if (!seen) return tl::unexpected(seen.error());
   for (std::size_t i = wish.layers.size(); i-- > 0;) {  // as they lie over each other
     const Layer& layer = wish.layers[i];
@@ -119,7 +133,8 @@ Result<std::vector<figure::Legend>> legends_of(const RouteContext& context, cons
     legends.push_back(figure::legend_of(layer, palette, &there, wish.language));
     if (waits) {
       const Palette::Point& mark = room::provisional_palette()->points.front();
-      legends.back().entries.push_back({wish.waiting_label, mark.color, mark.pattern, mark.angle, true});
+      legends.back().entries.push_back(
+          {wish.waiting_label, mark.color, mark.pattern, mark.angle, true});
     }
     if (palette.column.empty() || !layer.table) continue;
     const auto table = context.store.table(std::to_string(*layer.table), wish.role);

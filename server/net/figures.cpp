@@ -24,9 +24,12 @@ constexpr std::size_t kMostPlaces = 64;  // that are tried for a label
 constexpr std::size_t kMostLabels = 2000;
 
 // Directions, papers and formats have the contract's order, so that they are cast.
-static_assert(static_cast<int>(protocol::FigureDirection::right) == static_cast<int>(figure::Direction::right) &&
-              static_cast<int>(protocol::FigureRequestPaper::a3) == static_cast<int>(figure::Paper::a3) &&
-              static_cast<int>(protocol::FigureFormat::pdf) == static_cast<int>(figure::Format::pdf));
+static_assert(static_cast<int>(protocol::FigureDirection::right) ==
+                  static_cast<int>(figure::Direction::right) &&
+              static_cast<int>(protocol::FigureRequestPaper::a3) ==
+                  static_cast<int>(figure::Paper::a3) &&
+              static_cast<int>(protocol::FigureFormat::pdf) ==
+                  static_cast<int>(figure::Format::pdf));
 
 // What is shown, and the camera that it comes with, if any.
 Result<std::optional<Camera>> read_shown(const RouteContext& context, const Request& request,
@@ -41,8 +44,10 @@ Result<std::optional<Camera>> read_shown(const RouteContext& context, const Requ
     return asked.camera;
   }
   if (asked.camera || asked.layers || asked.looks || asked.light)
-    return fail(422, "View and more",
-                "A figure of a view shows what the view does: leave out camera, layers, looks and light.", "view");
+    return fail(
+        422, "View and more",
+        "A figure of a view shows what the view does: leave out camera, layers, looks and light.",
+        "view");
   const auto view = context.store.views().find(room.model().id, *asked.view);
   if (!view) {
     return at_field(view.error(), "view");
@@ -62,14 +67,16 @@ glm::dvec3 middle_of(const Camera& camera, const Model& model) {
   return ray.origin + glm::dot(to_model, ray.direction) * ray.direction;
 }
 
-Result<void> read_direction(const protocol::FigureRequest& asked, const std::optional<Camera>& camera,
-                            FigureWish& wish) {
+Result<void> read_direction(const protocol::FigureRequest& asked,
+                            const std::optional<Camera>& camera, FigureWish& wish) {
   const Model model = wish.room->model();
-  if (asked.direction && asked.normal) return fail(422, "Two directions", "Give a direction or a normal.", "normal");
+  if (asked.direction && asked.normal)
+    return fail(422, "Two directions", "Give a direction or a normal.", "normal");
   if (camera) wish.section = camera->section;
   if (asked.normal) {
     if (!(glm::length(*asked.normal) > 1e-12))
-      return fail(422, "No direction", "A normal has a length: [0, 0, 1] is surface that faces along z.", "normal");
+      return fail(422, "No direction",
+                  "A normal has a length: [0, 0, 1] is surface that faces along z.", "normal");
     wish.plane = figure::plane_square_to(*asked.normal, model.up);
     wish.from = "face";
   } else if (asked.direction || !camera) {
@@ -85,20 +92,23 @@ Result<void> read_direction(const protocol::FigureRequest& asked, const std::opt
   return {};
 }
 
-Result<void> read_labels(const RouteContext& context, const protocol::FigureLabels& asked, FigureWish& wish) {
+Result<void> read_labels(const RouteContext& context, const protocol::FigureLabels& asked,
+                         FigureWish& wish) {
   const auto layer = wish.room->layer(protocol::to_ref(asked.layer));
   if (!layer) {
     return at_field(layer.error(), "labels.layer");
   }
   if (!layer->table)
-    return fail(422, "No records", "The layer '" + layer->slug + "' is no database layer: nothing of it has a record.",
+    return fail(422, "No records",
+                "The layer '" + layer->slug + "' is no database layer: nothing of it has a record.",
                 "labels.layer");
   const auto table = context.store.table(std::to_string(*layer->table), wish.role);
   if (!table) return tl::unexpected(table.error());
   const Column* column = find_column(table->columns, asked.column);
   if (!column || holds_lists(column->kind))
     return fail(422, "No such column",
-                "The table '" + table->slug + "' has no column '" + asked.column + "' that holds one text or number.",
+                "The table '" + table->slug + "' has no column '" + asked.column +
+                    "' that holds one text or number.",
                 "labels.column");
   wish.labels = {*layer, *column};
   return {};
@@ -109,17 +119,20 @@ struct Area {
   std::size_t cells = 0;
   std::vector<std::pair<int, int>> places;  // cells from its border, and the cell
 };
-std::map<std::uint32_t, Area> areas_of(const std::vector<std::optional<std::uint32_t>>& keys, int columns, int rows) {
+std::map<std::uint32_t, Area> areas_of(const std::vector<std::optional<std::uint32_t>>& keys,
+                                       int columns, int rows) {
   // Chessboard distance, in two passes over the grid; beyond the drawing is another, too.
   std::vector<int> inside(keys.size(), 0);
   const auto at = [&](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(x);
   };
   const auto pass = [&](int x, int y, int step) {
     int least = std::max(columns, rows);
     for (const auto& [dx, dy] : {std::pair{-step, 0}, {0, -step}, {-step, -step}, {step, -step}}) {
       const int nx = x + dx, ny = y + dy;
-      const bool same = nx >= 0 && ny >= 0 && nx < columns && ny < rows && keys[at(nx, ny)] == keys[at(x, y)];
+      const bool same =
+          nx >= 0 && ny >= 0 && nx < columns && ny < rows && keys[at(nx, ny)] == keys[at(x, y)];
       least = std::min(least, same ? inside[at(nx, ny)] + 1 : 1);
     }
     return least;
@@ -139,14 +152,17 @@ std::map<std::uint32_t, Area> areas_of(const std::vector<std::optional<std::uint
   return areas;
 }
 
-Result<std::map<std::uint32_t, std::string>> texts_of(const RouteContext& context, const FigureWish& wish) {
+Result<std::map<std::uint32_t, std::string>> texts_of(const RouteContext& context,
+                                                      const FigureWish& wish) {
   const Column& column = wish.labels->column;
-  const auto found = context.store.record_texts(*wish.labels->layer.table, wish.role, column.slug, "labels.column");
+  const auto found = context.store.record_texts(*wish.labels->layer.table, wish.role, column.slug,
+                                                "labels.column");
   if (!found) return tl::unexpected(found.error());
   std::map<std::uint32_t, std::string> texts;
   std::map<std::string, std::string> terms;  // by key
   if (column.kind == ColumnKind::term && column.target) {
-    const auto labels = context.store.record_texts(*column.target, wish.role, "label", "labels.column");
+    const auto labels =
+        context.store.record_texts(*column.target, wish.role, "label", "labels.column");
     if (!labels) return tl::unexpected(labels.error());
     for (const auto& [key, text] : *labels) terms[std::to_string(key)] = text;
   }
@@ -160,13 +176,14 @@ Result<std::map<std::uint32_t, std::string>> texts_of(const RouteContext& contex
 }
 
 Result<std::vector<figure::Label>> labels_of(const RouteContext& context, const FigureWish& wish,
-                                             const figure::Drawing& drawing, const glm::dvec2& drawing_mm) {
+                                             const figure::Drawing& drawing,
+                                             const glm::dvec2& drawing_mm) {
   if (!wish.labels) return std::vector<figure::Label>{};
   const int columns = std::max(1, static_cast<int>(drawing_mm.x / kLabelCell_mm.x));
   const int rows = std::max(1, static_cast<int>(drawing_mm.y / kLabelCell_mm.y));
   const glm::dvec2 cell_mm = drawing_mm / glm::dvec2(columns, rows);
-  const auto keys =
-      wish.room->seen_keys(wish.labels->layer.slug, figure::camera_of(drawing), columns, rows, wish.shown.at);
+  const auto keys = wish.room->seen_keys(wish.labels->layer.slug, figure::camera_of(drawing),
+                                         columns, rows, wish.shown.at);
   if (!keys) return tl::unexpected(keys.error());
   const auto texts = texts_of(context, wish);
   if (!texts) return tl::unexpected(texts.error());
@@ -180,12 +197,14 @@ Result<std::vector<figure::Label>> labels_of(const RouteContext& context, const 
   for (const auto& [size, key] : by_size) {
     auto& places = areas[key].places;
     const std::size_t tried = std::min(places.size(), kMostPlaces);
-    std::partial_sort(
-        places.begin(), places.begin() + static_cast<std::ptrdiff_t>(tried), places.end(),
-        [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
+    std::partial_sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(tried),
+                      places.end(), [](const auto& a, const auto& b) {
+                        return a.first != b.first ? a.first > b.first : a.second < b.second;
+                      });
     figure::LabelWish label{texts->at(key), {}};
     for (std::size_t i = 0; i < tried; ++i)
-      label.places.push_back((glm::dvec2(places[i].second % columns, places[i].second / columns) + 0.5) * cell_mm);
+      label.places.push_back(
+          (glm::dvec2(places[i].second % columns, places[i].second / columns) + 0.5) * cell_mm);
     wishes.push_back(std::move(label));
   }
   return figure::place_labels(wishes, drawing_mm);
@@ -197,18 +216,22 @@ struct Composed {
   double tightness;  // the scale at which all of it just fits
 };
 
-// The sheet that has room for the larger scale, upright where both have, and the scale that is asked for or fits.
-Composed compose(const FigureWish& wish, const std::vector<figure::Legend>& legends, const glm::dvec2& size,
-                 double metres_per_unit) {
+// The sheet that has room for the larger scale, upright where both have, and the scale that is
+// asked for or fits.
+Composed compose(const FigureWish& wish, const std::vector<figure::Legend>& legends,
+                 const glm::dvec2& size, double metres_per_unit) {
   constexpr double kMargin = 1.02;
   std::optional<Composed> best;
   for (const bool landscape : {false, true}) {
     if (wish.landscape && *wish.landscape != landscape) continue;
-    figure::SheetLayout layout(figure::paper_mm(wish.paper, landscape), wish.captions, legends, wish.dpi);
-    const glm::dvec2 room_mm = layout.drawing_mm(), needed = size * (metres_per_unit * 1000) / room_mm;
+    figure::SheetLayout layout(figure::paper_mm(wish.paper, landscape), wish.captions, legends,
+                               wish.dpi);
+    const glm::dvec2 room_mm = layout.drawing_mm(),
+                     needed = size * (metres_per_unit * 1000) / room_mm;
     const double tightness = std::max(needed.x, needed.y);
     if (best && tightness >= best->tightness) continue;
-    const double scale = wish.scale.value_or(figure::fitting_scale(size * kMargin, room_mm, metres_per_unit));
+    const double scale =
+        wish.scale.value_or(figure::fitting_scale(size * kMargin, room_mm, metres_per_unit));
     best = Composed{std::move(layout), scale, tightness};
   }
   return std::move(*best);
@@ -225,7 +248,8 @@ std::optional<glm::dvec2> north_on(const figure::Plane& plane, const Model& mode
   return glm::normalize(flat);
 }
 
-// Where pixels are larger than 1/600 inch each is the mean of four, so that outlines and thin paint are smooth.
+// Where pixels are larger than 1/600 inch each is the mean of four, so that outlines and thin paint
+// are smooth.
 Result<Picture> draw(const FigureWish& wish, const figure::Drawing& drawing, Progress& progress) {
   Picture picture{drawing.width, drawing.height, {}};
   picture.rgba.resize(std::size_t{4} * picture.width * picture.height);
@@ -237,11 +261,12 @@ Result<Picture> draw(const FigureWish& wish, const figure::Drawing& drawing, Pro
   const auto parts = figure::parts_of(fine);
   std::vector<room::PicturePart> wanted;
   for (const auto& part : parts)
-    wanted.push_back({part.camera, static_cast<double>(part.width + 2 * part.margin) / part.camera.width});
+    wanted.push_back(
+        {part.camera, static_cast<double>(part.width + 2 * part.margin) / part.camera.width});
   // Where each pixel is the mean of four, a band may end between two rows of a pair.
   std::vector<std::uint8_t> upper;
-  auto drawn =
-      wish.room->pictures(wish.shown, wanted, [&](std::size_t i, const room::Room::PictureBand& band) -> Result<void> {
+  auto drawn = wish.room->pictures(
+      wish.shown, wanted, [&](std::size_t i, const room::Room::PictureBand& band) -> Result<void> {
         const int left = parts[i].x / finer, top = parts[i].y / finer;  // parts are of whole inches
         const int margin = parts[i].margin;
         const int columns = std::min(parts[i].width / finer, picture.width - left);
@@ -253,9 +278,10 @@ Result<Picture> draw(const FigureWish& wish, const figure::Drawing& drawing, Pro
           if (inner >= parts[i].height || y >= picture.height) break;
           const std::uint8_t* from = band.rgba.data() + stride * static_cast<std::size_t>(row) +
                                      std::size_t{4} * static_cast<std::size_t>(margin);
-          std::uint8_t* to = picture.rgba.data() +
-                             std::size_t{4} * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                                               static_cast<std::size_t>(left));
+          std::uint8_t* to =
+              picture.rgba.data() + std::size_t{4} * (static_cast<std::size_t>(y) *
+                                                          static_cast<std::size_t>(picture.width) +
+                                                      static_cast<std::size_t>(left));
           if (finer == 1) {
             std::memcpy(to, from, std::size_t{4} * static_cast<std::size_t>(columns));
             continue;
@@ -268,11 +294,13 @@ Result<Picture> draw(const FigureWish& wish, const figure::Drawing& drawing, Pro
           for (int x = 0; x < columns; ++x, from += 8, above += 8)
             for (int channel = 0; channel < 4; ++channel)
               *to++ = static_cast<std::uint8_t>(
-                  (above[channel] + above[channel + 4] + from[channel] + from[channel + 4] + 2) / 4);
+                  (above[channel] + above[channel + 4] + from[channel] + from[channel + 4] + 2) /
+                  4);
         }
         if (band.top + band.rows == band.height)
-          progress.report(static_cast<double>(i + 1) / static_cast<double>(parts.size()),
-                          "Drawing part " + std::to_string(i + 1) + " of " + std::to_string(parts.size()));
+          progress.report(
+              static_cast<double>(i + 1) / static_cast<double>(parts.size()),
+              "Drawing part " + std::to_string(i + 1) + " of " + std::to_string(parts.size()));
         if (progress.cancelled()) return cancelled_problem();
         return {};
       });
@@ -283,7 +311,8 @@ Result<Picture> draw(const FigureWish& wish, const figure::Drawing& drawing, Pro
 // "pot-front-1-5.pdf"
 std::string file_name(const FigureWish& wish, double scale) {
   const std::string text = scale >= 1 ? "1-" + short_number(scale) : short_number(1 / scale) + "-1";
-  return wish.room->model().slug + "-" + wish.from + "-" + text + std::string(figure::extension(wish.format));
+  return wish.room->model().slug + "-" + wish.from + "-" + text +
+         std::string(figure::extension(wish.format));
 }
 
 }  // namespace
@@ -301,7 +330,8 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
   if (auto read = read_direction(*asked, *camera, wish); !read) return tl::unexpected(read.error());
   const auto at = find_sequence(context, *wish.room, asked->at);
   if (!at) return tl::unexpected(at.error());
-  // Which layers it shows is settled before what of them waits: one that others see only later is not on it, unmarked.
+  // Which layers it shows is settled before what of them waits: one that others see only later is
+  // not on it, unmarked.
   for (Layer& layer : wish.room->layers())
     if (wish.shown.shown.of(layer.id).visible.value_or(layer.visible)) wish.layers.push_back(layer);
   room::sort_as_shown(wish.layers, wish.shown.shown);
@@ -317,15 +347,17 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
   wish.shown.shown.background = {kPaper, kPaper};
   if (auto lit = validate(wish.shown.shown.light); !lit) return tl::unexpected(lit.error());
   if (asked->labels)
-    if (auto read = read_labels(context, *asked->labels, wish); !read) return tl::unexpected(read.error());
+    if (auto read = read_labels(context, *asked->labels, wish); !read)
+      return tl::unexpected(read.error());
   wish.scale = asked->scale;
   wish.paper = static_cast<figure::Paper>(asked->paper);
-  if (asked->orientation) wish.landscape = *asked->orientation == protocol::FigureRequestOrientation::landscape;
+  if (asked->orientation)
+    wish.landscape = *asked->orientation == protocol::FigureRequestOrientation::landscape;
   wish.dpi = asked->dpi;
   wish.format = static_cast<figure::Format>(asked->format.value_or(protocol::FigureFormat::pdf));
   const Model model = wish.room->model();
-  wish.captions = {asked->title.value_or(model.name), asked->caption.value_or(""), asked->credit.value_or(model.credit),
-                   asked->continued};
+  wish.captions = {asked->title.value_or(model.name), asked->caption.value_or(""),
+                   asked->credit.value_or(model.credit), asked->continued};
   wish.legend = asked->legend;
   wish.waiting_label = asked->provisional;
   const auto language = asked_language(request);
@@ -334,24 +366,27 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
   return wish;
 }
 
-Result<std::shared_ptr<const jobs::JobFile>> make_figure(const RouteContext& context, ByteBudget& budget,
-                                                         const FigureWish& wish, Progress& progress) {
+Result<std::shared_ptr<const jobs::JobFile>> make_figure(const RouteContext& context,
+                                                         ByteBudget& budget, const FigureWish& wish,
+                                                         Progress& progress) {
   progress.begin_stage(0, 0.05);
   progress.report(0, "Measuring");
   const Model model = wish.room->model();
   const auto geometry = wish.room->geometry();
   const auto extent = figure::extent_of(geometry->positions, wish.plane, wish.section);
-  if (!extent) return fail(422, "Nothing to draw", "The section cuts everything away.", "camera.section");
-  const glm::dvec2 size = wish.center ? 2.0 * glm::max(glm::abs(glm::dvec2(extent->max - wish.plane.of(*wish.center))),
-                                                       glm::abs(glm::dvec2(wish.plane.of(*wish.center) - extent->min)))
-                                      : glm::dvec2(extent->max - extent->min);
+  if (!extent)
+    return fail(422, "Nothing to draw", "The section cuts everything away.", "camera.section");
+  const glm::dvec2 size =
+      wish.center ? 2.0 * glm::max(glm::abs(glm::dvec2(extent->max - wish.plane.of(*wish.center))),
+                                   glm::abs(glm::dvec2(wish.plane.of(*wish.center) - extent->min)))
+                  : glm::dvec2(extent->max - extent->min);
   const auto drawing_on = [&](const Composed& composed) {
     figure::Drawing drawing;
     drawing.plane = wish.plane;
-    drawing.center =
-        wish.center ? glm::dvec2(wish.plane.of(*wish.center)) : glm::dvec2(extent->min + extent->max) / 2.0;
-    const double depth =
-        std::max(extent->max.z - extent->min.z, 1e-3 * glm::length(model.bounds_max - model.bounds_min));
+    drawing.center = wish.center ? glm::dvec2(wish.plane.of(*wish.center))
+                                 : glm::dvec2(extent->min + extent->max) / 2.0;
+    const double depth = std::max(extent->max.z - extent->min.z,
+                                  1e-3 * glm::length(model.bounds_max - model.bounds_min));
     drawing.near = extent->min.z - 0.01 * depth;
     drawing.far = extent->max.z + 0.01 * depth;
     drawing.scale = composed.scale;
@@ -387,7 +422,8 @@ Result<std::shared_ptr<const jobs::JobFile>> make_figure(const RouteContext& con
   file->name = file_name(wish, drawing.scale);
   file->media_type = figure::media_type(wish.format);
   const figure::Document document{wish.captions.title, wish.captions.credit};
-  if (auto written = figure::write_figure(sheet, *picture, wish.dpi, wish.format, document, file->path, progress);
+  if (auto written = figure::write_figure(sheet, *picture, wish.dpi, wish.format, document,
+                                          file->path, progress);
       !written)
     return tl::unexpected(written.error());
   file->bytes = std::filesystem::file_size(file->path);

@@ -9,7 +9,8 @@
 
 namespace strata::net {
 
-// A measured figure as it was asked for: everything that can be wrong with it is found out before it is drawn.
+// A measured figure as it was asked for: everything that can be wrong with it is found out before
+// it is drawn.
 struct FigureWish {
   std::shared_ptr<room::Room> room;  // as who asks sees it
   Role role = Role::viewer;
@@ -27,7 +28,8 @@ struct FigureWish {
   figure::Captions captions;
   bool legend = true;
   std::string waiting_label;  // what the legend calls what waits for review
-  std::string language;       // in which it calls layers and columns that have a name in it; empty: in none
+  // in which it calls layers and columns that have a name in it; empty: in none
+  std::string language;
   struct Labels {
     Layer layer;
     Column column;
@@ -35,12 +37,14 @@ struct FigureWish {
   std::optional<Labels> labels;
 };
 
-// Refused (422): a view and what stands in its place, two directions, a normal without one, labels of what holds no keys.
+// Refused (422): a view and what stands in its place, two directions, a normal without one, labels
+// of what holds no keys.
 Result<FigureWish> figure_wish(const RouteContext& context, const Request& request);
 
-// Draws and writes it; the file lies in the folder for uploads. Refused (422): nothing of the model is left by the section; (503): others are
-// being made. Blocks.
-Result<std::shared_ptr<const jobs::JobFile>> make_figure(const RouteContext& context, ByteBudget& budget,
-                                                         const FigureWish& wish, Progress& progress);
+// Draws and writes it; the file lies in the folder for uploads. Refused (422): nothing of the model
+// is left by the section; (503): others are being made. Blocks.
+Result<std::shared_ptr<const jobs::JobFile>> make_figure(const RouteContext& context,
+                                                         ByteBudget& budget, const FigureWish& wish,
+                                                         Progress& progress);
 
 }  // namespace strata::net

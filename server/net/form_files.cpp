@@ -14,7 +14,8 @@ constexpr std::size_t kLongestPartHead = 8192;
 
 constexpr std::size_t kWindowBytes = 4u << 20;
 
-// std::string_view::find is too slow for gigabytes; memmem is vectorised. What it leaves behind is told, window by window.
+// std::string_view::find is too slow for gigabytes; memmem is vectorised. What it leaves behind is
+// told, window by window.
 std::size_t find(std::string_view text, std::string_view what, std::size_t from,
                  const std::function<void(std::string_view)>& passed) {
   while (from < text.size()) {
@@ -34,13 +35,15 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// Folders that the sender names are kept: files of one scan call each other by them. Nothing leads out of them.
+// Folders that the sender names are kept: files of one scan call each other by them. Nothing leads
+// out of them.
 std::string relative_filename(std::string_view name) {
   std::string path;
   for (std::string part; !name.empty();) {
     const auto end = std::min(name.find_first_of("/\\"), name.size());
     part = base_filename(name.substr(0, end));
-    const bool names_a_folder = !part.empty() && part != "." && part != ".." && !part.ends_with(':');
+    const bool names_a_folder =
+        !part.empty() && part != "." && part != ".." && !part.ends_with(':');
     if (names_a_folder) path += (path.empty() ? "" : "/") + part;
     name.remove_prefix(std::min(end + 1, name.size()));
   }
@@ -86,7 +89,8 @@ std::string header_parameter(std::string_view header, std::string_view name) {
 Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::string_view body,
                                             const std::function<void(std::string_view)>& passed) {
   const auto malformed = [] {
-    return fail(400, "Malformed form", "The multipart/form-data body does not follow its boundary.", "body");
+    return fail(400, "Malformed form", "The multipart/form-data body does not follow its boundary.",
+                "body");
   };
   const std::string boundary = header_parameter(content_type, "boundary");
   if (boundary.empty() || boundary.size() > kLongestBoundary) return malformed();
@@ -96,7 +100,8 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
   std::size_t at = separator.size() - 2;
   while (!body.substr(at).starts_with("--")) {
     if (body.substr(at, 2) != "\r\n") return malformed();
-    // Both searches start at a line break that is there already: a head may be empty, and so may a content.
+    // Both searches start at a line break that is there already: a head may be empty, and so may a
+    // content.
     const auto head_end = find(body, "\r\n\r\n", at, passed);
     if (head_end == std::string_view::npos || head_end - at > kLongestPartHead) return malformed();
     const auto content_begin = head_end + 4;
@@ -107,13 +112,17 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
     const std::string name = header_parameter(header_of(head, "content-disposition"), "filename");
     if (name.empty()) continue;  // a field of the form
     if (files.size() >= kMostFormFiles)
-      return fail(413, "Too many files",
-                  "A form has at most " + std::to_string(kMostFormFiles) + " files; send them as a zip.", "body");
+      return fail(
+          413, "Too many files",
+          "A form has at most " + std::to_string(kMostFormFiles) + " files; send them as a zip.",
+          "body");
     // An empty content ends before it begins: its line break is that of the blank line.
     FormFile file{relative_filename(name),
                   body.substr(content_begin, std::max(content_end, content_begin) - content_begin)};
-    if (std::any_of(files.begin(), files.end(), [&](const auto& other) { return other.filename == file.filename; }))
-      return fail(422, "File sent twice", "The form holds two files named " + file.filename + ".", "body");
+    if (std::any_of(files.begin(), files.end(),
+                    [&](const auto& other) { return other.filename == file.filename; }))
+      return fail(422, "File sent twice", "The form holds two files named " + file.filename + ".",
+                  "body");
     files.push_back(std::move(file));
   }
   return files;

@@ -16,7 +16,8 @@ namespace {
 // A number or a condition.
 bool reads_records_of(const Expression& e, const std::string& layer) {
   return (e.is_column() && e.name == layer) ||
-         std::ranges::any_of(e.parts, [&](const Expression& part) { return reads_records_of(part, layer); });
+         std::ranges::any_of(e.parts,
+                             [&](const Expression& part) { return reads_records_of(part, layer); });
 }
 
 std::vector<query::LayerView> views_of(const std::vector<Layer>& layers) {
@@ -25,8 +26,8 @@ std::vector<query::LayerView> views_of(const std::vector<Layer>& layers) {
   return views;
 }
 
-Result<TileMap> shape_tiles(const RouteContext& context, const room::Room& room, const std::string& name,
-                            int resolution, Progress& progress) {
+Result<TileMap> shape_tiles(const RouteContext& context, const room::Room& room,
+                            const std::string& name, int resolution, Progress& progress) {
   const Model model = room.model();
   for (const auto& [normal, axis] : {std::pair("nx", 0), std::pair("ny", 1), std::pair("nz", 2)})
     if (name == normal) return jobs::paint_normals(room.geometry(), axis, resolution, progress);
@@ -36,14 +37,16 @@ Result<TileMap> shape_tiles(const RouteContext& context, const room::Room& room,
                                   : jobs::ShapeKind::mean_curvature;
   auto complete = jobs::completed(std::move(recipe), model);
   if (!complete) return tl::unexpected(complete.error());
-  auto shape =
-      jobs::compute_shape_layer(context.store, model, room.geometry(), *complete, ValueType::f32, resolution, progress);
+  auto shape = jobs::compute_shape_layer(context.store, model, room.geometry(), *complete,
+                                         ValueType::f32, resolution, progress);
   if (!shape) return tl::unexpected(shape.error());
   return std::move(shape->tiles);
 }
 
-Result<std::vector<query::LayerView>> shape_views(const RouteContext& context, const room::Room& room,
-                                                  const Expression& expression, int resolution, Progress& progress) {
+Result<std::vector<query::LayerView>> shape_views(const RouteContext& context,
+                                                  const room::Room& room,
+                                                  const Expression& expression, int resolution,
+                                                  Progress& progress) {
   std::vector<query::LayerView> views;
   for (const std::string& name : room::shapes_read(expression, views_of(room.layers()))) {
     auto tiles = shape_tiles(context, room, name, resolution, progress);
@@ -59,7 +62,8 @@ Result<std::vector<query::LayerView>> shape_views(const RouteContext& context, c
 }
 
 bool is_condition(const Layer& layer) {
-  const auto expression = layer.formula ? parse_formula(layer.formula->expression) : fail(0, {}, {});
+  const auto expression =
+      layer.formula ? parse_formula(layer.formula->expression) : fail(0, {}, {});
   return expression && expression->is_condition();
 }
 
@@ -69,8 +73,10 @@ Result<Layer> with_colors(room::Room& room, Layer layer) {
   const auto values = room.statistics(layer.slug, {}, {.quantiles = true});
   if (!values) return tl::unexpected(values.error());
   if (!values->quantiles || !(values->max > values->min)) return layer;
-  jobs::ValueRange range{values->min, values->quantiles->front(), values->quantiles->back(), values->max};
-  if (!(range.high > range.low)) std::tie(range.low, range.high) = std::pair(range.least, range.most);
+  jobs::ValueRange range{values->min, values->quantiles->front(), values->quantiles->back(),
+                         values->max};
+  if (!(range.high > range.low))
+    std::tie(range.low, range.high) = std::pair(range.least, range.most);
   layer.palette = jobs::palette_of(jobs::ShapeKind::vertex_property, range);
   return room.update_layer(std::move(layer));
 }
@@ -97,7 +103,8 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
     const auto layer = std::ranges::find(layers, slug, &Layer::slug);
     if (layer == layers.end()) continue;  // of the surface, or nothing: the binding says so
     if (self && layer->id == *self)
-      return fail(422, "Computed from itself", "The expression reads the very layer that it is for.", "expression");
+      return fail(422, "Computed from itself",
+                  "The expression reads the very layer that it is for.", "expression");
     LayerFormula::Input input{slug, layer->id, {}};
     if (reads_records_of(*expression, slug)) input.table = layer->table;
     formula.inputs.push_back(std::move(input));
@@ -108,14 +115,17 @@ Result<LayerFormula> read_formula(const room::Room& room, const std::string& tex
   return formula;
 }
 
-Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<room::Room>& room, const Layer& layer,
-                            const Author& author, Progress& progress, bool overwrites) {
+Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<room::Room>& room,
+                            const Layer& layer, const Author& author, Progress& progress,
+                            bool overwrites) {
   if (!layer.formula)
-    return fail(409, "No expression", "This layer has no expression that it could be computed from.", "layer");
+    return fail(409, "No expression",
+                "This layer has no expression that it could be computed from.", "layer");
   for (const auto& input : layer.formula->inputs)
     if (!input.layer)
       return fail(409, "Input deleted",
-                  "The expression reads the layer '" + input.slug + "', which was deleted. Change the expression.",
+                  "The expression reads the layer '" + input.slug +
+                      "', which was deleted. Change the expression.",
                   "expression");
   const auto expression = parse_formula(layer.formula->expression);
   if (!expression) return tl::unexpected(expression.error());
@@ -130,7 +140,8 @@ Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<r
   edit.edit = room::ComputeEdit{*expression, std::move(*shapes), overwrites};
   auto done = room::await<room::EditAnswer>([&](auto saved) {
     room->edit(
-        std::move(edit), [&context](const room::EditAnswer&) { ++context.metrics.edits_applied; }, std::move(saved));
+        std::move(edit), [&context](const room::EditAnswer&) { ++context.metrics.edits_applied; },
+        std::move(saved));
   });
   if (!done) {
     ++context.metrics.edits_refused;
@@ -140,13 +151,15 @@ Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<r
   return room->layer_computed(layer.id, layer.formula->expression, done->sequence, *tables);
 }
 
-Result<Response> create_formula_layer(const RouteContext& context, JobBook& book, const Request& request,
-                                      const std::shared_ptr<room::Room>& room, Layer layer, bool has_palette,
+Result<Response> create_formula_layer(const RouteContext& context, JobBook& book,
+                                      const Request& request,
+                                      const std::shared_ptr<room::Room>& room, Layer layer,
+                                      bool has_palette,
                                       const std::function<Response(const Layer&)>& answer) {
   const auto expression = parse_formula(layer.formula->expression);
   if (!expression) return tl::unexpected(expression.error());
-  const auto compute = [&context, room, author = request.author(), has_palette](const Layer& made,
-                                                                                Progress& progress) -> Result<Layer> {
+  const auto compute = [&context, room, author = request.author(), has_palette](
+                           const Layer& made, Progress& progress) -> Result<Layer> {
     auto computed = compute_layer(context, room, made, author, progress);
     if (!computed) return computed;
     // Others see it once they want to.
@@ -155,17 +168,21 @@ Result<Response> create_formula_layer(const RouteContext& context, JobBook& book
     return has_palette ? computed : with_colors(*room, std::move(*computed));
   };
   if (!room::shapes_read(*expression, views_of(room->layers())).empty())
-    return start_layer_job(
-        context, book, request, room,
-        [layer = std::move(layer), compute](NewLayers& layers, Progress& progress) -> Result<nlohmann::json> {
-          auto made = layers.add(layer, [&](const Layer& empty) { return compute(empty, progress); });
-          if (!made) return tl::unexpected(made.error());
-          return nlohmann::json();
-        });
+    return start_layer_job(context, book, request, room,
+                           [layer = std::move(layer), compute](
+                               NewLayers& layers, Progress& progress) -> Result<nlohmann::json> {
+                             auto made = layers.add(layer, [&](const Layer& empty) {
+                               return compute(empty, progress);
+                             });
+                             if (!made) return tl::unexpected(made.error());
+                             return nlohmann::json();
+                           });
   NewLayers layers(room, context.metrics, request.author());
   Progress progress;
   Result<void> shown;
-  if (auto made = layers.add(std::move(layer), [&](const Layer& empty) { return compute(empty, progress); }); !made)
+  if (auto made = layers.add(std::move(layer),
+                             [&](const Layer& empty) { return compute(empty, progress); });
+      !made)
     shown = tl::unexpected(made.error());
   else
     shown = layers.show(first_answer<Layer>(request, answer));
@@ -173,7 +190,8 @@ Result<Response> create_formula_layer(const RouteContext& context, JobBook& book
     layers.take_back();
     return tl::unexpected(shown.error());
   }
-  auto now = context.store.layer(room->model().id, std::to_string(layers.ids().front()), Role::owner);
+  auto now =
+      context.store.layer(room->model().id, std::to_string(layers.ids().front()), Role::owner);
   if (!now) return tl::unexpected(now.error());
   return answer(*now);
 }

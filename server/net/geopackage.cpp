@@ -57,7 +57,8 @@ struct NotWritten : std::runtime_error {
 class Database {
  public:
   explicit Database(const fs::path& file) {
-    const int opened = sqlite3_open_v2(file.c_str(), &handle_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+    const int opened = sqlite3_open_v2(file.c_str(), &handle_,
+                                       SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
     if (opened == SQLITE_OK) return;
     const std::string why = sqlite3_errmsg(handle_);
     sqlite3_close(handle_);
@@ -68,7 +69,9 @@ class Database {
   Database& operator=(const Database&) = delete;
 
   sqlite3* handle() const { return handle_; }
-  void run(const std::string& sql) { check(sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr)); }
+  void run(const std::string& sql) {
+    check(sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr));
+  }
   void check(int outcome) {
     if (outcome != SQLITE_OK && outcome != SQLITE_DONE) throw NotWritten(sqlite3_errmsg(handle_));
   }
@@ -95,7 +98,8 @@ class Statement {
           else if constexpr (std::is_same_v<T, double>)
             return sqlite3_bind_double(handle_, place, held);
           else if constexpr (std::is_same_v<T, std::string>)
-            return sqlite3_bind_text64(handle_, place, held.data(), held.size(), SQLITE_TRANSIENT, SQLITE_UTF8);
+            return sqlite3_bind_text64(handle_, place, held.data(), held.size(), SQLITE_TRANSIENT,
+                                       SQLITE_UTF8);
           else
             return sqlite3_bind_int64(handle_, place, held);
         },
@@ -103,7 +107,8 @@ class Statement {
     return *this;
   }
   Statement& put(const std::vector<std::uint8_t>& bytes) {
-    database_.check(sqlite3_bind_blob64(handle_, ++bound_, bytes.data(), bytes.size(), SQLITE_TRANSIENT));
+    database_.check(
+        sqlite3_bind_blob64(handle_, ++bound_, bytes.data(), bytes.size(), SQLITE_TRANSIENT));
     return *this;
   }
   void run() {
@@ -134,7 +139,8 @@ void append(std::vector<std::uint8_t>& out, const T& value) {
 }
 
 struct Box {
-  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+  glm::dvec3 low{std::numeric_limits<double>::infinity()},
+      high{-std::numeric_limits<double>::infinity()};
   void add(const glm::dvec3& place) {
     low = glm::min(low, place);
     high = glm::max(high, place);
@@ -159,10 +165,12 @@ void append_head(std::vector<std::uint8_t>& out, std::uint32_t type) {
 
 void append_path(std::vector<std::uint8_t>& out, const query::FlatRing& ring, bool closed) {
   append(out, static_cast<std::uint32_t>(ring.size() + (closed ? 1 : 0)));
-  for (std::size_t i = 0; i < ring.size() + (closed ? 1 : 0); ++i) append(out, ring[i % ring.size()]);
+  for (std::size_t i = 0; i < ring.size() + (closed ? 1 : 0); ++i)
+    append(out, ring[i % ring.size()]);
 }
 
-// GeoPackageBinary (clause 2.1.3): a header with the envelope in x, y and z, then well-known binary.
+// GeoPackageBinary (clause 2.1.3): a header with the envelope in x, y and z, then well-known
+// binary.
 std::vector<std::uint8_t> blob_of(const Feature& feature, FeatureKind kind, std::int32_t srs) {
   constexpr std::uint8_t kLittleEndian = 1, kEnvelopeOfThree = 2 << 1;
   std::vector<std::uint8_t> out{'G', 'P', 0, kLittleEndian | kEnvelopeOfThree};
@@ -212,7 +220,8 @@ const char* geometry_type(FeatureKind kind) {
 
 void write_table(Database& database, const FeatureSet& set, const FeatureTable& table, int srs) {
   std::string columns = "CREATE TABLE " + quoted(table.name) +
-                        " (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom " + geometry_type(table.kind);
+                        " (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom " +
+                        geometry_type(table.kind);
   std::string insert = "INSERT INTO " + quoted(table.name) + " VALUES (NULL, ?";
   for (const FeatureField& field : table.fields) {
     columns += ", " + quoted(field.name) + " " + type_of(field.kind);
@@ -234,10 +243,13 @@ void write_table(Database& database, const FeatureSet& set, const FeatureTable& 
     for (const FeatureValue& value : feature.values) row.put(value);
     row.run();
   }
-  const auto side = [&](double value) { return box.low.x <= box.high.x ? FeatureValue(value) : FeatureValue{}; };
-  Statement(database,
-            "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, min_x, min_y, max_x, max_y, "
-            "srs_id) VALUES (?, 'features', ?, ?, ?, ?, ?, ?, ?)")
+  const auto side = [&](double value) {
+    return box.low.x <= box.high.x ? FeatureValue(value) : FeatureValue{};
+  };
+  Statement(
+      database,
+      "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, min_x, min_y, max_x, max_y, "
+      "srs_id) VALUES (?, 'features', ?, ?, ?, ?, ?, ?, ?)")
       .put(table.name)
       .put(table.name)
       .put(set.description)
@@ -260,7 +272,8 @@ void write(const FeatureSet& set, const fs::path& file) {
   const int srs = set.epsg != 0 ? set.epsg : kUndefinedCartesian;
   if (set.epsg != 0) {
     const std::string name = "EPSG:" + std::to_string(set.epsg);
-    Statement(database, "INSERT OR IGNORE INTO gpkg_spatial_ref_sys VALUES (?, ?, 'EPSG', ?, 'undefined', ?)")
+    Statement(database,
+              "INSERT OR IGNORE INTO gpkg_spatial_ref_sys VALUES (?, ?, 'EPSG', ?, 'undefined', ?)")
         .put(name)
         .put(std::int64_t{set.epsg})
         .put(std::int64_t{set.epsg})
@@ -283,9 +296,10 @@ Result<Response> geopackage(const FeatureSet& set, const fs::path& folder) {
     write(set, file);
   } catch (const NotWritten& error) {
     log::error(std::string("a GeoPackage could not be written: ") + error.what());
-    return fail(507, "GeoPackage not written",
-                "The server could not write the file, as when its disk is full. Ask for GeoJSON, which needs none.",
-                "f");
+    return fail(
+        507, "GeoPackage not written",
+        "The server could not write the file, as when its disk is full. Ask for GeoJSON, which needs none.",
+        "f");
   }
   Response response;
   response.with("Content-Type", kGeoPackageType);

@@ -38,8 +38,10 @@ constexpr seconds kEventPause{1}, kEventPing{15};
 constexpr int kMostEventStreams = 256;
 constexpr seconds kStall{60};  // a body that does not move
 constexpr std::uint32_t kMaxHead = 8192;
-constexpr std::size_t kReadAtOnce = 64 * 1024;  // of a larger body; by itself it is read in the kilobytes of its head
-constexpr std::uint64_t kMaxIgnoredBody = 64 * 1024;  // of a refused request: read to keep the connection
+// of a larger body; by itself it is read in the kilobytes of its head
+constexpr std::size_t kReadAtOnce = 64 * 1024;
+// of a refused request: read to keep the connection
+constexpr std::uint64_t kMaxIgnoredBody = 64 * 1024;
 constexpr std::string_view kSubprotocol = "strata.v1";
 
 Method method_of(http::verb verb) {
@@ -60,26 +62,31 @@ Result<Request> request_of(const http::request<http::empty_body>& head) {
   request.method = method_of(head.method());
   for (const auto& field : head)
     request.headers.emplace_back(to_lower(field.name_string()), std::string(field.value()));
-  if (auto parsed = parse_target(head.target(), request); !parsed) return tl::unexpected(parsed.error());
+  if (auto parsed = parse_target(head.target(), request); !parsed)
+    return tl::unexpected(parsed.error());
   return request;
 }
 
 // What two readers might take for different requests is none (RFC 9112, sections 3.2 and 6.1).
 Result<void> check_framing(const Request& request, unsigned version) {
   const auto count = [&](std::string_view name) {
-    return std::ranges::count_if(request.headers, [&](const auto& header) { return header.first == name; });
+    return std::ranges::count_if(request.headers,
+                                 [&](const auto& header) { return header.first == name; });
   };
   if (count("host") > 1 || (version >= 11 && count("host") == 0))
     return fail(400, "Host unclear", "A request names one Host.", "Host");
   if (count("transfer-encoding") == 0) return {};
-  if (version < 11 || count("transfer-encoding") > 1 || to_lower(request.header("transfer-encoding")) != "chunked")
+  if (version < 11 || count("transfer-encoding") > 1 ||
+      to_lower(request.header("transfer-encoding")) != "chunked")
     return fail(501, "Transfer encoding unknown",
-                "Bodies come with a Content-Length or as `Transfer-Encoding: chunked`.", "Transfer-Encoding");
+                "Bodies come with a Content-Length or as `Transfer-Encoding: chunked`.",
+                "Transfer-Encoding");
   return {};
 }
 
 std::string rate_policy(const ServerOptions& options) {
-  const auto window_s = static_cast<int>(std::ceil(options.request_burst / options.requests_per_second));
+  const auto window_s =
+      static_cast<int>(std::ceil(options.request_burst / options.requests_per_second));
   return "\"connection\";q=" + std::to_string(static_cast<int>(options.request_burst)) +
          ";w=" + std::to_string(window_s);
 }
@@ -111,7 +118,8 @@ class CountAtWork {
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(tcp::socket socket, std::shared_ptr<Connections> connections, std::shared_ptr<asio::ssl::context> tls)
+  HttpSession(tcp::socket socket, std::shared_ptr<Connections> connections,
+              std::shared_ptr<asio::ssl::context> tls)
       : stream_(std::move(socket)),
         tls_(std::move(tls)),
         connections_(std::move(connections)),
@@ -165,12 +173,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     head.header_limit(kMaxHead);
     auto [malformed, size] = co_await http::async_read_header(stream_, buffer_, head, kUseResult);
     if (!malformed) {
-      Response elsewhere =
-          problem_response({400, "Plain HTTP", "This server speaks https: ask https:// in place of http://.", {}});
+      Response elsewhere = problem_response(
+          {400, "Plain HTTP", "This server speaks https: ask https:// in place of http://.", {}});
       const auto host = head.get()[http::field::host];
       if (!host.empty()) {
         elsewhere.status = 308;
-        elsewhere.with("Location", "https://" + std::string(host) + std::string(head.get().target()));
+        elsewhere.with("Location",
+                       "https://" + std::string(host) + std::string(head.get().target()));
       }
       co_await send(elsewhere, method_of(head.get().method()), false);
     }
@@ -178,15 +187,17 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return false;
   }
 
-  // Objects that are built inside a co_await expression are destroyed twice by GCC 12 in some cases: what the functions below
-  // are given is always a named local of the caller, by reference.
+  // Objects that are built inside a co_await expression are destroyed twice by GCC 12 in some
+  // cases: what the functions below are given is always a named local of the caller, by reference.
   asio::awaitable<void> refuse_head(beast::error_code error) {
     Response refusal;
     if (error == http::error::header_limit) {
-      refusal = problem_response({431, "Header too large", "The head of a request has at most 8 KiB.", {}});
+      refusal = problem_response(
+          {431, "Header too large", "The head of a request has at most 8 KiB.", {}});
     } else if (error.category() == http::make_error_code(http::error::bad_method).category() &&
                error != http::error::end_of_stream && error != http::error::partial_message) {
-      refusal = problem_response({400, "Malformed request", "This is not HTTP: " + error.message() + ".", {}});
+      refusal = problem_response(
+          {400, "Malformed request", "This is not HTTP: " + error.message() + ".", {}});
     } else {
       co_return;
     }
@@ -200,7 +211,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     http_version_ = head.get().version();
     auto parsed = request_of(head.get());
     if (parsed)
-      if (auto framed = check_framing(*parsed, http_version_); !framed) parsed = tl::unexpected(framed.error());
+      if (auto framed = check_framing(*parsed, http_version_); !framed)
+        parsed = tl::unexpected(framed.error());
     if (!parsed) {
       Response malformed = problem_response(parsed.error());
       co_return co_await send(malformed, method_of(head.get().method()), false);
@@ -211,7 +223,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     by_https_ = came_by_https(*request);
     Response response;
     if (!bucket_.take()) {
-      response = problem_response({429, "Too many requests", "This connection asks too fast; wait a second.", {}});
+      response = problem_response(
+          {429, "Too many requests", "This connection asks too fast; wait a second.", {}});
       co_return co_await refuse(head, *request, response, keep_alive);
     }
     if (beast::websocket::is_upgrade(head.get()) && App::is_live_address(*request))
@@ -220,7 +233,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const Route* route = app_.find_route(*request, response);
     if (!route) co_return co_await refuse(head, *request, response, keep_alive);
     const auto length = head.content_length();
-    const std::uint64_t max_body = route->body == BodyKind::none ? kMaxIgnoredBody : route->max_body;
+    const std::uint64_t max_body =
+        route->body == BodyKind::none ? kMaxIgnoredBody : route->max_body;
     if (length && *length > max_body) {
       response = problem_response(too_large(max_body));
       co_return co_await refuse(head, *request, response, keep_alive);
@@ -278,7 +292,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   static Problem too_large(std::uint64_t max_body) {
-    return {413, "Body too large", "This address takes at most " + std::to_string(max_body) + " bytes.", "body"};
+    return {413, "Body too large",
+            "This address takes at most " + std::to_string(max_body) + " bytes.", "body"};
   }
 
   static void remove_body_file(const Request& request) {
@@ -288,13 +303,14 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   // Answers without the body being wanted. A small one is read, so that the connection can go on.
-  asio::awaitable<bool> refuse(http::request_parser<http::empty_body>& head, const Request& request, Response& response,
-                               bool keep_alive) {
+  asio::awaitable<bool> refuse(http::request_parser<http::empty_body>& head, const Request& request,
+                               Response& response, bool keep_alive) {
     const Method method = request.method;
     if (!head.is_done()) {
       const auto length = head.content_length();
       const bool waits = !head.get()[http::field::expect].empty();
-      if (!length || *length > kMaxIgnoredBody || waits) co_return co_await send(response, method, false);
+      if (!length || *length > kMaxIgnoredBody || waits)
+        co_return co_await send(response, method, false);
       Request ignored;
       Problem problem;
       const bool is_read = co_await read_to_memory(head, ignored, kMaxIgnoredBody, problem);
@@ -311,8 +327,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   // False: see the problem; one without a title says that the connection broke.
-  asio::awaitable<bool> read_to_memory(http::request_parser<http::empty_body>& head, Request& request,
-                                       std::uint64_t max_body, Problem& problem) {
+  asio::awaitable<bool> read_to_memory(http::request_parser<http::empty_body>& head,
+                                       Request& request, std::uint64_t max_body, Problem& problem) {
     http::request_parser<http::string_body> parser(std::move(head));
     parser.body_limit(boost::none);
     const BodyClock clock;
@@ -346,8 +362,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     parser.get().body().open(request.body_file.c_str(), beast::file_mode::write_new, file_error);
     if (file_error) {
       log::error("upload folder not writable: " + file_error.message());
-      problem = {
-          507, "No room for uploads", "The server cannot write its upload folder: " + file_error.message() + ".", {}};
+      problem = {507,
+                 "No room for uploads",
+                 "The server cannot write its upload folder: " + file_error.message() + ".",
+                 {}};
       co_return false;
     }
     const BodyClock clock;
@@ -355,9 +373,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       connection().expires_after(kStall);
       auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, kUseResult);
       if (error) {
-        problem = error == boost::system::errc::no_space_on_device
-                      ? Problem{507, "Disk full", "The upload does not fit on the server's disk.", "body"}
-                      : body_problem(error);
+        problem =
+            error == boost::system::errc::no_space_on_device
+                ? Problem{507, "Disk full", "The upload does not fit on the server's disk.", "body"}
+                : body_problem(error);
         co_return false;
       }
       request.body_bytes += size;
@@ -372,15 +391,18 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     }
     parser.get().body().close();
     std::error_code size_error;
-    request.body_bytes = std::filesystem::file_size(request.body_file, size_error);  // without a chunked body's framing
+    // without a chunked body's framing
+    request.body_bytes = std::filesystem::file_size(request.body_file, size_error);
     co_return true;
   }
 
   static Problem body_problem(beast::error_code error) {
-    const bool malformed = error.category() == http::make_error_code(http::error::bad_chunk).category() &&
-                           error != http::error::partial_message && error != http::error::end_of_stream;
+    const bool malformed =
+        error.category() == http::make_error_code(http::error::bad_chunk).category() &&
+        error != http::error::partial_message && error != http::error::end_of_stream;
     if (malformed)
-      return {400, "Malformed body", "The body does not follow its framing: " + error.message() + ".", "body"};
+      return {400, "Malformed body",
+              "The body does not follow its framing: " + error.message() + ".", "body"};
     return {};
   }
 
@@ -399,7 +421,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     message.insert("RateLimit", "\"connection\";r=" + std::to_string(bucket_.left(now)) +
                                     ";t=" + std::to_string(bucket_.full_in_s(now)));
     if (response.header("Cache-Control").empty())
-      message.set(http::field::cache_control, response.header("ETag").empty() ? "no-store" : "private, no-cache");
+      message.set(http::field::cache_control,
+                  response.header("ETag").empty() ? "no-store" : "private, no-cache");
     for (const auto& [key, value] : response.headers) message.insert(key, value);
     message.keep_alive(keep_alive);
   }
@@ -426,14 +449,16 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       message.body().open(response.file.c_str(), beast::file_mode::scan, error);
       if (!error) {
         put_head(message, response, keep_alive);
-        if (method == Method::head) co_return co_await send_head(response, message.body().size(), keep_alive);
+        if (method == Method::head)
+          co_return co_await send_head(response, message.body().size(), keep_alive);
         message.prepare_payload();
         co_return co_await write(message);
       }
       response = problem_response({404, "Not found", "The file is gone.", {}});
     }
     if (method == Method::head)
-      co_return co_await send_head(response, std::max(response.bytes.size(), response.body.size()), keep_alive);
+      co_return co_await send_head(response, std::max(response.bytes.size(), response.body.size()),
+                                   keep_alive);
     if (!response.bytes.empty()) {
       http::response<http::vector_body<std::uint8_t>> message;
       put_head(message, response, keep_alive);
@@ -444,11 +469,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     http::response<http::string_body> message;
     put_head(message, response, keep_alive);
     message.body() = std::move(response.body);
-    if (response.status != 204 && response.status != 304) message.content_length(message.body().size());
+    if (response.status != 204 && response.status != 304)
+      message.content_length(message.body().size());
     co_return co_await write(message);
   }
 
-  asio::awaitable<bool> send_head(const Response& response, std::optional<std::uint64_t> length, bool keep_alive) {
+  asio::awaitable<bool> send_head(const Response& response, std::optional<std::uint64_t> length,
+                                  bool keep_alive) {
     http::response<http::empty_body> message;
     put_head(message, response, keep_alive);
     if (length && response.status != 204 && response.status != 304) message.content_length(*length);
@@ -466,15 +493,16 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return !error;
   }
 
-  // A worker makes the bytes and waits for each piece to be sent; few at once, so that slow readers leave workers for others.
-  // Where their number is not known they go in chunks; a client of HTTP/1.0 knows none, and reads until the connection ends.
+  // A worker makes the bytes and waits for each piece to be sent; few at once, so that slow readers
+  // leave workers for others. Where their number is not known they go in chunks; a client of
+  // HTTP/1.0 knows none, and reads until the connection ends.
   asio::awaitable<bool> send_stream(Response& response, Method method, bool keep_alive) {
     const auto length = response.stream->length;
     if (method == Method::head) co_return co_await send_head(response, length, keep_alive);
     const CountAtWork counted(connections_->streams_at_work);
     if (connections_->streams_at_work > std::max(1, app_.options().worker_threads / 2)) {
-      Response refusal =
-          problem_response({503, "Too many downloads", "Ask again when another download has ended.", {}});
+      Response refusal = problem_response(
+          {503, "Too many downloads", "Ask again when another download has ended.", {}});
       co_return co_await send(refusal, method, keep_alive);
     }
     const bool in_chunks = !length && http_version_ >= 11;
@@ -494,14 +522,17 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       try {
         written = stream.write([&](std::span<const std::uint8_t> bytes) {
           if (bytes.empty()) return true;  // an empty chunk would be the last one
-          if ((stream.length && sent + bytes.size() > *stream.length) || !send_piece(bytes, in_chunks)) return false;
+          if ((stream.length && sent + bytes.size() > *stream.length) ||
+              !send_piece(bytes, in_chunks))
+            return false;
           sent += bytes.size();
           return true;
         });
       } catch (const QuestionEnded&) {
         // The server stops: the client sees that it does not have all.
       }
-      *whole = written && (!stream.length || sent == *stream.length) && (!in_chunks || send_piece({}, true));
+      *whole = written && (!stream.length || sent == *stream.length) &&
+               (!in_chunks || send_piece({}, true));
       respond(empty_response(200));
     };
     const Response done = co_await on_worker(connections_, stream_.get_executor(), pump);
@@ -509,8 +540,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return done.status == 200 && *whole&& framed&& keep_alive;
   }
 
-  // Costs no thread while nothing happens. Now and then something is sent in any case, so that proxies keep the connection and one whose client is gone
-  // is found out.
+  // Costs no thread while nothing happens. Now and then something is sent in any case, so that
+  // proxies keep the connection and one whose client is gone is found out.
   asio::awaitable<bool> send_events(Response& response, Method method, bool keep_alive) {
     response.with("Content-Type", "text/event-stream")
         .with("Cache-Control", "no-store")
@@ -518,7 +549,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (method == Method::head) co_return co_await send_head(response, std::nullopt, keep_alive);
     const CountAtWork counted(connections_->event_streams);
     if (connections_->event_streams > kMostEventStreams) {
-      Response refusal = problem_response({503, "Too many listeners", "Ask again when another listener has gone.", {}});
+      Response refusal = problem_response(
+          {503, "Too many listeners", "Ask again when another listener has gone.", {}});
       co_return co_await send(refusal, method, keep_alive);
     }
     const bool in_chunks = http_version_ >= 11;
@@ -537,8 +569,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     for (;;) {
       const Response told = co_await on_worker(connections_, stream_.get_executor(), ask);
       if (told.status == 204 || connections_->stopping) break;
-      std::string text = told.status == 200 ? told.body : std::string();  // too busy just now: asked again
-      if (text.empty() && std::chrono::steady_clock::now() - last_sent >= kEventPing) text = ":\n\n";
+      // too busy just now: asked again
+      std::string text = told.status == 200 ? told.body : std::string();
+      if (text.empty() && std::chrono::steady_clock::now() - last_sent >= kEventPing)
+        text = ":\n\n";
       if (!text.empty()) {
         if (in_chunks) text = as_chunk(text);
         const bool sent = co_await write_text(std::move(text));
@@ -574,20 +608,24 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     asio::post(stream_.get_executor(), [self = shared_from_this(), data, result] {
       self->connection().expires_after(kStall);
       asio::async_write(self->stream_, asio::buffer(*data),
-                        [self, data, result](beast::error_code error, std::size_t) { result->set_value(!error); });
+                        [self, data, result](beast::error_code error, std::size_t) {
+                          result->set_value(!error);
+                        });
     });
     while (future.wait_for(std::chrono::milliseconds(200)) != std::future_status::ready)
       if (connections_->stopping) return false;
     return future.get();
   }
 
-  asio::awaitable<bool> upgrade(http::request_parser<http::empty_body>& head, const std::shared_ptr<Request>& request) {
+  asio::awaitable<bool> upgrade(http::request_parser<http::empty_body>& head,
+                                const std::shared_ptr<Request>& request) {
     http::token_list offered(head.get()[http::field::sec_websocket_protocol]);
     Response response;
     if (!offered.exists(kSubprotocol)) {
-      response = problem_response({400, "Subprotocol missing",
-                                   "Live connections speak strata.v1: name it in Sec-WebSocket-Protocol.",
-                                   "Sec-WebSocket-Protocol"});
+      response =
+          problem_response({400, "Subprotocol missing",
+                            "Live connections speak strata.v1: name it in Sec-WebSocket-Protocol.",
+                            "Sec-WebSocket-Protocol"});
       co_return co_await send(response, Method::get, false);
     }
     auto entry = std::make_shared<App::LiveEntry>();
@@ -606,7 +644,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return false;
   }
 
-  // Ends our side, and reads what is still under way for a moment: closing at once could destroy the answer in the client's hands.
+  // Ends our side, and reads what is still under way for a moment: closing at once could destroy
+  // the answer in the client's hands.
   asio::awaitable<void> say_goodbye() {
     connection().expires_after(seconds(2));
     if (stream_.has_tls()) co_await stream_.end_tls();
@@ -644,7 +683,8 @@ void start_http_session(tcp::socket socket, std::shared_ptr<Connections> connect
   beast::error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
   auto executor = socket.get_executor();
-  auto session = std::make_shared<HttpSession>(std::move(socket), std::move(connections), std::move(tls));
+  auto session =
+      std::make_shared<HttpSession>(std::move(socket), std::move(connections), std::move(tls));
   asio::co_spawn(
       executor, [session] { return session->run(); },
       [](std::exception_ptr failure) {

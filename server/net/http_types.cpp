@@ -20,7 +20,8 @@ int hex_digit(char c) {
 }  // namespace
 
 std::string_view name(Method method) {
-  static constexpr std::string_view kNames[] = {"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "?"};
+  static constexpr std::string_view kNames[] = {"GET",   "HEAD",   "POST",    "PUT",
+                                                "PATCH", "DELETE", "OPTIONS", "?"};
   return kNames[static_cast<int>(method)];
 }
 
@@ -124,13 +125,15 @@ struct Respond::State {
   explicit State(std::function<void(Response)> function) : send(std::move(function)) {}
   ~State() {
     if (!answered)
-      send(problem_response({503, "Request dropped", "The server stopped before it answered; ask again.", {}}));
+      send(problem_response(
+          {503, "Request dropped", "The server stopped before it answered; ask again.", {}}));
   }
   std::function<void(Response)> send;
   std::atomic<bool> answered{false};
 };
 
-Respond::Respond(std::function<void(Response)> send) : state_(std::make_shared<State>(std::move(send))) {}
+Respond::Respond(std::function<void(Response)> send)
+    : state_(std::make_shared<State>(std::move(send))) {}
 
 void Respond::operator()(Response response) const {
   if (!state_->answered.exchange(true)) state_->send(std::move(response));
@@ -165,8 +168,8 @@ std::string percent_encode(std::string_view text) {
   static constexpr char kDigits[] = "0123456789ABCDEF";
   std::string out;
   for (unsigned char c : text) {
-    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' || c == '.' ||
-        c == '_' || c == '~') {
+    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' ||
+        c == '.' || c == '_' || c == '~') {
       out += static_cast<char>(c);
     } else {
       out += '%';
@@ -187,7 +190,8 @@ std::string to_lower(std::string_view text) {
 Result<void> parse_target(std::string_view target, Request& request) {
   auto wrong = [](std::string detail) { return fail(400, "Malformed address", std::move(detail)); };
   request.target = target;
-  if (target.empty() || target[0] != '/') return wrong("A request names a path that begins with a slash.");
+  if (target.empty() || target[0] != '/')
+    return wrong("A request names a path that begins with a slash.");
   const auto question = target.find('?');
   const std::string_view path = target.substr(0, question);
   for (std::size_t begin = 1; begin <= path.size();) {
@@ -210,14 +214,16 @@ Result<void> parse_target(std::string_view target, Request& request) {
     if (pair.empty()) continue;
     const auto equals = pair.find('=');
     auto key = percent_decode(pair.substr(0, equals), true);
-    auto value = percent_decode(equals == std::string_view::npos ? std::string_view() : pair.substr(equals + 1), true);
+    auto value = percent_decode(
+        equals == std::string_view::npos ? std::string_view() : pair.substr(equals + 1), true);
     if (!key || !value) return wrong("The query has a percent escape that is not one.");
     if (!is_utf8(*key) || !is_utf8(*value)) return wrong("The query is not UTF-8.");
     if (!request.query.emplace(*key, std::move(*value)).second)
       return fail(400, "Query parameter given twice", "Give '" + *key + "' once.", *key);
   }
   // No route's own: it says which cookie counts.
-  if (const auto as = request.query.find("as"); as != request.query.end() && as->second == "kiosk") {
+  if (const auto as = request.query.find("as");
+      as != request.query.end() && as->second == "kiosk") {
     request.as_kiosk = true;
     request.query.erase(as);
   }
@@ -230,7 +236,8 @@ Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std:
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
     return fail(422, "Number out of range",
-                "'" + field + "' is a whole number from " + std::to_string(low) + " to " + std::to_string(high) + ".",
+                "'" + field + "' is a whole number from " + std::to_string(low) + " to " +
+                    std::to_string(high) + ".",
                 field);
   return value;
 }
@@ -239,8 +246,8 @@ Result<std::string> asked_language(const Request& request) {
   constexpr std::size_t kLongest = 35;  // BCP 47
   std::string language = to_lower(request.query_or("lang", {}));
   if (language.size() > kLongest)
-    return fail(422, "Not a language", "`lang` is a language such as `es` or `de-AT`, of 35 characters at most.",
-                "lang");
+    return fail(422, "Not a language",
+                "`lang` is a language such as `es` or `de-AT`, of 35 characters at most.", "lang");
   return language;
 }
 

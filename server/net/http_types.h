@@ -18,7 +18,8 @@
 
 namespace strata::net {
 
-// What routes see of HTTP: no socket library in here, so that they compile fast and can be tested without a socket.
+// What routes see of HTTP: no socket library in here, so that they compile fast and can be tested
+// without a socket.
 
 enum class Method { get, head, post, put, patch, remove, options, unknown };
 std::string_view name(Method method);
@@ -28,8 +29,8 @@ struct KioskPass {
   std::int64_t id = 0, model = 0, tour = 0;
 };
 
-// Who asks. `role`: what they may do where the address leads. `by_cookie`: the browser sent the secret by itself, so changing calls
-// must prove where they come from.
+// Who asks. `role`: what they may do where the address leads. `by_cookie`: the browser sent the
+// secret by itself, so changing calls must prove where they come from.
 struct Principal {
   std::string user;
   Role role = Role::viewer;
@@ -53,18 +54,22 @@ struct Request {
   std::map<std::string, std::string> params;  // what the route's pattern caught
   Headers headers;                            // names in lower case
   std::string body;                           // in memory, or…
-  std::filesystem::path body_file;            // …in a file that is removed after the answer unless a handler moves it
+  // …in a file that is removed after the answer unless a handler moves it
+  std::filesystem::path body_file;
   std::uint64_t body_bytes = 0;
   std::optional<Principal> principal;
-  std::string peer;          // address at the other end of the connection
-  bool by_tls = false;       // the connection speaks TLS
-  std::string known_tags{};  // If-None-Match as sent, where `headers` has it without codings (net/compression.h)
-  bool as_kiosk = false;  // the query had `as=kiosk`: of all cookies that of the kiosk counts, which otherwise does not
+  std::string peer;     // address at the other end of the connection
+  bool by_tls = false;  // the connection speaks TLS
+  // If-None-Match as sent, where `headers` has it without codings (net/compression.h)
+  std::string known_tags{};
+  // the query had `as=kiosk`: of all cookies that of the kiosk counts, which otherwise does not
+  bool as_kiosk = false;
 
   std::string_view header(std::string_view lower_case_name) const;  // empty when absent
   const std::string& param(const std::string& name) const { return params.at(name); }
   std::string query_or(const std::string& name, std::string fallback) const;
-  const std::string& user() const { return principal->user; }           // routes that need a principal have one
+  // routes that need a principal have one
+  const std::string& user() const { return principal->user; }
   Role role() const { return principal->role; }                         // the same
   Author author() const { return {principal->user, principal->role}; }  // the same
 };
@@ -76,16 +81,17 @@ struct Response {
   std::vector<std::uint8_t> bytes;   // sent in place of `body` when not empty
   std::filesystem::path file;        // the same
   std::shared_ptr<const void> held;  // let go once the answer is sent
-  // Bytes made while they are sent, in place of `body`. `write` runs on a worker, stops when the sink says false, and says whether
-  // all was written: otherwise the connection ends, which tells the client.
+  // Bytes made while they are sent, in place of `body`. `write` runs on a worker, stops when the
+  // sink says false, and says whether all was written: otherwise the connection ends, which tells
+  // the client.
   using Sink = std::function<bool(std::span<const std::uint8_t>)>;
   struct Stream {
     std::optional<std::uint64_t> length;  // nothing: known only at the end
     std::function<bool(const Sink&)> write;
   };
   std::optional<Stream> stream;
-  // Server-sent events (HTML, section 9.2), until the client goes: asked about once a second, on a worker, what there is to send; nothing: it
-  // ends. The client comes back by itself.
+  // Server-sent events (HTML, section 9.2), until the client goes: asked about once a second, on a
+  // worker, what there is to send; nothing: it ends. The client comes back by itself.
   struct Events {
     std::function<std::optional<std::string>()> next;
   };
@@ -104,8 +110,8 @@ Response problem_response(const Problem& problem);  // RFC 9457
 void name_download(Response& response, const std::string& filename);
 std::string_view reason_phrase(int status);
 
-// The one answer to a request; may be called from any thread. The first call counts; when the last copy goes without one, the
-// client gets a 500 rather than silence.
+// The one answer to a request; may be called from any thread. The first call counts; when the last
+// copy goes without one, the client gets a 500 rather than silence.
 class Respond {
  public:
   explicit Respond(std::function<void(Response)> send);
@@ -117,7 +123,8 @@ class Respond {
   std::shared_ptr<State> state_;
 };
 
-// Splits and decodes a request target. Refused: bad percent escapes, NUL, what is not UTF-8, a query parameter given twice.
+// Splits and decodes a request target. Refused: bad percent escapes, NUL, what is not UTF-8, a
+// query parameter given twice.
 Result<void> parse_target(std::string_view target, Request& request);
 std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space);
 std::string percent_encode(std::string_view text);

@@ -10,7 +10,8 @@ Result<std::optional<std::int64_t>> JobBook::find(const Request& request) {
   if (found == started_.end() || !jobs_.status(found->second.job)) return std::nullopt;
   if (found->second.fingerprint != fingerprint(request))
     return fail(422, "Key used for another call",
-                "This Idempotency-Key was used with another body; take a new key for a new call.", "Idempotency-Key");
+                "This Idempotency-Key was used with another body; take a new key for a new call.",
+                "Idempotency-Key");
   return found->second.job;
 }
 
@@ -22,8 +23,11 @@ void JobBook::started(const Request& request, std::int64_t job) {
   started_[key] = {job, fingerprint(request)};
 }
 
-Result<std::int64_t> JobBook::finished(const Request& request, std::int64_t project, jobs::JobResult result) {
-  auto job = jobs_.add(project, [result = std::move(result)](Progress&) -> Result<jobs::JobResult> { return result; });
+Result<std::int64_t> JobBook::finished(const Request& request, std::int64_t project,
+                                       jobs::JobResult result) {
+  auto job = jobs_.add(project, [result = std::move(result)](Progress&) -> Result<jobs::JobResult> {
+    return result;
+  });
   if (job) started(request, *job);
   return job;
 }

@@ -8,8 +8,9 @@
 
 namespace strata::net {
 
-// Which job a call's Idempotency-Key started. The server forgets when it stops; the key of a job that succeeded is in the database
-// with what it made, and gets a job that is done. The key of one that a restart ended starts it again. Thread-safe.
+// Which job a call's Idempotency-Key started. The server forgets when it stops; the key of a job
+// that succeeded is in the database with what it made, and gets a job that is done. The key of one
+// that a restart ended starts it again. Thread-safe.
 class JobBook {
  public:
   explicit JobBook(jobs::JobQueue& jobs) : jobs_(jobs) {}
@@ -18,7 +19,8 @@ class JobBook {
   Result<std::optional<std::int64_t>> find(const Request& request);
   void started(const Request& request, std::int64_t job);
   // The job that an earlier server finished.
-  Result<std::int64_t> finished(const Request& request, std::int64_t project, jobs::JobResult result);
+  Result<std::int64_t> finished(const Request& request, std::int64_t project,
+                                jobs::JobResult result);
 
  private:
   struct Started {

@@ -35,7 +35,8 @@ constexpr std::string_view kOpen[] = {
 
 using Tables = std::set<std::int64_t>;
 
-// Tables of the model's public layers and of the tour, and the lists whose terms their public columns hold.
+// Tables of the model's public layers and of the tour, and the lists whose terms their public
+// columns hold.
 Result<Tables> tables_of(const RouteContext& context, const KioskPass& kiosk) {
   const auto layers = context.store.layers(kiosk.model, Role::viewer);
   if (!layers) return tl::unexpected(layers.error());
@@ -45,7 +46,8 @@ Result<Tables> tables_of(const RouteContext& context, const KioskPass& kiosk) {
   for (const Layer& layer : *layers)
     if (layer.table) tables.insert(*layer.table);
   for (const nlohmann::json& stop : tour->content.at("stops"))
-    for (const nlohmann::json& records : stop.at("records")) tables.insert(records.at("table").get<std::int64_t>());
+    for (const nlohmann::json& records : stop.at("records"))
+      tables.insert(records.at("table").get<std::int64_t>());
   Tables with_terms = tables;
   for (const std::int64_t id : tables) {
     const auto table = context.store.table(std::to_string(id), Role::viewer);
@@ -57,9 +59,11 @@ Result<Tables> tables_of(const RouteContext& context, const KioskPass& kiosk) {
   return with_terms;
 }
 
-Result<bool> has_table(const RouteContext& context, const KioskPass& kiosk, const std::string& ref) {
+Result<bool> has_table(const RouteContext& context, const KioskPass& kiosk,
+                       const std::string& ref) {
   const auto table = context.store.table(ref, Role::viewer);
-  if (!table) return table.error().status == 404 ? Result<bool>(false) : tl::unexpected(table.error());
+  if (!table)
+    return table.error().status == 404 ? Result<bool>(false) : tl::unexpected(table.error());
   const auto tables = tables_of(context, kiosk);
   if (!tables) return tl::unexpected(tables.error());
   return tables->contains(table->id);
@@ -68,29 +72,34 @@ Result<bool> has_table(const RouteContext& context, const KioskPass& kiosk, cons
 // Whether the address's thing of this kind is the kiosk's to see.
 struct Place {
   const char* param;
-  Result<bool> (*is_own)(const RouteContext& context, const KioskPass& kiosk, const std::string& ref);
+  Result<bool> (*is_own)(const RouteContext& context, const KioskPass& kiosk,
+                         const std::string& ref);
 };
 constexpr Place kPlaces[] = {
     {"model",
-     [](const RouteContext& context, const KioskPass& kiosk, const std::string& ref) -> Result<bool> {
+     [](const RouteContext& context, const KioskPass& kiosk,
+        const std::string& ref) -> Result<bool> {
        const auto model = context.store.model(ref);
        if (!model && model.error().status != 404) return tl::unexpected(model.error());
        return model && model->id == kiosk.model;
      }},
     {"tour",
-     [](const RouteContext& context, const KioskPass& kiosk, const std::string& ref) -> Result<bool> {
+     [](const RouteContext& context, const KioskPass& kiosk,
+        const std::string& ref) -> Result<bool> {
        const auto tour = context.store.tours().find(kiosk.model, ref);
        if (!tour && tour.error().status != 404) return tl::unexpected(tour.error());
        return tour && tour->id == kiosk.tour;
      }},
     {"table", has_table},
     {"attachment",
-     [](const RouteContext& context, const KioskPass& kiosk, const std::string& ref) -> Result<bool> {
+     [](const RouteContext& context, const KioskPass& kiosk,
+        const std::string& ref) -> Result<bool> {
        const auto id = parse_integer(ref, 1, std::numeric_limits<std::int64_t>::max(), {});
        if (!id) return false;
        const auto attachment = context.store.attachment(*id, {{}, Role::viewer});
        if (!attachment)
-         return attachment.error().status == 404 ? Result<bool>(false) : tl::unexpected(attachment.error());
+         return attachment.error().status == 404 ? Result<bool>(false)
+                                                 : tl::unexpected(attachment.error());
        return has_table(context, kiosk, std::to_string(attachment->table_id));
      }},
 };

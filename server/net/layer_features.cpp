@@ -24,11 +24,13 @@ struct Records {
   WordsOfTables words;
 };
 
-Result<Records> read_records(const RouteContext& context, const FeatureWish& wish, std::vector<std::int64_t> painted) {
+Result<Records> read_records(const RouteContext& context, const FeatureWish& wish,
+                             std::vector<std::int64_t> painted) {
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
   if (wish.at) {
-    const auto then = context.store.table_sequence_when(*wish.layer.table, wish.layer.model_id, *wish.at);
+    const auto then =
+        context.store.table_sequence_when(*wish.layer.table, wish.layer.model_id, *wish.at);
     if (!then) return tl::unexpected(then.error());
     query.at = *then;
   }
@@ -50,7 +52,8 @@ Result<Records> read_records(const RouteContext& context, const FeatureWish& wis
     keys.push_back(record.key);
     records.by_key.emplace(record.key, std::move(record));
   }
-  auto names = record_names(context, table->id, wish.role, std::move(keys), query.at, wish.language);
+  auto names =
+      record_names(context, table->id, wish.role, std::move(keys), query.at, wish.language);
   if (!names) return tl::unexpected(names.error());
   records.names = std::move(*names);
   auto words = words_of(context.store, records.columns, wish.role, wish.language);
@@ -81,7 +84,8 @@ FeatureValue value_of(const Record& record, const Column& column, const WordsOfT
   }
 }
 
-// The names of a table's fields: what is called like one of ours, or like what formats call theirs, gets `column_` before its name.
+// The names of a table's fields: what is called like one of ours, or like what formats call theirs,
+// gets `column_` before its name.
 class Fields {
  public:
   explicit Fields(std::vector<FeatureField> own) : fields_(std::move(own)) {
@@ -100,25 +104,31 @@ class Fields {
   std::set<std::string> taken_{"fid", "geom", "kind", "ogc_fid", "rowid"};
 };
 
-FeatureValue text_or_nothing(std::string text) { return text.empty() ? FeatureValue{} : FeatureValue(std::move(text)); }
+FeatureValue text_or_nothing(std::string text) {
+  return text.empty() ? FeatureValue{} : FeatureValue(std::move(text));
+}
 
 void add_record(Feature& feature, const Records& records, std::int64_t key) {
   const auto record = records.by_key.find(key);
   for (const Column& column : records.columns)
-    feature.values.push_back(record == records.by_key.end() ? FeatureValue{}
-                                                            : value_of(record->second, column, records.words));
+    feature.values.push_back(record == records.by_key.end()
+                                 ? FeatureValue{}
+                                 : value_of(record->second, column, records.words));
 }
 
 // Which class of query::classes_of it counts.
-std::uint32_t class_of(const query::Quantity& quantity, const Layer& layer, const query::ValueClasses& classes) {
-  if (quantity.value) return classes.of(encode_value(layer.type, *quantity.value).value_or(0), *quantity.value);
+std::uint32_t class_of(const query::Quantity& quantity, const Layer& layer,
+                       const query::ValueClasses& classes) {
+  if (quantity.value)
+    return classes.of(encode_value(layer.type, *quantity.value).value_or(0), *quantity.value);
   std::uint32_t range = 0;
   while (range < classes.limits.size() && classes.from(range) != quantity.from) ++range;
   return range;
 }
 
-FeatureTable areas_of(const FeatureWish& wish, const query::Quantities& all, const query::Perimeters& perimeters,
-                      query::PlaneOutlines outlines, const Records& records) {
+FeatureTable areas_of(const FeatureWish& wish, const query::Quantities& all,
+                      const query::Perimeters& perimeters, query::PlaneOutlines outlines,
+                      const Records& records) {
   const Layer& layer = wish.layer;
   const Model model = wish.room->model();
   const query::ValueClasses classes = query::classes_of(layer);
@@ -140,7 +150,9 @@ FeatureTable areas_of(const FeatureWish& wish, const query::Quantities& all, con
   Fields fields(std::move(own));
   for (const Column& column : records.columns) fields.add(column);
   FeatureTable table{FeatureKind::areas, "areas", fields.take(), {}};
-  const auto number = [](const std::optional<double>& value) { return value ? FeatureValue(*value) : FeatureValue{}; };
+  const auto number = [](const std::optional<double>& value) {
+    return value ? FeatureValue(*value) : FeatureValue{};
+  };
   for (const query::Quantity& quantity : all.classes) {
     Feature& feature = table.features.emplace_back();
     const std::uint32_t a_class = class_of(quantity, layer, classes);
@@ -155,7 +167,8 @@ FeatureTable areas_of(const FeatureWish& wish, const query::Quantities& all, con
     feature.values.push_back(text_or_nothing(has_keys ? label : quantity_text(quantity, label)));
     const auto length = perimeters.of_class.find(a_class);
     feature.values.emplace_back(quantity.area_m2);
-    feature.values.emplace_back(length == perimeters.of_class.end() ? 0 : length->second * model.metres());
+    feature.values.emplace_back(
+        length == perimeters.of_class.end() ? 0 : length->second * model.metres());
     feature.values.emplace_back(static_cast<std::int64_t>(quantity.texels));
     feature.values.emplace_back(static_cast<std::int64_t>(quantity.pieces));
     feature.values.emplace_back(layer.slug);
@@ -184,7 +197,8 @@ FeatureTable marks_in(const FeatureWish& wish, const Records& records, const Col
       if (mark.model != model.id) continue;
       Feature& feature = table.features.emplace_back();
       const auto name = records.names.find(key);
-      feature.values = {key, text_or_nothing(name == records.names.end() ? std::string() : name->second)};
+      feature.values = {
+          key, text_or_nothing(name == records.names.end() ? std::string() : name->second)};
       if (are_lines) feature.values.emplace_back(length_of(mark) * model.metres());
       feature.values.emplace_back(wish.layer.slug);
       feature.values.emplace_back(model.slug);
@@ -202,7 +216,8 @@ int epsg_of(const Model& model, const query::OutlinePlane& plane) {
   constexpr std::string_view kAuthority = "EPSG:";
   int code = 0;
   if (plane.depth == 2 && model.unit == Unit::m && model.crs.starts_with(kAuthority))
-    std::from_chars(model.crs.data() + kAuthority.size(), model.crs.data() + model.crs.size(), code);
+    std::from_chars(model.crs.data() + kAuthority.size(), model.crs.data() + model.crs.size(),
+                    code);
   return code;
 }
 
@@ -213,13 +228,14 @@ Result<FeatureSet> layer_features(const RouteContext& context, const FeatureWish
   const auto areas = wish.room->layer_areas(wish.layer.slug, wish.at);
   if (!areas) return tl::unexpected(areas.error());
   const query::Quantities& all = areas->quantities;
-  auto outlines = query::plane_outlines(areas->view, *wish.room->geometry(), *areas->map, query::classes_of(wish.layer),
-                                        wish.plane);
+  auto outlines = query::plane_outlines(areas->view, *wish.room->geometry(), *areas->map,
+                                        query::classes_of(wish.layer), wish.plane);
   if (!outlines) return tl::unexpected(outlines.error());
   Records records;
   if (wish.layer.table) {
     std::vector<std::int64_t> painted;
-    for (const query::Quantity& quantity : all.classes) painted.push_back(static_cast<std::int64_t>(*quantity.value));
+    for (const query::Quantity& quantity : all.classes)
+      painted.push_back(static_cast<std::int64_t>(*quantity.value));
     auto read = read_records(context, wish, std::move(painted));
     if (!read) return tl::unexpected(read.error());
     records = std::move(*read);
@@ -227,7 +243,8 @@ Result<FeatureSet> layer_features(const RouteContext& context, const FeatureWish
   FeatureSet set;
   set.name = model.slug + "-" + wish.layer.slug;
   set.unit = name(model.unit);
-  for (const int axis : {wish.plane.right, wish.plane.up, wish.plane.depth}) set.axes += "xyz"[axis];
+  for (const int axis : {wish.plane.right, wish.plane.up, wish.plane.depth})
+    set.axes += "xyz"[axis];
   set.epsg = epsg_of(model, wish.plane);
   set.description = wish.layer.name + " on " + model.name + ": " + set.axes + " in " + set.unit;
   set.tables.push_back(areas_of(wish, all, areas->perimeters, std::move(*outlines), records));

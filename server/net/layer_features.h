@@ -15,8 +15,9 @@ struct FeatureWish {
   std::string language;  // of terms
 };
 
-// The areas of a layer's classes, and of a database layer the lines and points of its records on the model, each with what it is and what its
-// record holds in the columns that the role sees. Blocks.
+// The areas of a layer's classes, and of a database layer the lines and points of its records on
+// the model, each with what it is and what its record holds in the columns that the role sees.
+// Blocks.
 Result<FeatureSet> layer_features(const RouteContext& context, const FeatureWish& wish);
 
 }  // namespace strata::net

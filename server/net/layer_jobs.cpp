@@ -7,22 +7,23 @@
 namespace strata::net {
 namespace {
 
-Result<jobs::JobResult> run(room::Room& room, NewLayers& layers, const MakeLayers& make, const std::string& key,
-                            const std::string& print, Progress& progress) {
+Result<jobs::JobResult> run(room::Room& room, NewLayers& layers, const MakeLayers& make,
+                            const std::string& key, const std::string& print, Progress& progress) {
   auto report = make(layers, progress);
   if (!report) return tl::unexpected(report.error());
   if (progress.cancelled()) return cancelled_problem();
   jobs::JobResult result(room.model().id);
   result.layers = layers.ids();
   result.report = std::move(*report);
-  const store::FirstAnswer<Layer> answer{
-      key,
-      [&](const Layer&) {
-        return nlohmann::json{
-            {"request", print}, {"model", result.model}, {"layers", result.layers}, {"report", result.report}};
-      },
-      {},
-      progress.job()};
+  const store::FirstAnswer<Layer> answer{key,
+                                         [&](const Layer&) {
+                                           return nlohmann::json{{"request", print},
+                                                                 {"model", result.model},
+                                                                 {"layers", result.layers},
+                                                                 {"report", result.report}};
+                                         },
+                                         {},
+                                         progress.job()};
   if (auto shown = layers.show(answer); !shown) return tl::unexpected(shown.error());
   return result;
 }
@@ -36,7 +37,8 @@ Result<Response> start_layer_job(const RouteContext& context, JobBook& book, con
   if (*known) return std::move(job_response(context, **known).with("Idempotency-Replayed", "true"));
   auto job = context.jobs.add(
       room->model().project_id,
-      [&metrics = context.metrics, room, make = std::move(make), author = request.author(), key = scoped_key(request),
+      [&metrics = context.metrics, room, make = std::move(make), author = request.author(),
+       key = scoped_key(request),
        print = fingerprint(request)](Progress& progress) -> Result<jobs::JobResult> {
         NewLayers layers(room, metrics, author);
         auto done = run(*room, layers, make, key, print, progress);
@@ -49,8 +51,8 @@ Result<Response> start_layer_job(const RouteContext& context, JobBook& book, con
   return job_response(context, *job);
 }
 
-Result<Response> repeat_layer_job(const RouteContext& context, JobBook& book, const Request& request,
-                                  const nlohmann::json& kept) {
+Result<Response> repeat_layer_job(const RouteContext& context, JobBook& book,
+                                  const Request& request, const nlohmann::json& kept) {
   auto known = book.find(request);
   if (!known) return tl::unexpected(known.error());
   if (*known) return job_response(context, **known);

@@ -13,16 +13,20 @@ namespace {
 
 constexpr int kHistoryToSearch = 500;  // journal rows looked at for the end of a stroke's batch
 
-Problem need_hello() { return {409, "Say hello first", "The first message of a connection is `hello`.", "op"}; }
+Problem need_hello() {
+  return {409, "Say hello first", "The first message of a connection is `hello`.", "op"};
+}
 
 std::string ref_of(const std::optional<std::string>& id) { return id.value_or(std::string()); }
 
 constexpr std::size_t kMostEditorsTold = 1000;  // in a message
 
-std::vector<protocol::RecordEditors> editor_messages(const std::vector<EditorBook::Entry>& entries) {
+std::vector<protocol::RecordEditors> editor_messages(
+    const std::vector<EditorBook::Entry>& entries) {
   std::vector<protocol::RecordEditors> messages;
   for (const auto& [record, editor] : entries) {
-    if (messages.empty() || messages.back().records.size() == kMostEditorsTold) messages.emplace_back();
+    if (messages.empty() || messages.back().records.size() == kMostEditorsTold)
+      messages.emplace_back();
     protocol::RecordEditor& told = messages.back().records.emplace_back();
     told.table = record.table;
     told.key = record.key;
@@ -37,7 +41,8 @@ std::vector<protocol::RecordEditors> editor_messages(const std::vector<EditorBoo
 
 LiveSession::LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room,
                          std::string project_slug, Principal principal, room::Portrait portrait,
-                         std::optional<protocol::PersonalView> personal_view, std::weak_ptr<LiveSocket> socket)
+                         std::optional<protocol::PersonalView> personal_view,
+                         std::weak_ptr<LiveSocket> socket)
     : shared_(std::move(shared)),
       room_(std::move(room)),
       project_slug_(std::move(project_slug)),
@@ -85,7 +90,8 @@ LiveSession::Work LiveSession::on_text(const std::string& text) {
 
 void LiveSession::on_binary() {
   ++shared_->metrics->messages_received;
-  refuse({415, "Binary message", "Clients send text messages: one JSON object each.", {}}, std::string());
+  refuse({415, "Binary message", "Clients send text messages: one JSON object each.", {}},
+         std::string());
 }
 
 void LiveSession::on_closed() {
@@ -95,7 +101,8 @@ void LiveSession::on_closed() {
     leaving = std::move(member_);
     pointer_.reset();
   }
-  // Not under our mutex, which those wait for who are told; leaving waits for the room's listeners, too.
+  // Not under our mutex, which those wait for who are told; leaving waits for the room's listeners,
+  // too.
   if (leaving) shared_->editors->leave(leaving->session(), tell_project());
 }
 
@@ -106,13 +113,17 @@ void LiveSession::tell(const protocol::ServerMessage& message) {
 // --- messages
 
 void LiveSession::on(const protocol::Hello& message) {
-  if (member()) return refuse({409, "Hello said already", "A connection says hello once.", "op"}, std::string());
-  if (message.accept &&
-      std::none_of(message.accept->begin(), message.accept->end(), [](const auto& codec) { return codec == "jpeg"; }))
-    return refuse({406, "No common picture format", "Pictures are sent as jpeg.", "accept"}, std::string());
+  if (member())
+    return refuse({409, "Hello said already", "A connection says hello once.", "op"},
+                  std::string());
+  if (message.accept && std::none_of(message.accept->begin(), message.accept->end(),
+                                     [](const auto& codec) { return codec == "jpeg"; }))
+    return refuse({406, "No common picture format", "Pictures are sent as jpeg.", "accept"},
+                  std::string());
 
   std::shared_ptr<room::Member> joined = room_->join(
-      author(), portrait_, this, [socket = socket_, metrics = shared_->metrics](const stream::FrameMessages& frame) {
+      author(), portrait_, this,
+      [socket = socket_, metrics = shared_->metrics](const stream::FrameMessages& frame) {
         ++metrics->frames_sent;
         for (const stream::FrameBytes& part : frame) metrics->frame_bytes_sent += part->size();
         if (auto open = socket.lock())
@@ -141,9 +152,10 @@ void LiveSession::on(const protocol::Hello& message) {
     std::lock_guard lock(mutex_);
     member_ = std::move(joined);
   }
-  shared_->editors->list(project_id(), [this](std::int64_t, const std::vector<EditorBook::Entry>& entries) {
-    for (const auto& each : editor_messages(entries)) send(each);
-  });
+  shared_->editors->list(project_id(),
+                         [this](std::int64_t, const std::vector<EditorBook::Entry>& entries) {
+                           for (const auto& each : editor_messages(entries)) send(each);
+                         });
   presence_changed();
 }
 
@@ -151,8 +163,8 @@ void LiveSession::on(const protocol::CameraUpdate& message) {
   if (!has_view(message.view_id, std::string())) return;
   const Camera camera = protocol::camera_of(message);
   cameras_[message.view_id] = camera;
-  member()->camera(static_cast<std::uint32_t>(message.view_id), static_cast<std::uint64_t>(message.seq), camera,
-                   message.moving);
+  member()->camera(static_cast<std::uint32_t>(message.view_id),
+                   static_cast<std::uint64_t>(message.seq), camera, message.moving);
 }
 
 void LiveSession::on(const protocol::LayersUpdate& message) {
@@ -162,14 +174,16 @@ void LiveSession::on(const protocol::LayersUpdate& message) {
   const auto background = background_of(message.background);
   if (!background) return refuse(background.error(), std::string());
   settings->background = *background;
-  if (auto done = member()->show(static_cast<std::uint32_t>(message.view_id), std::move(*settings)); !done)
+  if (auto done = member()->show(static_cast<std::uint32_t>(message.view_id), std::move(*settings));
+      !done)
     refuse(done.error(), std::string());
 }
 
 void LiveSession::on(const protocol::StrokeBegin& message) {
   if (!may_edit(message.id)) return;
   if (!names_tool(message) && !has_records(message.layer)) return begin(message);
-  work_ = [self = shared_from_this(), message] { self->begin(message); };  // to look for tool or record may block
+  // to look for tool or record may block
+  work_ = [self = shared_from_this(), message] { self->begin(message); };
 }
 
 void LiveSession::begin(const protocol::StrokeBegin& message) {
@@ -187,7 +201,8 @@ void LiveSession::begin(const protocol::StrokeBegin& message) {
 void LiveSession::on(const protocol::StrokeExtend& message) {
   if (!may_edit(message.id)) return;
   if (!shared_->strokes->lacks_start(owner_, message.stroke, message.n)) return paint(message);
-  // Only after a restart of the server: the batch before this one is in the journal, and reading it may block.
+  // Only after a restart of the server: the batch before this one is in the journal, and reading it
+  // may block.
   work_ = [self = shared_from_this(), message] {
     self->find_start(message);
     self->paint(message);
@@ -195,7 +210,8 @@ void LiveSession::on(const protocol::StrokeExtend& message) {
 }
 
 void LiveSession::on(const protocol::StrokeEnd& message) {
-  if (auto ended = shared_->strokes->end(owner_, message.stroke); !ended) refuse(ended.error(), message.id);
+  if (auto ended = shared_->strokes->end(owner_, message.stroke); !ended)
+    refuse(ended.error(), message.id);
 }
 
 void LiveSession::on(const protocol::EditRequest& message) {
@@ -207,10 +223,12 @@ void LiveSession::on(const protocol::EditRequest& message) {
 void LiveSession::edit(const protocol::EditRequest& message) {
   auto layer = layer_of(message.layer);
   if (!layer) return refuse(layer.error(), message.id);
-  auto request = edit_request(message.edit, *layer, room_->model(), message.id, author(), shared_->find_tool);
+  auto request =
+      edit_request(message.edit, *layer, room_->model(), message.id, author(), shared_->find_tool);
   if (!request) return refuse(request.error(), message.id);
   if (layer->table)
-    if (auto known = check_keys(*shared_->store, *layer, room::painted_by(*layer, *request)); !known)
+    if (auto known = check_keys(*shared_->store, *layer, room::painted_by(*layer, *request));
+        !known)
       return refuse(known.error(), message.id);
   submit(std::move(*request), std::nullopt);
 }
@@ -241,8 +259,9 @@ void LiveSession::on(const protocol::Redo& message) { step_through_history(messa
 // Somebody else may have the record: what all hear tells whose it is.
 void LiveSession::on(const protocol::RecordEdit& message) {
   if (!may_edit(ref_of(message.id))) return;
+  // to look for the record blocks
   if (message.editing)
-    work_ = [self = shared_from_this(), message] { self->edit_record(message); };  // to look for the record blocks
+    work_ = [self = shared_from_this(), message] { self->edit_record(message); };
   else
     shared_->editors->end({message.table, message.key}, member()->session(), tell_project());
 }
@@ -253,13 +272,14 @@ void LiveSession::edit_record(const protocol::RecordEdit& message) {
   const EditorBook::Record record{message.table, message.key};
   auto begun = shared_->check_record(project_id(), record);
   if (begun)
-    begun = shared_->editors->begin(project_id(), record, {here->session(), principal_.user}, message.take_over,
-                                    tell_project());
+    begun = shared_->editors->begin(project_id(), record, {here->session(), principal_.user},
+                                    message.take_over, tell_project());
   if (!begun) refuse(begun.error(), ref_of(message.id));
 }
 
 void LiveSession::on(const protocol::Ack& message) {
-  member()->ack(static_cast<std::uint32_t>(message.view_id), static_cast<std::uint64_t>(message.frame));
+  member()->ack(static_cast<std::uint32_t>(message.view_id),
+                static_cast<std::uint64_t>(message.frame));
 }
 
 void LiveSession::on(const protocol::PresenceUpdate& message) {
@@ -276,7 +296,8 @@ void LiveSession::on(const protocol::PresenceUpdate& message) {
   if (camera == cameras_.end()) return;  // nothing is drawn yet, so the pointer is over nothing
   {
     std::lock_guard lock(mutex_);
-    pointer_ = Pointer{camera->second, {(*message.pointer)[0], (*message.pointer)[1]}, message.radius};
+    pointer_ =
+        Pointer{camera->second, {(*message.pointer)[0], (*message.pointer)[1]}, message.radius};
     if (std::exchange(pointer_busy_, true)) return;
   }
   if (!shared_->queries->post([self = shared_from_this()] { self->resolve_pointer(); })) {
@@ -288,18 +309,23 @@ void LiveSession::on(const protocol::PresenceUpdate& message) {
 void LiveSession::on(const protocol::Pick& message) {
   std::optional<Camera> camera = message.camera;
   if (!camera)
-    if (auto found = cameras_.find(message.view_id); found != cameras_.end()) camera = found->second;
+    if (auto found = cameras_.find(message.view_id); found != cameras_.end())
+      camera = found->second;
   if (!camera)
-    return refuse({409, "No camera yet", "Send a camera for this view first, or give one with the pick.", "camera"},
+    return refuse({409, "No camera yet",
+                   "Send a camera for this view first, or give one with the pick.", "camera"},
                   ref_of(message.id));
-  const bool posted = shared_->queries->post([self = shared_from_this(), message, camera = *camera] {
-    std::vector<std::string> layers;
-    for (const auto& layer : self->room_->layers()) layers.push_back(layer.slug);
-    auto point = self->room_->pick(camera, message.x, message.y, layers);
-    if (!point) return self->refuse(point.error(), ref_of(message.id));
-    self->send(to_picked(*point, message.id));
-  });
-  if (!posted) refuse({503, "Too busy", "Too many questions wait for an answer; ask again.", {}}, ref_of(message.id));
+  const bool posted =
+      shared_->queries->post([self = shared_from_this(), message, camera = *camera] {
+        std::vector<std::string> layers;
+        for (const auto& layer : self->room_->layers()) layers.push_back(layer.slug);
+        auto point = self->room_->pick(camera, message.x, message.y, layers);
+        if (!point) return self->refuse(point.error(), ref_of(message.id));
+        self->send(to_picked(*point, message.id));
+      });
+  if (!posted)
+    refuse({503, "Too busy", "Too many questions wait for an answer; ask again.", {}},
+           ref_of(message.id));
 }
 
 // --- edits
@@ -317,13 +343,15 @@ void LiveSession::find_start(const protocol::StrokeExtend& message) {
   const auto tool = shared_->strokes->tool(owner_, message.stroke);
   if (!tool) return;
   auto page = shared_->store->history(tool->layer_id, kHistoryToSearch, 0);
-  if (!page)
-    return;  // the stroke starts with a gap rather than not at all; the edit itself will tell that the database is away
+  // the stroke starts with a gap rather than not at all; the edit itself will tell that the
+  // database is away
+  if (!page) return;
   for (const auto& row : page->rows) {
     if (row.stroke != message.stroke || row.user != principal_.user || !row.record.is_object() ||
         row.record.value("n", -1) != message.n - 1)
       continue;
-    if (auto end = end_of_path(row.record)) shared_->strokes->continue_from(owner_, message.stroke, message.n, *end);
+    if (auto end = end_of_path(row.record))
+      shared_->strokes->continue_from(owner_, message.stroke, message.n, *end);
     return;
   }
 }
@@ -342,7 +370,8 @@ void LiveSession::submit(room::EditRequest request, std::optional<BatchName> bat
         if (!answer.repeated) ++shared->metrics->edits_applied;
         if (auto self = weak.lock()) self->on_applied(id, batch, answer);
       },
-      [weak = weak_from_this(), shared = shared_, owner = owner_, id, batch](Result<room::EditAnswer> answer) {
+      [weak = weak_from_this(), shared = shared_, owner = owner_, id,
+       batch](Result<room::EditAnswer> answer) {
         if (answer && batch) shared->strokes->saved(owner, batch->stroke, batch->n);
         if (answer && !answer->repeated) ++shared->metrics->edits_saved;
         if (auto self = weak.lock()) self->on_saved(id, batch, answer);
@@ -352,7 +381,8 @@ void LiveSession::submit(room::EditRequest request, std::optional<BatchName> bat
 namespace {
 
 template <class Message>
-Message edit_message(const Uuid& id, bool is_batch, const Uuid& stroke, int n, const room::EditAnswer& answer) {
+Message edit_message(const Uuid& id, bool is_batch, const Uuid& stroke, int n,
+                     const room::EditAnswer& answer) {
   Message message;
   if (is_batch) {
     message.stroke = stroke;
@@ -380,13 +410,14 @@ Name named(room::Listener::LayerChange change) {
 
 }  // namespace
 
-void LiveSession::on_applied(const Uuid& id, const std::optional<BatchName>& batch, const room::EditAnswer& answer) {
+void LiveSession::on_applied(const Uuid& id, const std::optional<BatchName>& batch,
+                             const room::EditAnswer& answer) {
   {
     std::lock_guard lock(mutex_);
     if (auto found = own_edits_.find(id); found != own_edits_.end()) found->second = true;
   }
-  send(edit_message<protocol::Applied>(id, batch.has_value(), batch ? batch->stroke : Uuid{}, batch ? batch->n : 0,
-                                       answer));
+  send(edit_message<protocol::Applied>(id, batch.has_value(), batch ? batch->stroke : Uuid{},
+                                       batch ? batch->n : 0, answer));
 }
 
 void LiveSession::on_saved(const Uuid& id, const std::optional<BatchName>& batch,
@@ -438,7 +469,8 @@ void LiveSession::edit_applied(const Edit& edit) {
 void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Problem&) {
   // Others see the layer go back; the authors hear of each id by the edit's own answer.
   std::map<std::int64_t, std::int64_t> sequences;
-  for (const auto& edit : edits) sequences[edit.layer_id] = std::max(sequences[edit.layer_id], edit.sequence);
+  for (const auto& edit : edits)
+    sequences[edit.layer_id] = std::max(sequences[edit.layer_id], edit.sequence);
   for (const auto& [layer_id, sequence] : sequences) {
     protocol::LayerEvent event;
     event.event = protocol::LayerEventEvent::edited;
@@ -486,9 +518,11 @@ void LiveSession::presence_changed() {
     std::lock_guard lock(mutex_);
     if (std::exchange(presence_scheduled_, true)) return;
     const LiveLimits& limits = shared_->limits;
-    const auto due = presence_sent_ +
-                     limits.presence_every * std::max(people_told_, limits.presence_people) / limits.presence_people;
-    delay = std::max(delay, std::chrono::ceil<std::chrono::milliseconds>(due - std::chrono::steady_clock::now()));
+    const auto due = presence_sent_ + limits.presence_every *
+                                          std::max(people_told_, limits.presence_people) /
+                                          limits.presence_people;
+    delay = std::max(delay, std::chrono::ceil<std::chrono::milliseconds>(
+                                due - std::chrono::steady_clock::now()));
   }
   socket->run_after(delay, [weak = weak_from_this()] {
     if (auto self = weak.lock()) self->send_presence();
@@ -549,8 +583,10 @@ void LiveSession::resolve_pointer() {
       asked = *std::exchange(pointer_, std::nullopt);
       here = member_;
     }
-    auto point = room_->pick(asked.camera, asked.pixel.x, asked.pixel.y, {});  // where, not what is there
-    here->pointer(point && point->hit ? std::optional(room::Pointing{point->position, asked.radius}) : std::nullopt);
+    // where, not what is there
+    auto point = room_->pick(asked.camera, asked.pixel.x, asked.pixel.y, {});
+    here->pointer(point && point->hit ? std::optional(room::Pointing{point->position, asked.radius})
+                                      : std::nullopt);
   }
 }
 
@@ -558,22 +594,27 @@ void LiveSession::resolve_pointer() {
 
 bool LiveSession::may_edit(const std::string& ref) {
   if (principal_.role >= Role::annotator) return true;
-  refuse({403, "Not allowed", "Your role is viewer: you may look, but not paint. Ask for the role annotator.", {}},
+  refuse({403,
+          "Not allowed",
+          "Your role is viewer: you may look, but not paint. Ask for the role annotator.",
+          {}},
          ref);
   return false;
 }
 
 EditorBook::Tell LiveSession::tell_project() const {
-  return [sockets = shared_->sockets](std::int64_t project_id, const std::vector<EditorBook::Entry>& entries) {
+  return [sockets = shared_->sockets](std::int64_t project_id,
+                                      const std::vector<EditorBook::Entry>& entries) {
     for (const auto& message : editor_messages(entries)) sockets->tell_project(project_id, message);
   };
 }
 
 bool LiveSession::has_view(int view_id, const std::string& ref) {
   if (view_id < shared_->limits.views) return true;
-  refuse({422, "Too many views", "A connection has views 0 to " + std::to_string(shared_->limits.views - 1) + ".",
-          "view_id"},
-         ref);
+  refuse(
+      {422, "Too many views",
+       "A connection has views 0 to " + std::to_string(shared_->limits.views - 1) + ".", "view_id"},
+      ref);
   return false;
 }
 

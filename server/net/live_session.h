@@ -23,14 +23,16 @@
 
 namespace strata::net {
 
-// The connection as a session sees it. Thread-safe; nothing blocks. What is sent too fast for the other side closes it.
+// The connection as a session sees it. Thread-safe; nothing blocks. What is sent too fast for the
+// other side closes it.
 class LiveSocket {
  public:
   virtual ~LiveSocket() = default;
   virtual void send_text(std::string text) = 0;
   virtual void send_frame(stream::FrameBytes frame) = 0;
   virtual void close(int code, std::string reason) = 0;
-  virtual void run_after(std::chrono::milliseconds delay, std::function<void()> work) = 0;  // on the socket's strand
+  // on the socket's strand
+  virtual void run_after(std::chrono::milliseconds delay, std::function<void()> work) = 0;
 };
 
 struct LiveLimits {
@@ -40,13 +42,15 @@ struct LiveLimits {
   int max_refusals = 2000;  // more refused for speed than taken, then the connection is closed
   int views = room::Member::kMaxViews;
   std::chrono::milliseconds presence_every{50};
-  int presence_people = 8;  // more make it rarer: to one session goes the same in a second, however many are there
+  // more make it rarer: to one session goes the same in a second, however many are there
+  int presence_people = 8;
 };
 
 class LiveSockets;
 
 // 404 (`table`, `key`) for a record that the project has not. May block.
-using CheckRecord = std::function<Result<void>(std::int64_t project_id, const EditorBook::Record& record)>;
+using CheckRecord =
+    std::function<Result<void>(std::int64_t project_id, const EditorBook::Record& record)>;
 
 // What all sessions share; outlives the rooms' callbacks by being shared.
 struct LiveShared {
@@ -66,13 +70,14 @@ constexpr int kCloseGoingAway = 1001;
 constexpr int kClosePolicy = 1008;
 constexpr int kCloseTryAgain = 1013;
 
-// One person at one model: subprotocol strata.v1, see protocol/messages. `on_text` and `on_closed` are called on the socket's
-// strand; what the room tells arrives on the room's.
+// One person at one model: subprotocol strata.v1, see protocol/messages. `on_text` and `on_closed`
+// are called on the socket's strand; what the room tells arrives on the room's.
 class LiveSession final : public room::Listener, public std::enable_shared_from_this<LiveSession> {
  public:
   // `personal_view`: what they keep of how they show the layers (net/personal_view.h).
-  LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room, std::string project_slug,
-              Principal principal, room::Portrait portrait, std::optional<protocol::PersonalView> personal_view,
+  LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room,
+              std::string project_slug, Principal principal, room::Portrait portrait,
+              std::optional<protocol::PersonalView> personal_view,
               std::weak_ptr<LiveSocket> socket);
   ~LiveSession() override;
 
@@ -125,8 +130,10 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   template <class Message>
   void step_through_history(const Message& message);
   void submit(room::EditRequest request, std::optional<BatchName> batch);
-  void on_applied(const Uuid& id, const std::optional<BatchName>& batch, const room::EditAnswer& answer);
-  void on_saved(const Uuid& id, const std::optional<BatchName>& batch, const Result<room::EditAnswer>& answer);
+  void on_applied(const Uuid& id, const std::optional<BatchName>& batch,
+                  const room::EditAnswer& answer);
+  void on_saved(const Uuid& id, const std::optional<BatchName>& batch,
+                const Result<room::EditAnswer>& answer);
   Author author() const { return {principal_.user, principal_.role}; }
   EditorBook::Tell tell_project() const;
   bool may_edit(const std::string& ref);

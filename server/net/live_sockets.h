@@ -9,12 +9,13 @@
 
 namespace strata::net {
 
-// The open WebSockets: what concerns the site is told to all, a stopping server says goodbye to all, and who signs out is gone
-// everywhere. Thread-safe.
+// The open WebSockets: what concerns the site is told to all, a stopping server says goodbye to
+// all, and who signs out is gone everywhere. Thread-safe.
 class LiveSockets {
  public:
   // `secret`: what the person showed to come in.
-  void add(std::weak_ptr<LiveSocket> socket, std::weak_ptr<LiveSession> session, std::string secret) {
+  void add(std::weak_ptr<LiveSocket> socket, std::weak_ptr<LiveSession> session,
+           std::string secret) {
     std::lock_guard lock(mutex_);
     std::erase_if(entries_, [](const Entry& known) { return known.socket.expired(); });
     entries_.push_back({std::move(socket), std::move(session), std::move(secret)});
@@ -28,23 +29,30 @@ class LiveSockets {
     tell_if([&](const LiveSession& session) { return session.model_id() == model_id; }, message);
   }
   // Whoever of them sees what is seen so.
-  void tell_model(std::int64_t model_id, Visibility visibility, const protocol::ServerMessage& message) {
+  void tell_model(std::int64_t model_id, Visibility visibility,
+                  const protocol::ServerMessage& message) {
     tell_if(
-        [&](const LiveSession& session) { return session.model_id() == model_id && sees(session.role(), visibility); },
+        [&](const LiveSession& session) {
+          return session.model_id() == model_id && sees(session.role(), visibility);
+        },
         message);
   }
   // Those of them who see what is seen so, and nothing that fewer see.
   void tell_sight(std::int64_t model_id, Visibility sight, const protocol::ServerMessage& message) {
     tell_if(
-        [&](const LiveSession& session) { return session.model_id() == model_id && sight_of(session.role()) == sight; },
+        [&](const LiveSession& session) {
+          return session.model_id() == model_id && sight_of(session.role()) == sight;
+        },
         message);
   }
   // Whoever looks at a model of the project.
   void tell_project(std::int64_t project_id, const protocol::ServerMessage& message) {
-    tell_if([&](const LiveSession& session) { return session.project_id() == project_id; }, message);
+    tell_if([&](const LiveSession& session) { return session.project_id() == project_id; },
+            message);
   }
   // The same, of those who see columns that are seen so and no others.
-  void tell_project(std::int64_t project_id, Visibility sight, const protocol::ServerMessage& message) {
+  void tell_project(std::int64_t project_id, Visibility sight,
+                    const protocol::ServerMessage& message) {
     tell_if(
         [&](const LiveSession& session) {
           return session.project_id() == project_id && sight_of(session.role()) == sight;

@@ -48,7 +48,8 @@ Result<Response> polygon_contents(const MapFiles& files, const Model& model) {
 }
 
 void add_world(nlohmann::json& json, const query::WorldFile& world, int width, int height) {
-  json["world"] = {world.x_per_column, world.y_per_column, world.x_per_row, world.y_per_row, world.x, world.y};
+  json["world"] = {
+      world.x_per_column, world.y_per_column, world.x_per_row, world.y_per_row, world.x, world.y};
   glm::dvec2 low(0), high(0);
   for (int corner = 0; corner < 4; ++corner) {
     const double column = (corner & 1 ? width : 0) - 0.5, row = (corner & 2 ? height : 0) - 0.5;
@@ -60,13 +61,15 @@ void add_world(nlohmann::json& json, const query::WorldFile& world, int width, i
   json["bounds"] = {low.x, low.y, high.x, high.y};
 }
 
-Result<Response> picture_contents(const Request& request, const MapFiles& files, const Model& model, double tolerance,
-                                  ByteBudget& budget) {
+Result<Response> picture_contents(const Request& request, const MapFiles& files, const Model& model,
+                                  double tolerance, ByteBudget& budget) {
   const auto tiff = tiff_of(files, model);
   if (!tiff) return tl::unexpected(tiff.error());
   const auto held = budget_of(files, *tiff, budget);
   if (!held) return tl::unexpected(held.error());
-  nlohmann::json json{{"kind", "picture"}, {"format", *tiff ? "tiff" : "picture"}, {"colors", nlohmann::json::array()}};
+  nlohmann::json json{{"kind", "picture"},
+                      {"format", *tiff ? "tiff" : "picture"},
+                      {"colors", nlohmann::json::array()}};
   int width = *tiff ? (*tiff)->width : 0, height = *tiff ? (*tiff)->height : 0;
   if (!*tiff || (*tiff)->has_colors) {
     const auto picture = picture_of(files, *tiff);
@@ -74,8 +77,9 @@ Result<Response> picture_contents(const Request& request, const MapFiles& files,
     width = picture->width;
     height = picture->height;
     for (const query::FoundColor& found : query::find_colors(*picture, tolerance))
-      json["colors"].push_back(
-          {{"color", hex(found.color)}, {"share", found.share}, {"background", found.is_background}});
+      json["colors"].push_back({{"color", hex(found.color)},
+                                {"share", found.share},
+                                {"background", found.is_background}});
   }
   json["width"] = width;
   json["height"] = height;
@@ -89,21 +93,25 @@ Result<Response> picture_contents(const Request& request, const MapFiles& files,
   }
   const auto world = world_of(request, files, *tiff ? (*tiff)->world : std::nullopt);
   if (world) add_world(json, *world, width, height);
-  if (!world && world.error().field != "world") return tl::unexpected(world.error());  // a world file that is none
+  // a world file that is none
+  if (!world && world.error().field != "world") return tl::unexpected(world.error());
   return json_response(json);
 }
 
 }  // namespace
 
-Result<Response> map_contents(const RouteContext& context, ByteBudget& budget, const Request& request) {
+Result<Response> map_contents(const RouteContext& context, ByteBudget& budget,
+                              const Request& request) {
   const auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
-  const auto tolerance = number_of(request, "tolerance", kLeastTolerance, kMostTolerance, query::kUsualTolerance);
+  const auto tolerance =
+      number_of(request, "tolerance", kLeastTolerance, kMostTolerance, query::kUsualTolerance);
   if (!tolerance) return tl::unexpected(tolerance.error());
   const auto files = MapFiles::take(request, context.options.upload_dir);
   if (!files) return tl::unexpected(files.error());
   const bool is_picture = files->kind() == MapKind::picture || files->kind() == MapKind::tiff;
-  return is_picture ? picture_contents(request, *files, *model, *tolerance, budget) : polygon_contents(*files, *model);
+  return is_picture ? picture_contents(request, *files, *model, *tolerance, budget)
+                    : polygon_contents(*files, *model);
 }
 
 }  // namespace strata::net

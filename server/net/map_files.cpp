@@ -21,7 +21,9 @@ constexpr const char* kMapUpload =
     "a multipart/form-data form.";
 constexpr std::size_t kMostNamed = 5;
 
-std::string_view last_part(std::string_view name) { return name.substr(name.find_last_of("/\\") + 1); }
+std::string_view last_part(std::string_view name) {
+  return name.substr(name.find_last_of("/\\") + 1);
+}
 
 std::string ending_of(std::string_view name) {
   const auto dot = last_part(name).rfind('.');
@@ -34,9 +36,9 @@ std::string stem_of(std::string_view name) {
 }
 
 bool is_map_file(std::string_view name) {
-  static constexpr std::array<std::string_view, 16> kEndings{"shp", "dbf",  "prj", "cpg", "geojson", "json",
-                                                             "tif", "tiff", "png", "jpg", "jpeg",    "tfw",
-                                                             "pgw", "jgw",  "wld", "tifw"};
+  static constexpr std::array<std::string_view, 16> kEndings{
+      "shp", "dbf", "prj",  "cpg", "geojson", "json", "tif", "tiff",
+      "png", "jpg", "jpeg", "tfw", "pgw",     "jgw",  "wld", "tifw"};
   return std::find(kEndings.begin(), kEndings.end(), ending_of(name)) != kEndings.end();
 }
 
@@ -58,11 +60,14 @@ std::optional<MapKind> kind_of(const mesh::InputFiles::Entry& file, bool is_alon
   // What has no name that says it: JSON begins with an object, after blanks and a byte order mark.
   const std::string_view text = as_text(file.bytes);
   const auto begin = text.find_first_not_of("\xef\xbb\xbf \t\r\n");
-  const bool may_be_json = begin == std::string_view::npos || text[begin] == '{' || text[begin] == '[';
+  const bool may_be_json =
+      begin == std::string_view::npos || text[begin] == '{' || text[begin] == '[';
   return is_alone && !is_part && may_be_json ? std::optional(MapKind::geojson) : std::nullopt;
 }
 
-bool is_zip(std::span<const std::uint8_t> bytes) { return as_text(bytes).starts_with("PK\x03\x04"); }
+bool is_zip(std::span<const std::uint8_t> bytes) {
+  return as_text(bytes).starts_with("PK\x03\x04");
+}
 
 }  // namespace
 
@@ -104,19 +109,21 @@ Result<void> MapFiles::choose_main() {
   for (std::size_t i = 0; i < files_.size(); ++i)
     if (kind_of(files_[i], files_.size() == 1)) maps.push_back(i);
   if (maps.empty())
-    return fail(415, "No map",
-                files_.empty()
-                    ? "The zip holds no map: no .shp, .geojson, .tif, .png or .jpg."
-                    : std::string(last_part(files_.front().name)).substr(0, 100) +
-                          " is no map by itself. Send it with its .shp or picture; maps are GeoJSON, shapefiles, "
-                          "TIFF, PNG and JPEG. Convert a GeoPackage or KML to GeoJSON first (QGIS, ogr2ogr).",
-                "body");
+    return fail(
+        415, "No map",
+        files_.empty()
+            ? "The zip holds no map: no .shp, .geojson, .tif, .png or .jpg."
+            : std::string(last_part(files_.front().name)).substr(0, 100) +
+                  " is no map by itself. Send it with its .shp or picture; maps are GeoJSON, shapefiles, "
+                  "TIFF, PNG and JPEG. Convert a GeoPackage or KML to GeoJSON first (QGIS, ogr2ogr).",
+        "body");
   if (maps.size() > 1) {
     std::string named;
     for (std::size_t i = 0; i < std::min(maps.size(), kMostNamed); ++i)
       named += (i ? ", " : "") + std::string(last_part(files_[maps[i]].name)).substr(0, 100);
     return fail(422, "More than one map",
-                "Send one map at a time; these are several: " + named + (maps.size() > kMostNamed ? ", …" : "") + ".",
+                "Send one map at a time; these are several: " + named +
+                    (maps.size() > kMostNamed ? ", …" : "") + ".",
                 "body");
   }
   main_ = maps.front();
@@ -126,7 +133,8 @@ Result<void> MapFiles::choose_main() {
 
 std::string_view MapFiles::text() const { return as_text(main()); }
 
-std::span<const std::uint8_t> MapFiles::companion(std::initializer_list<std::string_view> endings) const {
+std::span<const std::uint8_t> MapFiles::companion(
+    std::initializer_list<std::string_view> endings) const {
   const mesh::InputFiles::Entry* other = nullptr;
   for (std::size_t i = 0; i < files_.size(); ++i) {
     const auto& file = files_[i];
@@ -147,7 +155,8 @@ std::string_view MapFiles::companion_text(std::initializer_list<std::string_view
 }
 
 nlohmann::json MapFiles::record() const {
-  if (files_.size() == 1) return {{"bytes", files_[0].bytes.size()}, {"sha256", sha256_hex(as_text(files_[0].bytes))}};
+  if (files_.size() == 1)
+    return {{"bytes", files_[0].bytes.size()}, {"sha256", sha256_hex(as_text(files_[0].bytes))}};
   nlohmann::json list = nlohmann::json::array();
   for (const auto& file : files_)
     list.push_back({{"name", std::string(last_part(file.name))},

@@ -10,7 +10,8 @@ constexpr std::size_t kMostNamed = 5;
 
 }  // namespace
 
-Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& layer, const std::set<double>& records) {
+Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& layer,
+                                               const std::set<double>& records) {
   if (!lists_values(layer.palette)) return std::nullopt;
   const auto statistics = room.statistics(layer.slug);
   if (!statistics) return tl::unexpected(statistics.error());
@@ -19,7 +20,8 @@ Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& la
   return query::KeyNames(layer.palette, taken);
 }
 
-Result<void> extend_legend(const Request& request, room::Room& room, const Layer& layer, const query::KeyNames& keys) {
+Result<void> extend_legend(const Request& request, room::Room& room, const Layer& layer,
+                           const query::KeyNames& keys) {
   if (!keys.has_changed()) return {};
   const auto& names = keys.added_names();
   if (request.principal->role < Role::curator) {
@@ -28,19 +30,20 @@ Result<void> extend_legend(const Request& request, room::Room& room, const Layer
     for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i)
       listed += (i ? ", " : "") + names[i].substr(0, kLongestName);
     return fail(403, "Names not in the legend",
-                "The legend of the layer lacks: " + listed + (names.size() > kMostNamed ? ", …" : "") +
-                    ". A curator may add them.",
+                "The legend of the layer lacks: " + listed +
+                    (names.size() > kMostNamed ? ", …" : "") + ". A curator may add them.",
                 "attribute");
   }
   for (const std::string& name : names)
     if (name.size() > kLongestName)
-      return fail(422, "Name too long", "\"" + name.substr(0, 60) + "…\" is too long for a legend.", "attribute");
+      return fail(422, "Name too long", "\"" + name.substr(0, 60) + "…\" is too long for a legend.",
+                  "attribute");
   Layer changed = layer;
   changed.palette = keys.extended();
   changed.palette_of_terms = false;
   if (changed.palette.points.size() > kMostPoints)
-    return fail(422, "Too many names", "A legend holds at most " + std::to_string(kMostPoints) + " entries.",
-                "attribute");
+    return fail(422, "Too many names",
+                "A legend holds at most " + std::to_string(kMostPoints) + " entries.", "attribute");
   if (auto done = room.update_layer(std::move(changed)); !done) return tl::unexpected(done.error());
   return {};
 }

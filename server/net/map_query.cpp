@@ -26,7 +26,8 @@ Result<MapAxis> axis_of(const Request& request) {
   const int axis = text.size() == 2 ? text[1] - 'x' : -1;
   if (axis < 0 || axis > 2 || (text[0] != '-' && text[0] != '+'))
     return fail(422, "Unknown direction",
-                "`along` is one of -x, +x, -y, +y, -z, +z: the way that the map is looked at.", "along");
+                "`along` is one of -x, +x, -y, +y, -z, +z: the way that the map is looked at.",
+                "along");
   MapAxis made{glm::dvec3(0), axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
   made.direction[axis] = text[0] == '-' ? -1 : 1;
   return made;
@@ -48,13 +49,15 @@ Result<query::WorldFile> world_of(const Request& request, const MapFiles& files,
 
 Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_degrees) {
   if (in_degrees)
-    return fail(422, "Coordinates in degrees",
-                "The map lies in longitude and latitude. Save it in the plane coordinates of the model" +
-                    (model.crs.empty() ? "." : ", " + model.crs + "."),
-                "body");
+    return fail(
+        422, "Coordinates in degrees",
+        "The map lies in longitude and latitude. Save it in the plane coordinates of the model" +
+            (model.crs.empty() ? "." : ", " + model.crs + "."),
+        "body");
   if (!crs.empty() && !model.crs.empty() && crs != model.crs)
     return fail(422, "Other coordinates",
-                "The map lies in " + crs + ", the model in " + model.crs + "; save the map in " + model.crs + ".",
+                "The map lies in " + crs + ", the model in " + model.crs + "; save the map in " +
+                    model.crs + ".",
                 "body");
   return {};
 }
@@ -63,14 +66,16 @@ Result<void> confirm_map_crs(const Request& request, const Model& model, const s
   const std::string asked = request.query_or("crs", {});
   for (const auto& [system, whose] : {std::pair(crs, "map"), std::pair(model.crs, "model")})
     if (!asked.empty() && !system.empty() && asked != system)
-      return fail(422, "Other coordinates", "`crs` says " + asked + ", but the " + whose + " lies in " + system + ".",
-                  "crs");
+      return fail(422, "Other coordinates",
+                  "`crs` says " + asked + ", but the " + whose + " lies in " + system + ".", "crs");
   if (!asked.empty() || crs.empty() || !model.crs.empty()) return {};
-  return fail(422, "Model without coordinate system",
-              "The map lies in " + crs +
-                  ", and the model has no coordinate system. If the model's coordinates are those of " + crs +
-                  ", repeat the request with `crs=" + crs + "`; a curator can also give the model this system.",
-              "crs");
+  return fail(
+      422, "Model without coordinate system",
+      "The map lies in " + crs +
+          ", and the model has no coordinate system. If the model's coordinates are those of " +
+          crs + ", repeat the request with `crs=" + crs +
+          "`; a curator can also give the model this system.",
+      "crs");
 }
 
 Result<std::uint32_t> bits_of(const Layer& layer, double value, const std::string& where) {

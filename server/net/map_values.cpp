@@ -21,30 +21,34 @@ Result<void> check_kind(const MapFiles& files, bool polygons) {
 }
 
 // The colours with their keys, as asked for or found.
-Result<std::vector<query::ColorKey>> color_keys(const std::string& asked, const Picture& picture, double tolerance) {
+Result<std::vector<query::ColorKey>> color_keys(const std::string& asked, const Picture& picture,
+                                                double tolerance) {
   if (asked != "auto") return query::parse_color_keys(asked, "colors");
   std::vector<query::ColorKey> keys;
   for (const query::FoundColor& found : query::find_colors(picture, tolerance))
     if (!found.is_background) keys.push_back({found.color, static_cast<double>(keys.size() + 1)});
-  if (keys.empty()) return fail(422, "No colours", "The picture holds nothing but its background.", "colors");
+  if (keys.empty())
+    return fail(422, "No colours", "The picture holds nothing but its background.", "colors");
   return keys;
 }
 
 Result<MapValues> values_by_color(const Request& request, MapPicture map, const MapTarget& target) {
-  const auto tolerance = number_of(request, "tolerance", kLeastTolerance, kMostTolerance, query::kUsualTolerance);
+  const auto tolerance =
+      number_of(request, "tolerance", kLeastTolerance, kMostTolerance, query::kUsualTolerance);
   if (!tolerance) return tl::unexpected(tolerance.error());
   const auto colors = color_keys(request.query.at("colors"), map.picture, *tolerance);
   if (!colors) return tl::unexpected(colors.error());
   auto keys = keys_of(target.room, target.layer, target.records);
   if (!keys) return tl::unexpected(keys.error());
   for (const query::ColorKey& key : *colors) {
-    if (auto bits = bits_of(target.layer, key.value, ""); !bits) return tl::unexpected(bits.error());
+    if (auto bits = bits_of(target.layer, key.value, ""); !bits)
+      return tl::unexpected(bits.error());
     if (*keys) (*keys)->color(key.value, key.color);
   }
   const auto placed = std::make_shared<query::PlacedPicture>(std::move(map.picture), map.world);
-  const auto bits_at =
-      [placed, held = map.held, type = target.layer.type,
-       by_color = query::ColorKeys(*colors, *tolerance)](const glm::dvec2& place) -> std::optional<std::uint32_t> {
+  const auto bits_at = [placed, held = map.held, type = target.layer.type,
+                        by_color = query::ColorKeys(*colors, *tolerance)](
+                           const glm::dvec2& place) -> std::optional<std::uint32_t> {
     const std::uint8_t* pixel = placed->pixel_at(place);
     const auto value = pixel ? by_color.value_of(pixel) : std::nullopt;
     if (!value) return std::nullopt;
@@ -55,10 +59,11 @@ Result<MapValues> values_by_color(const Request& request, MapPicture map, const 
 
 Result<MapValues> values_by_luminance(MapPicture map, const Layer& layer) {
   for (const double luminance : {0.0, 255.0})
-    if (auto bits = bits_of(layer, luminance, "Luminance is 0 to 255. "); !bits) return tl::unexpected(bits.error());
+    if (auto bits = bits_of(layer, luminance, "Luminance is 0 to 255. "); !bits)
+      return tl::unexpected(bits.error());
   const auto placed = std::make_shared<query::PlacedPicture>(std::move(map.picture), map.world);
-  const auto bits_at = [placed, held = map.held,
-                        type = layer.type](const glm::dvec2& place) -> std::optional<std::uint32_t> {
+  const auto bits_at = [placed, held = map.held, type = layer.type](
+                           const glm::dvec2& place) -> std::optional<std::uint32_t> {
     const auto luminance = placed->luminance_at(place);
     if (!luminance) return std::nullopt;
     return *encode_value(type, *luminance);
@@ -66,16 +71,18 @@ Result<MapValues> values_by_luminance(MapPicture map, const Layer& layer) {
   return MapValues{bits_at, std::nullopt};
 }
 
-// Every number of the band must fit, wherever it lies: what is painted must not depend on the shape.
+// Every number of the band must fit, wherever it lies: what is painted must not depend on the
+// shape.
 Result<void> convert(query::BandRaster& band, const Layer& layer) {
   for (std::size_t i = 0; i < band.bits.size(); ++i) {
     if (!band.valid[i]) continue;
     const auto bits = encode_value(layer.type, decode_value(band.type, band.bits[i]));
     if (!bits) {
       const auto width = static_cast<std::size_t>(band.width);
-      return tl::unexpected(bits_of(layer, decode_value(band.type, band.bits[i]),
-                                    "Pixel " + std::to_string(i % width) + ", " + std::to_string(i / width) + ": ")
-                                .error());
+      return tl::unexpected(
+          bits_of(layer, decode_value(band.type, band.bits[i]),
+                  "Pixel " + std::to_string(i % width) + ", " + std::to_string(i / width) + ": ")
+              .error());
     }
     band.bits[i] = *bits;
   }
@@ -83,12 +90,14 @@ Result<void> convert(query::BandRaster& band, const Layer& layer) {
 }
 
 Result<MapValues> values_of_band(const MapFiles& files, const query::MapTiff& tiff, int number,
-                                 const query::WorldFile& world, std::shared_ptr<const void> held, const Layer& layer) {
+                                 const query::WorldFile& world, std::shared_ptr<const void> held,
+                                 const Layer& layer) {
   auto read = query::decode_tiff_band(files.main(), tiff, number);
   if (!read) return tl::unexpected(read.error());
   if (auto fits = convert(*read, layer); !fits) return tl::unexpected(fits.error());
   const auto band = std::make_shared<const query::BandRaster>(std::move(*read));
-  const auto bits_at = [band, held = std::move(held), finder = query::PixelFinder(band->width, band->height, world)](
+  const auto bits_at = [band, held = std::move(held),
+                        finder = query::PixelFinder(band->width, band->height, world)](
                            const glm::dvec2& place) -> std::optional<std::uint32_t> {
     const auto pixel = finder.pixel_at(place);
     if (!pixel || !band->valid[*pixel]) return std::nullopt;
@@ -105,23 +114,27 @@ std::uint64_t pixels(int width, int height) {
 
 Result<query::FeatureMap> features_of(const MapFiles& files, const Model& model) {
   if (auto good = check_kind(files, true); !good) return tl::unexpected(good.error());
-  auto map = files.kind() == MapKind::geojson
-                 ? query::parse_geojson(files.text())
-                 : query::parse_shapefile({files.main(), files.companion({"dbf"}), files.companion_text({"cpg"}),
-                                           files.companion_text({"prj"})});
+  auto map =
+      files.kind() == MapKind::geojson
+          ? query::parse_geojson(files.text())
+          : query::parse_shapefile({files.main(), files.companion({"dbf"}),
+                                    files.companion_text({"cpg"}), files.companion_text({"prj"})});
   if (!map) return map;
-  if (auto here = check_map_crs(model, map->crs, map->in_degrees); !here) return tl::unexpected(here.error());
+  if (auto here = check_map_crs(model, map->crs, map->in_degrees); !here)
+    return tl::unexpected(here.error());
   return map;
 }
 
-Result<MapValues> polygon_values(const Request& request, const MapFiles& files, const MapTarget& target, ByteBudget&) {
+Result<MapValues> polygon_values(const Request& request, const MapFiles& files,
+                                 const MapTarget& target, ByteBudget&) {
   query::MapChoice choice;
   choice.attribute = request.query_or("attribute", {});
   choice.names = request.query_or("names", {});
   if (choice.attribute.empty() == !request.query.contains("value"))
     return fail(422, "Parameter missing", "Give exactly one of `value` and `attribute`.", "value");
   if (!choice.names.empty() && choice.attribute.empty())
-    return fail(422, "Parameter missing", "`names` are those of the numbers in `attribute`.", "names");
+    return fail(422, "Parameter missing", "`names` are those of the numbers in `attribute`.",
+                "names");
   const auto value = number_of(request, "value", -kLargestFloat, kLargestFloat, 0.0);
   if (!value) return tl::unexpected(value.error());
   choice.value = *value;
@@ -138,9 +151,11 @@ Result<MapValues> polygon_values(const Request& request, const MapFiles& files, 
   auto map = query::flat_map(*features, choice, keys ? &*keys : nullptr);
   if (!map) return tl::unexpected(map.error());
   for (const query::MapArea& area : map->areas())
-    if (auto bits = bits_of(target.layer, area.value, ""); !bits) return tl::unexpected(bits.error());
-  const auto bits_at = [map = std::make_shared<const query::FlatMap>(std::move(*map)),
-                        type = target.layer.type](const glm::dvec2& place) -> std::optional<std::uint32_t> {
+    if (auto bits = bits_of(target.layer, area.value, ""); !bits)
+      return tl::unexpected(bits.error());
+  const auto bits_at =
+      [map = std::make_shared<const query::FlatMap>(std::move(*map)),
+       type = target.layer.type](const glm::dvec2& place) -> std::optional<std::uint32_t> {
     const auto found = map->value_at(place);
     if (!found) return std::nullopt;
     return *encode_value(type, *found);
@@ -153,15 +168,18 @@ Result<std::optional<query::MapTiff>> tiff_of(const MapFiles& files, const Model
   if (files.kind() != MapKind::tiff) return std::nullopt;
   auto tiff = query::inspect_tiff(files.main(), kLargestMapSide);
   if (!tiff) return tl::unexpected(tiff.error());
-  if (auto here = check_map_crs(model, tiff->crs, tiff->in_degrees); !here) return tl::unexpected(here.error());
+  if (auto here = check_map_crs(model, tiff->crs, tiff->in_degrees); !here)
+    return tl::unexpected(here.error());
   return std::optional(std::move(*tiff));
 }
 
 Result<Picture> picture_of(const MapFiles& files, const std::optional<query::MapTiff>& tiff) {
-  return tiff ? query::decode_tiff_picture(files.main(), *tiff) : decode_picture(files.main(), kLargestMapSide);
+  return tiff ? query::decode_tiff_picture(files.main(), *tiff)
+              : decode_picture(files.main(), kLargestMapSide);
 }
 
-Result<std::shared_ptr<const void>> budget_of(const MapFiles& files, const std::optional<query::MapTiff>& tiff,
+Result<std::shared_ptr<const void>> budget_of(const MapFiles& files,
+                                              const std::optional<query::MapTiff>& tiff,
                                               ByteBudget& budget) {
   // Twice four bytes a pixel while a TIFF is decoded.
   if (tiff) return budget.take(8 * pixels(tiff->width, tiff->height));
@@ -170,10 +188,12 @@ Result<std::shared_ptr<const void>> budget_of(const MapFiles& files, const std::
   return budget.take(4 * pixels(info->width, info->height));
 }
 
-Result<MapPicture> map_picture(const Request& request, const MapFiles& files, const Model& model, ByteBudget& budget) {
+Result<MapPicture> map_picture(const Request& request, const MapFiles& files, const Model& model,
+                               ByteBudget& budget) {
   const auto tiff = tiff_of(files, model);
   if (!tiff) return tl::unexpected(tiff.error());
-  if (auto confirmed = confirm_map_crs(request, model, *tiff ? (*tiff)->crs : std::string()); !confirmed)
+  if (auto confirmed = confirm_map_crs(request, model, *tiff ? (*tiff)->crs : std::string());
+      !confirmed)
     return tl::unexpected(confirmed.error());
   const auto world = world_of(request, files, *tiff ? (*tiff)->world : std::nullopt);
   if (!world) return tl::unexpected(world.error());
@@ -184,14 +204,16 @@ Result<MapPicture> map_picture(const Request& request, const MapFiles& files, co
   return MapPicture{std::move(*picture), *world, std::move(*held)};
 }
 
-Result<MapValues> picture_values(const Request& request, const MapFiles& files, const MapTarget& target,
-                                 ByteBudget& budget) {
+Result<MapValues> picture_values(const Request& request, const MapFiles& files,
+                                 const MapTarget& target, ByteBudget& budget) {
   const bool by_color = request.query.contains("colors");
   if (by_color && request.query.contains("band"))
     return fail(422, "Too many parameters", "Give `band` or `colors`, not both.", "colors");
   const auto tiff = tiff_of(files, target.room.model());
   if (!tiff) return tl::unexpected(tiff.error());
-  if (auto confirmed = confirm_map_crs(request, target.room.model(), *tiff ? (*tiff)->crs : std::string()); !confirmed)
+  if (auto confirmed =
+          confirm_map_crs(request, target.room.model(), *tiff ? (*tiff)->crs : std::string());
+      !confirmed)
     return tl::unexpected(confirmed.error());
   const bool has_one_band = *tiff && (*tiff)->bands == 1 && (*tiff)->has_numbers;
   const bool by_band = request.query.contains("band") || (has_one_band && !by_color);
@@ -208,7 +230,8 @@ Result<MapValues> picture_values(const Request& request, const MapFiles& files, 
   if (!world) return tl::unexpected(world.error());
   auto held = budget_of(files, *tiff, budget);
   if (!held) return tl::unexpected(held.error());
-  return values_of_band(files, **tiff, static_cast<int>(*band), *world, std::move(*held), target.layer);
+  return values_of_band(files, **tiff, static_cast<int>(*band), *world, std::move(*held),
+                        target.layer);
 }
 
 }  // namespace strata::net

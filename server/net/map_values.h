@@ -13,7 +13,8 @@ namespace strata::net {
 
 // A map as numbers of one layer.
 struct MapValues {
-  std::function<std::optional<std::uint32_t>(const glm::dvec2& place)> bits_at;  // of the layer's type
+  // of the layer's type
+  std::function<std::optional<std::uint32_t>(const glm::dvec2& place)> bits_at;
   std::optional<query::KeyNames> keys;  // of a categorical legend, with what the map adds
 };
 
@@ -24,14 +25,15 @@ struct MapTarget {
 };
 
 // GeoJSON or a shapefile; `value`, `attribute` and `names` of the query.
-Result<MapValues> polygon_values(const Request& request, const MapFiles& files, const MapTarget& target,
-                                 ByteBudget& budget);
+Result<MapValues> polygon_values(const Request& request, const MapFiles& files,
+                                 const MapTarget& target, ByteBudget& budget);
 // Whatever file the polygons are in, checked against the model's coordinates.
 Result<query::FeatureMap> features_of(const MapFiles& files, const Model& model);
 
-// PNG, JPEG or TIFF; `world`, and `colors` with `tolerance`, or `band`, or neither: a TIFF's only band, else the luminance.
-Result<MapValues> picture_values(const Request& request, const MapFiles& files, const MapTarget& target,
-                                 ByteBudget& budget);
+// PNG, JPEG or TIFF; `world`, and `colors` with `tolerance`, or `band`, or neither: a TIFF's only
+// band, else the luminance.
+Result<MapValues> picture_values(const Request& request, const MapFiles& files,
+                                 const MapTarget& target, ByteBudget& budget);
 
 // A picture in colours with its place.
 struct MapPicture {
@@ -43,10 +45,12 @@ struct MapPicture {
 Result<std::optional<query::MapTiff>> tiff_of(const MapFiles& files, const Model& model);
 Result<Picture> picture_of(const MapFiles& files, const std::optional<query::MapTiff>& tiff);
 // Takes its share of the budget before anything is decoded.
-Result<std::shared_ptr<const void>> budget_of(const MapFiles& files, const std::optional<query::MapTiff>& tiff,
+Result<std::shared_ptr<const void>> budget_of(const MapFiles& files,
+                                              const std::optional<query::MapTiff>& tiff,
                                               ByteBudget& budget);
 // The whole of it, as `world_of` finds its place. Refused (415): polygons.
-Result<MapPicture> map_picture(const Request& request, const MapFiles& files, const Model& model, ByteBudget& budget);
+Result<MapPicture> map_picture(const Request& request, const MapFiles& files, const Model& model,
+                               ByteBudget& budget);
 
 constexpr double kLeastTolerance = 1, kMostTolerance = 60;  // of colours
 

@@ -10,8 +10,8 @@ namespace strata::net {
 namespace {
 
 Result<MarkTransfer> bring_marks_of(const RouteContext& context, std::int64_t table_id,
-                                    const jobs::TransferTarget& target, const jobs::TransferRequest& request,
-                                    const std::string& user) {
+                                    const jobs::TransferTarget& target,
+                                    const jobs::TransferRequest& request, const std::string& user) {
   MarkTransfer brought;
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
@@ -25,7 +25,9 @@ Result<MarkTransfer> bring_marks_of(const RouteContext& context, std::int64_t ta
     for (const Column& column : page->table.columns) {
       if (!holds_marks(column.kind)) continue;
       auto marks = marks_of(record, column);
-      if (std::ranges::any_of(marks, [&](const Mark& mark) { return mark.model == target.model.id; })) continue;
+      if (std::ranges::any_of(marks,
+                              [&](const Mark& mark) { return mark.model == target.model.id; }))
+        continue;
       std::vector<Mark> there;
       std::ranges::copy_if(marks, std::back_inserter(there),
                            [&](const Mark& mark) { return mark.model == request.source.id; });

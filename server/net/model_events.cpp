@@ -6,7 +6,8 @@
 namespace strata::net {
 namespace {
 
-// A transaction has the time at which it began, and is seen when it ends: one that took no longer than this is told.
+// A transaction has the time at which it began, and is seen when it ends: one that took no longer
+// than this is told.
 constexpr std::chrono::microseconds kLongest = std::chrono::seconds(30);
 constexpr std::chrono::seconds kCheckEvery{10};
 constexpr int kFirstPage = 20;  // mostly nothing is new
@@ -14,7 +15,8 @@ constexpr int kPage = 200;
 constexpr int kMostPages = 51;  // of what a reader missed who comes back
 
 std::int64_t microseconds(const store::Activity& line) {
-  return std::chrono::duration_cast<std::chrono::microseconds>(line.time.time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::microseconds>(line.time.time_since_epoch())
+      .count();
 }
 
 }  // namespace
@@ -36,7 +38,8 @@ bool ModelEvents::is_still_welcome() {
   checked_ = now;
   const auto model = context_.store.model(std::to_string(model_));
   if (!model) return model.error().status != 404;
-  return model->project_id == project_ && net::is_still_welcome(context_.auth, secret_, project_, role_);
+  return model->project_id == project_ &&
+         net::is_still_welcome(context_.auth, secret_, project_, role_);
 }
 
 // Newest first; nothing: the database is away.
@@ -69,19 +72,23 @@ std::string ModelEvents::tell(const Lines& lines) {
   std::string text;
   for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
     const std::int64_t time = microseconds(*line);
-    if (const auto told = told_us_.find(line->id); told != told_us_.end() && told->second >= time) continue;
+    if (const auto told = told_us_.find(line->id); told != told_us_.end() && told->second >= time)
+      continue;
     told_us_[line->id] = time;
     if (time >= last_->time_us) last_ = store::ActivityPlace{time, line->id};
-    text += "event: " + line->kind + "\nid: " + to_text(*last_) + "\ndata: " + to_json(*line).dump() + "\n\n";
+    text += "event: " + line->kind + "\nid: " + to_text(*last_) +
+            "\ndata: " + to_json(*line).dump() + "\n\n";
   }
-  std::erase_if(told_us_, [&](const auto& entry) { return entry.second + 2 * kLongest.count() < last_->time_us; });
+  std::erase_if(told_us_, [&](const auto& entry) {
+    return entry.second + 2 * kLongest.count() < last_->time_us;
+  });
   return text;
 }
 
 std::optional<std::string> ModelEvents::next() {
   if (!is_still_welcome()) return std::nullopt;
-  const auto now =
-      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch());
+  const auto now = std::chrono::duration_cast<std::chrono::microseconds>(
+      std::chrono::system_clock::now().time_since_epoch());
   const auto lines = lines_since((last_ ? last_->time_us : now.count()) - kLongest.count());
   if (!lines) return std::string();
   if (last_) return tell(*lines);

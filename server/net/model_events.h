@@ -10,15 +10,17 @@
 
 namespace strata::net {
 
-// What happens to a model, for scripts: lines of the activity as they are made or go on, once they are durable. Each has the place in time
-// that a reader who comes back names (Last-Event-ID); what was said near it may come twice.
+// What happens to a model, for scripts: lines of the activity as they are made or go on, once they
+// are durable. Each has the place in time that a reader who comes back names (Last-Event-ID); what
+// was said near it may come twice.
 class ModelEvents {
  public:
   // From `after` on, or from now.
   ModelEvents(const RouteContext& context, const Request& request, const Model& model,
               const std::optional<store::ActivityPlace>& after);
 
-  // As `text/event-stream`, empty where nothing is new. Nothing: who listens may no longer. Asks the database: on a worker.
+  // As `text/event-stream`, empty where nothing is new. Nothing: who listens may no longer. Asks
+  // the database: on a worker.
   std::optional<std::string> next();
 
  private:
@@ -32,9 +34,11 @@ class ModelEvents {
   const std::string secret_;
   const Role role_;
   const std::int64_t project_, model_;
-  std::optional<store::ActivityPlace> last_;      // up to where is known; nothing: nobody has asked yet
+  // up to where is known; nothing: nobody has asked yet
+  std::optional<store::ActivityPlace> last_;
   std::map<std::int64_t, std::int64_t> told_us_;  // lines by id, as they were told: their time
-  std::chrono::steady_clock::time_point checked_ = std::chrono::steady_clock::now();  // that they are welcome
+  // that they are welcome
+  std::chrono::steady_clock::time_point checked_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace strata::net

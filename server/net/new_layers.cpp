@@ -13,15 +13,17 @@ constexpr int kMostTries = 5;
 Result<Layer> NewLayers::add(Layer layer, const std::function<Result<Layer>(const Layer&)>& fill) {
   const bool visible = layer.visible;
   layer.visible = false;
-  auto created = room_->create_layer(std::move(layer), {.key = {}, .make = {}, .user = author_.user});
+  auto created =
+      room_->create_layer(std::move(layer), {.key = {}, .make = {}, .user = author_.user});
   if (!created) return created;
   made_.push_back({*created, visible});
   return fill(*created);
 }
 
 Result<Layer> NewLayers::add(Layer layer, TileMap tiles, nlohmann::json recipe) {
-  return add(std::move(layer),
-             [&](const Layer& created) { return paint(created, std::move(tiles), std::move(recipe)); });
+  return add(std::move(layer), [&](const Layer& created) {
+    return paint(created, std::move(tiles), std::move(recipe));
+  });
 }
 
 Result<Layer> NewLayers::paint(const Layer& created, TileMap tiles, nlohmann::json recipe) {
@@ -30,7 +32,8 @@ Result<Layer> NewLayers::paint(const Layer& created, TileMap tiles, nlohmann::js
   edit.edit = room::ImportEdit{.tiles = std::move(tiles), .computed = true};
   auto painted = room::await<room::EditAnswer>([&](auto saved) {
     room_->edit(
-        std::move(edit), [this](const room::EditAnswer&) { ++metrics_.edits_applied; }, std::move(saved));
+        std::move(edit), [this](const room::EditAnswer&) { ++metrics_.edits_applied; },
+        std::move(saved));
   });
   if (!painted) {
     ++metrics_.edits_refused;

@@ -4,8 +4,8 @@
 
 namespace strata::net {
 
-// Layers that a job makes with their content. They are hidden until they are painted, so that nobody sees them half made; taken
-// away again where that fails. Used on the job's thread; blocks.
+// Layers that a job makes with their content. They are hidden until they are painted, so that
+// nobody sees them half made; taken away again where that fails. Used on the job's thread; blocks.
 class NewLayers {
  public:
   NewLayers(std::shared_ptr<room::Room> room, Metrics& metrics, Author author)

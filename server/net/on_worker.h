@@ -14,18 +14,21 @@ namespace strata::net {
 
 using Work = std::function<void(const Respond&)>;
 
-// Runs `work(respond)` on a worker and comes back to `executor` with the answer; 503 when too much waits. A question's work runs where
-// questions are answered (net/question_desk.h), and not at all when it is over before its turn came.
-// Give it a named function, not a lambda written into the co_await: GCC 12 destroys captures of such temporaries twice.
+// Runs `work(respond)` on a worker and comes back to `executor` with the answer; 503 when too much
+// waits. A question's work runs where questions are answered (net/question_desk.h), and not at all
+// when it is over before its turn came. Give it a named function, not a lambda written into the
+// co_await: GCC 12 destroys captures of such temporaries twice.
 template <class Executor>
-boost::asio::awaitable<Response> on_worker(const std::shared_ptr<Connections>& connections, Executor executor,
-                                           const Work& work, const std::shared_ptr<Question>& question) {
+boost::asio::awaitable<Response> on_worker(const std::shared_ptr<Connections>& connections,
+                                           Executor executor, const Work& work,
+                                           const std::shared_ptr<Question>& question) {
   namespace asio = boost::asio;
   auto initiate = [connections, executor, work, question](auto handler) {
     auto waiting = std::make_shared<decltype(handler)>(std::move(handler));
     Respond respond([io = connections->io.lock(), executor, waiting](Response response) {
-      asio::post(executor,
-                 [waiting, response = std::move(response)]() mutable { std::move (*waiting)(std::move(response)); });
+      asio::post(executor, [waiting, response = std::move(response)]() mutable {
+        std::move (*waiting)(std::move(response));
+      });
     });
     if (question) {
       auto posted = connections->app.questions().post(question, [work, respond, question] {
@@ -39,12 +42,13 @@ boost::asio::awaitable<Response> on_worker(const std::shared_ptr<Connections>& c
     if (!workers.post([work, respond] { work(respond); }))
       respond(Problem{503, "Too busy", "Too many requests wait; ask again in a moment.", {}});
   };
-  return asio::async_initiate<const asio::use_awaitable_t<>, void(Response)>(std::move(initiate), asio::use_awaitable);
+  return asio::async_initiate<const asio::use_awaitable_t<>, void(Response)>(std::move(initiate),
+                                                                             asio::use_awaitable);
 }
 
 template <class Executor>
-boost::asio::awaitable<Response> on_worker(const std::shared_ptr<Connections>& connections, Executor executor,
-                                           const Work& work) {
+boost::asio::awaitable<Response> on_worker(const std::shared_ptr<Connections>& connections,
+                                           Executor executor, const Work& work) {
   return on_worker(connections, executor, work, std::shared_ptr<Question>());
 }
 

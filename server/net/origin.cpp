@@ -17,14 +17,15 @@ std::string cookie_value(std::string_view header, std::string_view name) {
     const auto equals = pair.find('=');
     if (equals == std::string_view::npos || pair.substr(0, equals) != name) continue;
     std::string_view value = pair.substr(equals + 1);
-    if (value.size() >= 2 && value.front() == '"' && value.back() == '"') value = value.substr(1, value.size() - 2);
+    if (value.size() >= 2 && value.front() == '"' && value.back() == '"')
+      value = value.substr(1, value.size() - 2);
     return std::string(value);
   }
   return {};
 }
 
-bool is_own_origin(std::string_view origin, std::string_view host, const std::vector<std::string>& allowed,
-                   bool by_https) {
+bool is_own_origin(std::string_view origin, std::string_view host,
+                   const std::vector<std::string>& allowed, bool by_https) {
   const std::string asked = to_lower(origin);
   for (const auto& entry : allowed) {
     std::string known = to_lower(entry);
@@ -32,7 +33,8 @@ bool is_own_origin(std::string_view origin, std::string_view host, const std::ve
     if (asked == known) return true;
   }
   const std::string_view scheme = by_https ? "https://" : "http://";
-  return asked.starts_with(scheme) && !host.empty() && asked.substr(scheme.size()) == to_lower(host);
+  return asked.starts_with(scheme) && !host.empty() &&
+         asked.substr(scheme.size()) == to_lower(host);
 }
 
 namespace {
@@ -41,7 +43,8 @@ namespace {
 std::string_view without_port(std::string_view host) {
   if (host.starts_with('[')) {
     const auto end = host.find(']');
-    const bool is_whole = end != std::string_view::npos && (end + 1 == host.size() || host[end + 1] == ':');
+    const bool is_whole =
+        end != std::string_view::npos && (end + 1 == host.size() || host[end + 1] == ':');
     return is_whole ? host.substr(0, end + 1) : host;
   }
   return host.substr(0, host.find(':'));
@@ -51,15 +54,18 @@ bool is_address(std::string_view host) {
   if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
   const std::string text(host);
   in6_addr address{};
-  return inet_pton(AF_INET, text.c_str(), &address) == 1 || inet_pton(AF_INET6, text.c_str(), &address) == 1;
+  return inet_pton(AF_INET, text.c_str(), &address) == 1 ||
+         inet_pton(AF_INET6, text.c_str(), &address) == 1;
 }
 
 }  // namespace
 
-std::vector<std::string> own_names(const std::string& listen_host, const std::vector<std::string>& allowed_origins) {
+std::vector<std::string> own_names(const std::string& listen_host,
+                                   const std::vector<std::string>& allowed_origins) {
   std::vector<std::string> names = {"localhost", to_lower(listen_host)};
   char machine[256] = {};
-  if (gethostname(machine, sizeof machine - 1) == 0 && machine[0] != 0) names.push_back(to_lower(machine));
+  if (gethostname(machine, sizeof machine - 1) == 0 && machine[0] != 0)
+    names.push_back(to_lower(machine));
   for (const std::string& origin : allowed_origins) {
     const auto scheme = origin.find("://");
     std::string host = to_lower(scheme == std::string::npos ? origin : origin.substr(scheme + 3));
@@ -75,16 +81,18 @@ Result<void> check_host(const Request& request, const std::vector<std::string>& 
   std::string host = to_lower(without_port(sent));
   if (host.ends_with('.')) host.pop_back();
   if (is_address(host) || std::ranges::find(own_names, host) != own_names.end()) return {};
-  return fail(421, "Unknown host name",
-              "This server does not know the name by which it was asked. Whoever runs it adds the name with --origin "
-              "(STRATA_ORIGIN), for example --origin https://museum.example.",
-              "Host");
+  return fail(
+      421, "Unknown host name",
+      "This server does not know the name by which it was asked. Whoever runs it adds the name with --origin "
+      "(STRATA_ORIGIN), for example --origin https://museum.example.",
+      "Host");
 }
 
 namespace {
 
 bool is_own(const Request& request, const std::vector<std::string>& allowed) {
-  return is_own_origin(request.header("origin"), request.header("host"), allowed, came_by_https(request));
+  return is_own_origin(request.header("origin"), request.header("host"), allowed,
+                       came_by_https(request));
 }
 
 }  // namespace
@@ -102,24 +110,31 @@ Result<void> check_same_origin(const Request& request, const std::vector<std::st
         "Origin");
   }
   if (request.header("sec-fetch-site") == "same-origin") return {};
-  return fail(403, "Origin missing",
-              "Changes signed by a cookie need an Origin header of this server. Scripts use a bearer token.", "Origin");
+  return fail(
+      403, "Origin missing",
+      "Changes signed by a cookie need an Origin header of this server. Scripts use a bearer token.",
+      "Origin");
 }
 
 Result<void> check_upgrade_origin(const Request& request, const std::vector<std::string>& allowed) {
   const auto origin = request.header("origin");
   if (origin.empty()) {
     if (request.principal && !request.principal->by_cookie) return {};
-    return fail(403, "Origin missing",
-                "A connection signed by a cookie needs an Origin header of this server. Scripts use a bearer token.",
-                "Origin");
+    return fail(
+        403, "Origin missing",
+        "A connection signed by a cookie needs an Origin header of this server. Scripts use a bearer token.",
+        "Origin");
   }
   if (is_own(request, allowed)) return {};
-  return fail(403, "Foreign origin",
-              "Live connections are taken from this server's own pages only. Add the origin with --origin.", "Origin");
+  return fail(
+      403, "Foreign origin",
+      "Live connections are taken from this server's own pages only. Add the origin with --origin.",
+      "Origin");
 }
 
-bool came_by_https(const Request& request) { return request.by_tls || request.header("x-forwarded-proto") == "https"; }
+bool came_by_https(const Request& request) {
+  return request.by_tls || request.header("x-forwarded-proto") == "https";
+}
 
 bool needs_secure_cookie(const Request& request) {
   return came_by_https(request) || request.header("origin").starts_with("https://");

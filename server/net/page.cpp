@@ -14,9 +14,9 @@ constexpr std::size_t kLongestCursor = 6000;  // beside the rest of a head of 8 
 // RFC 4648, section 5, without padding.
 std::string base64url(std::string_view bytes) {
   std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int size =
-      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                      reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
+  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                                   reinterpret_cast<const unsigned char*>(bytes.data()),
+                                   static_cast<int>(bytes.size()));
   text.resize(static_cast<std::size_t>(size));
   while (text.ends_with('=')) text.pop_back();
   std::ranges::replace(text, '+', '-');
@@ -32,10 +32,12 @@ std::optional<std::string> bytes_of_base64url(std::string text) {
   text.append(missing, '=');
   std::string bytes(3 * text.size() / 4 + 1, '\0');
   const int size = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
-                                   reinterpret_cast<const unsigned char*>(text.data()), static_cast<int>(text.size()));
+                                   reinterpret_cast<const unsigned char*>(text.data()),
+                                   static_cast<int>(text.size()));
   if (size < static_cast<int>(missing)) return std::nullopt;
   bytes.resize(static_cast<std::size_t>(size) - missing);
-  return base64url(bytes) == sent ? std::optional(bytes) : std::nullopt;  // one text alone stands for the bytes
+  // one text alone stands for the bytes
+  return base64url(bytes) == sent ? std::optional(bytes) : std::nullopt;
 }
 
 bool is_of_page(const std::string& parameter) {
@@ -45,14 +47,16 @@ bool is_of_page(const std::string& parameter) {
 // Which list it is, in which order and with which filters.
 std::string list_mark(const Request& request) {
   std::string text;
-  for (const std::string& segment : request.segments) text += std::to_string(segment.size()) + ":" + segment;
+  for (const std::string& segment : request.segments)
+    text += std::to_string(segment.size()) + ":" + segment;
   for (const auto& [key, value] : request.query)
     if (!is_of_page(key)) text += "?" + std::to_string(value.size()) + key + "=" + value;
   return sha256_hex(text).substr(0, 8);
 }
 
 bool is_value(const nlohmann::json& value) {
-  return value.is_string() || value.is_number_integer() || value.is_number_float() || value.is_null();
+  return value.is_string() || value.is_number_integer() || value.is_number_float() ||
+         value.is_null();
 }
 
 std::string text_of(const nlohmann::json& json) {
@@ -72,22 +76,26 @@ Result<ListPlace> place_in(const Request& request, const std::string& cursor) {
   return read;
 }
 
-std::string link_to(const Request& request, const Page& page, const std::string& where, const char* relation) {
+std::string link_to(const Request& request, const Page& page, const std::string& where,
+                    const char* relation) {
   std::string target;  // encoded anew: as sent it may hold bytes that a header may not
   for (const auto& segment : request.segments) target += "/" + percent_encode(segment);
   target += "?";
   for (const auto& [key, value] : request.query)
     if (!is_of_page(key)) target += percent_encode(key) + "=" + percent_encode(value) + "&";
-  return "<" + target + "limit=" + std::to_string(page.limit) + "&" + where + ">; rel=\"" + relation + "\"";
+  return "<" + target + "limit=" + std::to_string(page.limit) + "&" + where + ">; rel=\"" +
+         relation + "\"";
 }
 
-std::string offset_link(const Request& request, const Page& page, int offset, const char* relation) {
+std::string offset_link(const Request& request, const Page& page, int offset,
+                        const char* relation) {
   return link_to(request, page, "offset=" + std::to_string(offset), relation);
 }
 
 void add_links(Response& response, const Request& request, const Page& page, std::string links) {
   if (page.offset > 0)
-    links += (links.empty() ? "" : ", ") + offset_link(request, page, std::max(0, page.offset - page.limit), "prev");
+    links += (links.empty() ? "" : ", ") +
+             offset_link(request, page, std::max(0, page.offset - page.limit), "prev");
   if (!links.empty()) response.with("Link", links);
 }
 
@@ -143,7 +151,8 @@ void add_page_links(Response& response, const Request& request, const Page& page
   add_links(response, request, page, std::move(next));
 }
 
-void add_page_links(Response& response, const Request& request, const Page& page, std::int64_t total) {
+void add_page_links(Response& response, const Request& request, const Page& page,
+                    std::int64_t total) {
   const bool goes_on = std::int64_t{page.offset} + page.limit < total;
   add_links(response, request, page,
             goes_on ? offset_link(request, page, page.offset + page.limit, "next") : std::string());
@@ -166,15 +175,19 @@ Result<Slice> slice_of(const Page& page, std::span<const NumberKey> sorted) {
     if (!sorted.empty() && sorted.front().size() != after.size()) return wrong_place();
     begin = static_cast<std::size_t>(std::ranges::upper_bound(sorted, after) - sorted.begin());
   }
-  return slice_from(begin, sorted.size(), page, [&](std::size_t at) { return ListPlace(sorted[at]); });
+  return slice_from(begin, sorted.size(), page,
+                    [&](std::size_t at) { return ListPlace(sorted[at]); });
 }
 
-Result<Slice> slice_of(const Page& page, std::span<const store::Store::NamedId> sorted, store::Store& store) {
+Result<Slice> slice_of(const Page& page, std::span<const store::Store::NamedId> sorted,
+                       store::Store& store) {
   std::size_t begin = static_cast<std::size_t>(page.offset);
   if (page.after) {
     const ListPlace& after = *page.after;
-    if (after.size() != 2 || !after[0].is_string() || !after[1].is_number_integer()) return wrong_place();
-    auto until = store.names_until({after[0].get<std::string>(), after[1].get<std::int64_t>()}, sorted);
+    if (after.size() != 2 || !after[0].is_string() || !after[1].is_number_integer())
+      return wrong_place();
+    auto until =
+        store.names_until({after[0].get<std::string>(), after[1].get<std::int64_t>()}, sorted);
     if (!until) return tl::unexpected(until.error());
     begin = *until;
   }

@@ -21,7 +21,8 @@ std::string area_text(double area_m2) {
 
 }  // namespace
 
-Result<std::vector<PaintedLayer>> painted_layers(const RouteContext& context, std::int64_t table_id, Role seen_by) {
+Result<std::vector<PaintedLayer>> painted_layers(const RouteContext& context, std::int64_t table_id,
+                                                 Role seen_by) {
   auto layers = context.store.layers_of_table(table_id, seen_by);
   if (!layers) return tl::unexpected(layers.error());
   std::vector<PaintedLayer> painted;
@@ -37,7 +38,8 @@ Result<std::vector<PaintedLayer>> painted_layers(const RouteContext& context, st
   return painted;
 }
 
-std::string where_painted(const std::vector<PaintedLayer>& layers, const std::vector<std::int64_t>& keys) {
+std::string where_painted(const std::vector<PaintedLayer>& layers,
+                          const std::vector<std::int64_t>& keys) {
   std::string text;
   std::size_t named = 0;
   for (const PaintedLayer& painted : layers) {
@@ -56,15 +58,16 @@ std::string where_painted(const std::vector<PaintedLayer>& layers, const std::ve
   return text;
 }
 
-Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedLayer>& layers, std::int64_t key,
-                         std::optional<std::int64_t> to, const Author& author) {
+Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedLayer>& layers,
+                         std::int64_t key, std::optional<std::int64_t> to, const Author& author) {
   for (const PaintedLayer& painted : layers) {
     if (!painted.areas.contains(key)) continue;
     if (auto may = room::check_not_locked(painted.layer, author.role); !may) return may;
     if (to && static_cast<double>(*to) > highest_value(painted.layer.type))
       return fail(422, "Key too large",
                   painted.layer.name + " of " + painted.room->model().name + " holds keys up to " +
-                      std::to_string(static_cast<std::int64_t>(highest_value(painted.layer.type))) + ".",
+                      std::to_string(static_cast<std::int64_t>(highest_value(painted.layer.type))) +
+                      ".",
                   "to");
   }
   for (const PaintedLayer& painted : layers) {
@@ -89,7 +92,8 @@ Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedL
     edit.edit = std::move(fill);
     auto done = room::await<room::EditAnswer>([&](auto saved) {
       painted.room->edit(
-          std::move(edit), [&context](const room::EditAnswer&) { ++context.metrics.edits_applied; }, std::move(saved));
+          std::move(edit), [&context](const room::EditAnswer&) { ++context.metrics.edits_applied; },
+          std::move(saved));
     });
     if (!done) {
       ++context.metrics.edits_refused;
@@ -100,15 +104,16 @@ Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedL
   return {};
 }
 
-Result<void> records_from_legend(const RouteContext& context, const Layer& layer, const std::vector<std::int64_t>& keys,
-                                 const Author& author) {
+Result<void> records_from_legend(const RouteContext& context, const Layer& layer,
+                                 const std::vector<std::int64_t>& keys, const Author& author) {
   if (keys.empty() || !layer.table || !lists_values(layer.palette)) return {};
   const auto missing = context.store.missing_records(*layer.table, keys);
   if (!missing) return tl::unexpected(missing.error());
   auto table = context.store.table(std::to_string(*layer.table), author.role);
   if (!table) return tl::unexpected(table.error());
-  const auto text = std::find_if(table->columns.begin(), table->columns.end(),
-                                 [](const Column& column) { return column.kind == ColumnKind::text; });
+  const auto text =
+      std::find_if(table->columns.begin(), table->columns.end(),
+                   [](const Column& column) { return column.kind == ColumnKind::text; });
   store::WriteRecords write;
   write.op = "import";
   for (const auto& point : layer.palette.points) {
@@ -128,7 +133,8 @@ Result<void> records_from_legend(const RouteContext& context, const Layer& layer
   return {};
 }
 
-Result<void> check_keys(store::Store& store, const Layer& layer, const std::vector<std::int64_t>& keys) {
+Result<void> check_keys(store::Store& store, const Layer& layer,
+                        const std::vector<std::int64_t>& keys) {
   if (keys.empty() || !layer.table) return {};
   const auto missing = store.missing_records(*layer.table, keys);
   if (!missing) return tl::unexpected(missing.error());
@@ -137,8 +143,8 @@ Result<void> check_keys(store::Store& store, const Layer& layer, const std::vect
   for (std::size_t i = 0; i < std::min(missing->size(), kMostNamed); ++i)
     named += (i ? ", " : "") + std::to_string((*missing)[i]);
   return fail(422, "No record of this key",
-              "The table of " + layer.name + " has no record " + named + (missing->size() > kMostNamed ? ", …" : "") +
-                  ". Make it first, then paint.",
+              "The table of " + layer.name + " has no record " + named +
+                  (missing->size() > kMostNamed ? ", …" : "") + ". Make it first, then paint.",
               "value");
 }
 

@@ -9,7 +9,8 @@ namespace strata::net {
 namespace {
 
 // Every object in `json` that says who somebody is.
-void each_with_user(nlohmann::json& json, const std::function<void(nlohmann::json&, const std::string&)>& found) {
+void each_with_user(nlohmann::json& json,
+                    const std::function<void(nlohmann::json&, const std::string&)>& found) {
   if (json.is_array() || json.is_object())
     for (nlohmann::json& part : json) each_with_user(part, found);
   if (!json.is_object()) return;
@@ -23,7 +24,9 @@ room::Portrait portrait_of(const store::Person& person) {
   return {person.full_name, std::string(person_color(person.id))};
 }
 
-void add_color(nlohmann::json& json, const store::Person& person) { json["color"] = person_color(person.id); }
+void add_color(nlohmann::json& json, const store::Person& person) {
+  json["color"] = person_color(person.id);
+}
 
 Result<People> People::load(store::Store& store, const std::vector<std::string>& names) {
   People people;

@@ -16,11 +16,13 @@ room::Portrait portrait_of(const store::Person& person);
 // Puts `color` beside what names this person.
 void add_color(nlohmann::json& json, const store::Person& person);
 
-// Who names in an answer are of. Whoever has no account any more, or never had one here, is called by the name alone.
+// Who names in an answer are of. Whoever has no account any more, or never had one here, is called
+// by the name alone.
 class People {
  public:
   static Result<People> load(store::Store& store, const std::vector<std::string>& names);
-  // Those that `answer` names anywhere as `user`, and puts `full_name` (where there is one) and `color` beside them.
+  // Those that `answer` names anywhere as `user`, and puts `full_name` (where there is one) and
+  // `color` beside them.
   static Result<void> add_to(store::Store& store, nlohmann::json& answer);
 
   void add(nlohmann::json& answer) const;

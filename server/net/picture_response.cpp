@@ -4,8 +4,8 @@
 
 namespace strata::net {
 
-Result<Response> picture_response(room::Room& room, const room::PictureRequest& shown, const Camera& camera,
-                                  bool is_png) {
+Result<Response> picture_response(room::Room& room, const room::PictureRequest& shown,
+                                  const Camera& camera, bool is_png) {
   constexpr int kJpegQuality = 90;  // one picture, not a frame of many
   const PictureFormat format = is_png ? PictureFormat::png : PictureFormat::jpeg;
   auto file = room.picture_file(shown, camera, format, {kJpegQuality, true});

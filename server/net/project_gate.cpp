@@ -19,31 +19,35 @@ struct Place {
   Result<std::int64_t> (*project)(const RouteContext& context, const std::string& ref);
 };
 
-Result<std::int64_t> project_of_number(const std::string& ref,
-                                       const std::function<Result<std::int64_t>(std::int64_t id)>& project) {
+Result<std::int64_t> project_of_number(
+    const std::string& ref, const std::function<Result<std::int64_t>(std::int64_t id)>& project) {
   const auto id = parse_integer(ref, 1, std::numeric_limits<std::int64_t>::max(), {});
   return id ? project(*id) : fail(404, {}, {});
 }
 
-constexpr Place kProject = {"project", [](const RouteContext& context, const std::string& ref) -> Result<std::int64_t> {
-                              const auto project = context.store.project(ref);
-                              if (!project) return tl::unexpected(project.error());
-                              return project->id;
-                            }};
+constexpr Place kProject = {
+    "project", [](const RouteContext& context, const std::string& ref) -> Result<std::int64_t> {
+      const auto project = context.store.project(ref);
+      if (!project) return tl::unexpected(project.error());
+      return project->id;
+    }};
 
 // Addresses in projects have one of these.
 constexpr Place kPlaces[] = {
     kProject,
-    {"model",
-     [](const RouteContext& context, const std::string& ref) { return project_id_of(context.store.model(ref)); }},
-    {"table", [](const RouteContext& context,
-                 const std::string& ref) { return project_id_of(context.store.table(ref, Role::owner)); }},
+    {"model", [](const RouteContext& context,
+                 const std::string& ref) { return project_id_of(context.store.model(ref)); }},
+    {"table",
+     [](const RouteContext& context, const std::string& ref) {
+       return project_id_of(context.store.table(ref, Role::owner));
+     }},
     {"attachment",
      [](const RouteContext& context, const std::string& ref) {
        return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
          const auto attachment = context.store.attachment(id, {{}, Role::owner});
          if (!attachment) return tl::unexpected(attachment.error());
-         return project_id_of(context.store.table(std::to_string(attachment->table_id), Role::owner));
+         return project_id_of(
+             context.store.table(std::to_string(attachment->table_id), Role::owner));
        });
      }},
     {"comment",
@@ -70,8 +74,8 @@ constexpr Place kPlaces[] = {
      }},
 };
 
-Result<void> enter(const RouteContext& context, Principal& who, const Place& place, const std::string& ref,
-                   const std::string& field) {
+Result<void> enter(const RouteContext& context, Principal& who, const Place& place,
+                   const std::string& ref, const std::string& field) {
   const auto project = place.project(context, ref);
   if (!project && project.error().status != 404) return tl::unexpected(project.error());
   // The same whether it is not there or not for them.
@@ -82,12 +86,14 @@ Result<void> enter(const RouteContext& context, Principal& who, const Place& pla
 
 // Nobody looks anything up for those whose role is the same everywhere.
 bool depends_on_project(const Roles& roles) {
-  return roles.everywhere == Role::guest || (roles.everywhere < Role::curator && !roles.in_projects.empty());
+  return roles.everywhere == Role::guest ||
+         (roles.everywhere < Role::curator && !roles.in_projects.empty());
 }
 
 }  // namespace
 
-Result<std::optional<std::int64_t>> addressed_project(const RouteContext& context, const Request& request) {
+Result<std::optional<std::int64_t>> addressed_project(const RouteContext& context,
+                                                      const Request& request) {
   for (const Place& place : kPlaces) {
     const auto param = request.params.find(place.param);
     if (param == request.params.end()) continue;
@@ -100,26 +106,29 @@ Result<std::optional<std::int64_t>> addressed_project(const RouteContext& contex
 }
 
 Result<std::int64_t> id_of(const Request& request, const std::string& param) {
-  const auto id = parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), {});
+  const auto id =
+      parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), {});
   return id ? id : not_there(param, request.param(param));
 }
 
-tl::unexpected<Problem> not_there(const std::string& kind, const std::string& ref, const std::string& field) {
+tl::unexpected<Problem> not_there(const std::string& kind, const std::string& ref,
+                                  const std::string& field) {
   return fail(404, "Not found", "There is no " + kind + " `" + ref.substr(0, 100) + "`.", field);
 }
 
 Result<void> enter_project(const RouteContext& context, Request& request, bool in_query) {
   Principal& who = *request.principal;
   if (!depends_on_project(who.roles)) return {};
-  if (in_query) return enter(context, who, kProject, request.query_or("project", "default"), "project");
+  if (in_query)
+    return enter(context, who, kProject, request.query_or("project", "default"), "project");
   for (const Place& place : kPlaces)
     if (const auto param = request.params.find(place.param); param != request.params.end())
       return enter(context, who, place, param->second, {});
   return {};
 }
 
-Result<void> check_seen(const RouteContext& context, const Request& request, const std::string& project,
-                        const std::string& field) {
+Result<void> check_seen(const RouteContext& context, const Request& request,
+                        const std::string& project, const std::string& field) {
   Principal who = *request.principal;
   return enter(context, who, kProject, project, field);
 }

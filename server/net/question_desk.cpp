@@ -35,17 +35,20 @@ std::shared_ptr<Question> QuestionDesk::begin(const Request& request) {
   return question;
 }
 
-Result<void> QuestionDesk::post(const std::shared_ptr<Question>& question, std::function<void()> work) {
+Result<void> QuestionDesk::post(const std::shared_ptr<Question>& question,
+                                std::function<void()> work) {
   const std::lock_guard lock(mutex_);
   if (stopping_) return fail(503, "Server stops", "The server is shutting down.");
   Person& person = people_[question->asker()];
   if (person.waiting.size() >= options_.of_one_waiting)
-    return fail(429, "Too many questions",
-                std::to_string(options_.of_one_waiting) +
-                    " questions of yours wait for their answers; ask again when some have been answered.");
+    return fail(
+        429, "Too many questions",
+        std::to_string(options_.of_one_waiting) +
+            " questions of yours wait for their answers; ask again when some have been answered.");
   if (waiting_ >= options_.waiting) {
     if (person.waiting.empty() && person.under_way == 0) people_.erase(question->asker());
-    return fail(503, "Too busy", "Too many questions wait for their answers; ask again in a moment.");
+    return fail(503, "Too busy",
+                "Too many questions wait for their answers; ask again in a moment.");
   }
   person.waiting.push_back({question, std::move(work)});
   ++waiting_;

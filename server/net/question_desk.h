@@ -18,9 +18,11 @@
 
 namespace strata::net {
 
-// Where questions wait and are answered: those that read many texels or draw pictures (Route::is_question). One person's questions do not
-// hold up another's: few of a person are answered at once, and whose next one begins is who has the fewest under way, then who
-// waited longest. While they compute they share the processors by time (core/question_turns.h). Thread-safe.
+// Where questions wait and are answered: those that read many texels or draw pictures
+// (Route::is_question). One person's questions do not hold up another's: few of a person are
+// answered at once, and whose next one begins is who has the fewest under way, then who waited
+// longest. While they compute they share the processors by time (core/question_turns.h).
+// Thread-safe.
 class QuestionDesk {
  public:
   struct Options {
@@ -32,9 +34,11 @@ class QuestionDesk {
   explicit QuestionDesk(Options options);
   ~QuestionDesk() { stop(); }
 
-  // Of whoever asks, within the limits of their role there. It is ended with the others by `end_all`.
+  // Of whoever asks, within the limits of their role there. It is ended with the others by
+  // `end_all`.
   std::shared_ptr<Question> begin(const Request& request);
-  // Calls `work` on a thread of the desk, as the question's own (Question::current). A Problem: it will not be called.
+  // Calls `work` on a thread of the desk, as the question's own (Question::current). A Problem: it
+  // will not be called.
   Result<void> post(const std::shared_ptr<Question>& question, std::function<void()> work);
 
   // All that are asked now and later.

@@ -13,13 +13,16 @@ AreaUnit readable_area(double largest_m2) {
 
 std::string number_format(double largest) {
   constexpr int kDigits = 4, kMostDecimals = 12;
-  const int decimals = largest > 0 ? kDigits - 1 - static_cast<int>(std::floor(std::log10(largest))) : 0;
-  return "#,##0." + std::string(static_cast<std::size_t>(std::clamp(decimals, 2, kMostDecimals)), '0');
+  const int decimals =
+      largest > 0 ? kDigits - 1 - static_cast<int>(std::floor(std::log10(largest))) : 0;
+  return "#,##0." +
+         std::string(static_cast<std::size_t>(std::clamp(decimals, 2, kMostDecimals)), '0');
 }
 
 std::string readable_head(const std::string& head, const AreaUnit& unit) {
   constexpr std::string_view kUnit = "_m2";
-  return head.substr(0, head.size() - (head.ends_with(kUnit) ? kUnit.size() : 0)) + " (" + unit.name + ")";
+  return head.substr(0, head.size() - (head.ends_with(kUnit) ? kUnit.size() : 0)) + " (" +
+         unit.name + ")";
 }
 
 }  // namespace strata::net

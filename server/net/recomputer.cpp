@@ -16,7 +16,8 @@ const Author kAuthor("Strata", Role::owner);
 
 }  // namespace
 
-Recomputer::Recomputer(const RouteContext& context) : context_(context), thread_([this] { run(); }) {}
+Recomputer::Recomputer(const RouteContext& context)
+    : context_(context), thread_([this] { run(); }) {}
 
 void Recomputer::stop() {
   {
@@ -50,7 +51,8 @@ void Recomputer::run() {
       if (!uncounted) continue;
       for (const Layer& layer : *uncounted) {
         if (is_stopping()) return;
-        attempt(layer, "counted", [&](const std::shared_ptr<room::Room>& room) { return room->sum_layer(layer.id); });
+        attempt(layer, "counted",
+                [&](const std::shared_ptr<room::Room>& room) { return room->sum_layer(layer.id); });
       }
     } catch (const std::exception& error) {
       log::error(std::string("computing layers failed: ") + error.what());
@@ -69,8 +71,9 @@ bool Recomputer::is_quiet(const room::Room& room, std::int64_t layer_id) {
   return true;
 }
 
-void Recomputer::attempt(const Layer& layer, const char* what,
-                         const std::function<Result<void>(const std::shared_ptr<room::Room>&)>& work) {
+void Recomputer::attempt(
+    const Layer& layer, const char* what,
+    const std::function<Result<void>(const std::shared_ptr<room::Room>&)>& work) {
   const auto now = std::chrono::steady_clock::now();
   const auto failed = failures_.find(layer.id);
   if (failed != failures_.end() && now < failed->second.again) return;
@@ -81,10 +84,12 @@ void Recomputer::attempt(const Layer& layer, const char* what,
     failures_.erase(layer.id);
     return;
   }
-  const auto pause = failed == failures_.end() ? kFirstPause : std::min(kLongestPause, 2 * failed->second.pause);
+  const auto pause =
+      failed == failures_.end() ? kFirstPause : std::min(kLongestPause, 2 * failed->second.pause);
   failures_[layer.id] = {now + pause, pause};
   if (failed == failures_.end() && !is_stopping())
-    log::warning("layer " + std::to_string(layer.id) + " could not be " + what + ": " + done.error().detail);
+    log::warning("layer " + std::to_string(layer.id) + " could not be " + what + ": " +
+                 done.error().detail);
 }
 
 void Recomputer::recompute(const Layer& layer) {

@@ -11,10 +11,12 @@
 
 namespace strata::net {
 
-// Computes automatic layers again, one after the other, after something that they read has changed: an edit, a record, a layer
-// that is computed itself. Edits of the model wait meanwhile, so it lets a second pass in which nobody paints, but ten at most.
-// Asks the database once a second, so that nothing is forgotten over a restart. What fails is tried again, less and less often.
-// Layers whose surface was never counted for the database (Store::layers_to_sum), as those of older versions, are counted likewise.
+// Computes automatic layers again, one after the other, after something that they read has changed:
+// an edit, a record, a layer that is computed itself. Edits of the model wait meanwhile, so it lets
+// a second pass in which nobody paints, but ten at most. Asks the database once a second, so that
+// nothing is forgotten over a restart. What fails is tried again, less and less often. Layers whose
+// surface was never counted for the database (Store::layers_to_sum), as those of older versions,
+// are counted likewise.
 class Recomputer {
  public:
   explicit Recomputer(const RouteContext& context);  // which must outlive it

@@ -13,14 +13,17 @@ namespace {
 
 constexpr const char* kKey = "key";
 constexpr const char* kVersion = "version";
-constexpr std::array<std::string_view, 3> kMeasures = {"area_m2", "length_m", "point_count"};  // RecordMeasures
+// RecordMeasures
+constexpr std::array<std::string_view, 3> kMeasures = {"area_m2", "length_m", "point_count"};
 
 std::string with_comma(std::string number) {
   std::replace(number.begin(), number.end(), '.', ',');
   return number;
 }
 
-bool is_measure(const std::string& head) { return std::ranges::find(kMeasures, head) != kMeasures.end(); }
+bool is_measure(const std::string& head) {
+  return std::ranges::find(kMeasures, head) != kMeasures.end();
+}
 
 bool is_called(const Column& column, const std::string& head) {
   if (column.slug == head || column.name == head) return true;
@@ -58,7 +61,8 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, const Table& table) {
                       "\". The first row names columns by slug, name or label, and `key`.",
                   "body");
     if (!met.insert(head.column ? std::to_string(head.column->id) : head.text).second)
-      return fail(422, "Column named twice", "\"" + head.text + "\" stands twice in the first row.", "body");
+      return fail(422, "Column named twice", "\"" + head.text + "\" stands twice in the first row.",
+                  "body");
     heads.push_back(std::move(head));
   }
   return heads;
@@ -66,24 +70,29 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, const Table& table) {
 
 }  // namespace
 
-std::optional<std::string> term_word(const Record& record, const Column& column, const WordsOfTables& words) {
+std::optional<std::string> term_word(const Record& record, const Column& column,
+                                     const WordsOfTables& words) {
   if (column.kind != ColumnKind::term || !column.target) return std::nullopt;
   const auto known = words.find(*column.target);
   const auto value = record.values.find(column.id);
-  if (known == words.end() || value == record.values.end() || value->second.is_null()) return std::nullopt;
+  if (known == words.end() || value == record.values.end() || value->second.is_null())
+    return std::nullopt;
   return known->second.word(value->second.get<std::int64_t>());
 }
 
-std::string record_cell(const Record& record, const Column& column, char separator, const WordsOfTables& words) {
+std::string record_cell(const Record& record, const Column& column, char separator,
+                        const WordsOfTables& words) {
   const auto value = record.values.find(column.id);
   if (value == record.values.end()) return {};
   if (auto word = term_word(record, column, words)) return guard_formula(std::move(*word));
   std::string cell = print_value(column, value->second);
-  return separator == ';' && column.kind == ColumnKind::numeric ? with_comma(std::move(cell)) : cell;
+  return separator == ';' && column.kind == ColumnKind::numeric ? with_comma(std::move(cell))
+                                                                : cell;
 }
 
 std::string records_csv(const std::vector<Record>& records, const std::vector<Column>& columns,
-                        const MeasuredRecords& measured, char separator, const WordsOfTables& words) {
+                        const MeasuredRecords& measured, char separator,
+                        const WordsOfTables& words) {
   std::string text(kUtf8Mark);
   std::vector<std::string> cells{kKey};
   for (const Column& column : columns) cells.push_back(column.slug);
@@ -91,7 +100,8 @@ std::string records_csv(const std::vector<Record>& records, const std::vector<Co
   text += csv_line(cells, separator);
   for (std::size_t i = 0; i < records.size(); ++i) {
     cells = {std::to_string(records[i].key)};
-    for (const Column& column : columns) cells.push_back(record_cell(records[i], column, separator, words));
+    for (const Column& column : columns)
+      cells.push_back(record_cell(records[i], column, separator, words));
     if (!measured.names.empty())
       for (const double value : measured.values[i]) cells.push_back(csv_number(value, separator));
     text += csv_line(cells, separator);
@@ -101,9 +111,10 @@ std::string records_csv(const std::vector<Record>& records, const std::vector<Co
 
 namespace {
 
-Result<nlohmann::json> read_cell(const Column& column, const std::string& cell, bool comma, const std::string& field,
-                                 const WordsOfTables& words) {
-  const auto known = column.kind == ColumnKind::term && column.target ? words.find(*column.target) : words.end();
+Result<nlohmann::json> read_cell(const Column& column, const std::string& cell, bool comma,
+                                 const std::string& field, const WordsOfTables& words) {
+  const auto known =
+      column.kind == ColumnKind::term && column.target ? words.find(*column.target) : words.end();
   if (known == words.end() || trimmed(cell).empty()) return parse_value(column, cell, comma, field);
   const auto key = known->second.key_of(unguard_formula(std::string(trimmed(cell))), field);
   if (!key) return tl::unexpected(key.error());
@@ -112,10 +123,13 @@ Result<nlohmann::json> read_cell(const Column& column, const std::string& cell, 
 
 }  // namespace
 
-Result<RecordRows> read_records_csv(std::string_view text, const Table& table, const WordsOfTables& words) {
-  auto csv = parse_csv(text, {store::kMostRecordsAtOnce + 1, static_cast<std::size_t>(kMostColumns) + 3});
+Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
+                                    const WordsOfTables& words) {
+  auto csv =
+      parse_csv(text, {store::kMostRecordsAtOnce + 1, static_cast<std::size_t>(kMostColumns) + 3});
   if (!csv) return tl::unexpected(csv.error());
-  if (csv->rows.empty()) return fail(422, "Empty table", "The first row names the columns.", "body");
+  if (csv->rows.empty())
+    return fail(422, "Empty table", "The first row names the columns.", "body");
   auto heads = read_heads(csv->rows.front(), table);
   if (!heads) return tl::unexpected(heads.error());
   const bool comma = csv->separator == ';';
@@ -132,8 +146,8 @@ Result<RecordRows> read_records_csv(std::string_view text, const Table& table, c
                           {},
                           {422,
                            "Cells missing or too many",
-                           "The row has " + std::to_string(row.cells.size()) + " cells, the first row " +
-                               std::to_string(heads->size()) + ".",
+                           "The row has " + std::to_string(row.cells.size()) +
+                               " cells, the first row " + std::to_string(heads->size()) + ".",
                            {}}});
     for (std::size_t c = 0; c < std::min(row.cells.size(), heads->size()); ++c) {
       const Head& head = (*heads)[c];

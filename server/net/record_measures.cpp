@@ -6,7 +6,8 @@
 
 namespace strata::net {
 
-Result<RecordMeasures> RecordMeasures::of_place(const RouteContext& context, const RecordPlace& place,
+Result<RecordMeasures> RecordMeasures::of_place(const RouteContext& context,
+                                                const RecordPlace& place,
                                                 const std::vector<Column>& columns) {
   RecordMeasures measures;
   if (place.layer) {
@@ -48,11 +49,13 @@ std::vector<double> RecordMeasures::of(const Record& record) const {
   const auto for_each_mark = [&](const std::vector<Column>& columns, auto visit) {
     for (const Column& column : columns)
       for (const Mark& mark : marks_of(record, column))
-        if (const auto metres = metres_.find(mark.model); metres != metres_.end()) visit(mark, metres->second);
+        if (const auto metres = metres_.find(mark.model); metres != metres_.end())
+          visit(mark, metres->second);
   };
   if (!lines_.empty()) {
     double length_m = 0;
-    for_each_mark(lines_, [&](const Mark& mark, double metres) { length_m += length_of(mark) * metres; });
+    for_each_mark(lines_,
+                  [&](const Mark& mark, double metres) { length_m += length_of(mark) * metres; });
     values.push_back(length_m);
   }
   if (!points_.empty()) {
@@ -63,7 +66,8 @@ std::vector<double> RecordMeasures::of(const Record& record) const {
   return values;
 }
 
-void add_measures(nlohmann::json& json, const std::vector<std::string>& names, const std::vector<double>& values) {
+void add_measures(nlohmann::json& json, const std::vector<std::string>& names,
+                  const std::vector<double>& values) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i] == "point_count")
       json[names[i]] = static_cast<std::int64_t>(values[i]);

@@ -11,12 +11,13 @@ namespace strata::net {
 
 inline constexpr const char* kAreaMeasure = "area_m2";
 
-// What a record has on the surface, beside what its columns hold: `area_m2` under a layer, the surface that it has there; `length_m` of
-// its lines and `point_count` of its points where the table has such columns, under a layer those on its model, otherwise on all that
-// are there.
+// What a record has on the surface, beside what its columns hold: `area_m2` under a layer, the
+// surface that it has there; `length_m` of its lines and `point_count` of its points where the
+// table has such columns, under a layer those on its model, otherwise on all that are there.
 class RecordMeasures {
  public:
-  // `columns`: those of the records that will be asked for; a layer of the place is one that who asks sees. May open a room, and blocks.
+  // `columns`: those of the records that will be asked for; a layer of the place is one that who
+  // asks sees. May open a room, and blocks.
   static Result<RecordMeasures> of_place(const RouteContext& context, const RecordPlace& place,
                                          const std::vector<Column>& columns);
 
@@ -33,6 +34,7 @@ class RecordMeasures {
 };
 
 // Each under its name: numbers, counts as whole ones.
-void add_measures(nlohmann::json& json, const std::vector<std::string>& names, const std::vector<double>& values);
+void add_measures(nlohmann::json& json, const std::vector<std::string>& names,
+                  const std::vector<double>& values);
 
 }  // namespace strata::net

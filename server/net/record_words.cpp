@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kDeepest = 3;  // tables may be called by each other's records, round in circles
 
-std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::Store::RecordPage& page, Role seen_by,
+std::map<std::int64_t, std::string> titles_of(store::Store& store,
+                                              const store::Store::RecordPage& page, Role seen_by,
                                               const std::string& language, int depth) {
   std::map<std::int64_t, std::string> names;
   const Column* title = name_column(page.table);
@@ -45,7 +46,8 @@ std::map<std::int64_t, std::string> titles_of(store::Store& store, const store::
 // What tells words apart when they are read again: cells lose blanks at their ends.
 std::string RecordWords::bare(const std::string& word) {
   const auto first = word.find_first_not_of(' ');
-  return first == std::string::npos ? std::string() : word.substr(first, word.find_last_not_of(' ') - first + 1);
+  return first == std::string::npos ? std::string()
+                                    : word.substr(first, word.find_last_not_of(' ') - first + 1);
 }
 
 void RecordWords::add(std::int64_t key, const std::string& word) {
@@ -104,16 +106,18 @@ Result<std::int64_t> RecordWords::key_of(const std::string& word, const std::str
   if (is_all_digits(bare(word))) return parse_integer(bare(word), 0, kHighestKey, field);
   const auto meant = keys_.find(bare(word));
   if (meant == keys_.end())
-    return fail(422, "No such record", table_ + " has no record called \"" + word.substr(0, 100) + "\".", field);
+    return fail(422, "No such record",
+                table_ + " has no record called \"" + word.substr(0, 100) + "\".", field);
   if (!meant->second)
     return fail(422, "Several records",
-                table_ + " has several records called \"" + word.substr(0, 100) + "\". Name one by its code or key.",
+                table_ + " has several records called \"" + word.substr(0, 100) +
+                    "\". Name one by its code or key.",
                 field);
   return *meant->second;
 }
 
-Result<WordsOfTables> words_of(store::Store& store, const std::vector<Column>& columns, Role seen_by,
-                               const std::string& language) {
+Result<WordsOfTables> words_of(store::Store& store, const std::vector<Column>& columns,
+                               Role seen_by, const std::string& language) {
   WordsOfTables all;
   for (const Column& column : columns) {
     if (column.kind != ColumnKind::term || !column.target || all.contains(*column.target)) continue;

@@ -39,8 +39,8 @@ bool Router::matches(const Entry& entry, const std::vector<std::string>& segment
     }
     if (text.size() <= segment.prefix.size() + segment.suffix.size()) return false;
     if (!text.starts_with(segment.prefix) || !text.ends_with(segment.suffix)) return false;
-    params[segment.param] =
-        text.substr(segment.prefix.size(), text.size() - segment.prefix.size() - segment.suffix.size());
+    params[segment.param] = text.substr(
+        segment.prefix.size(), text.size() - segment.prefix.size() - segment.suffix.size());
   }
   return true;
 }
@@ -79,7 +79,9 @@ Result<void> check_query(const Route& route, const Request& request) {
     std::string known;
     for (const auto& name : route.query) known += (known.empty() ? "" : ", ") + name;
     return fail(400, "Unknown query parameter",
-                known.empty() ? "This address takes no query parameters." : "This address takes: " + known + ".", key);
+                known.empty() ? "This address takes no query parameters."
+                              : "This address takes: " + known + ".",
+                key);
   }
   return {};
 }

@@ -21,7 +21,8 @@ struct Route {
   Method method = Method::get;
   std::string pattern;  // "/api/v1/models/{model}/texels.{format}": one {name} per segment
   Handler handler;
-  // Least role that may call it: in the project that it leads into, or everywhere. Empty: open to everyone.
+  // Least role that may call it: in the project that it leads into, or everywhere. Empty: open to
+  // everyone.
   std::optional<Role> role = Role::viewer;
   std::vector<std::string> query{};  // parameters it knows; others are refused
   bool any_query = false;
@@ -30,21 +31,25 @@ struct Route {
   std::function<Result<void>(const Request& request)> check{};
   BodyKind body = BodyKind::none;
   std::uint64_t max_body = 0;  // bytes
-  // The handler keeps its answer with what it does (`first_answer`); a repeat of its Idempotency-Key gets it without the handler…
+  // The handler keeps its answer with what it does (`first_answer`); a repeat of its
+  // Idempotency-Key gets it without the handler…
   bool keeps_answer = false;
   // …or what this makes of what was kept.
   std::function<Result<Response>(const Request& request, const nlohmann::json& kept)> replay{};
-  // An edit that may take long: ends with its client, within the limits of a question, but waits for no turn.
+  // An edit that may take long: ends with its client, within the limits of a question, but waits
+  // for no turn.
   bool is_long_edit = false;
-  bool is_question =
-      false;  // may take long: answered by the question desk (net/question_desk.h), in turns, within limits
+  // may take long: answered by the question desk (net/question_desk.h), in turns, within limits
+  bool is_question = false;
   // Changes what has a version: a project may demand If-Match (net/precondition.h).
   bool needs_version = false;
-  // Of reads that cost: what the answer depends on (net/entity_tags.h). Their handlers answer before they return.
+  // Of reads that cost: what the answer depends on (net/entity_tags.h). Their handlers answer
+  // before they return.
   StateOf state{};
 };
 
-// Finds the route of a request. Filled before the server starts, read-only (so thread-safe) afterwards.
+// Finds the route of a request. Filled before the server starts, read-only (so thread-safe)
+// afterwards.
 class Router {
  public:
   void add(Route route);

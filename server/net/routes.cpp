@@ -15,11 +15,13 @@ constexpr std::size_t kDigitsOfBody = 16;
 Handler answering(std::function<Result<Response>(const Request&)> answer) {
   return [answer = std::move(answer)](const Request& request, const Respond& respond) {
     auto response = answer(request);
-    // Who names no version means the newest, also where others change the same thing at once: one of them gets on each time.
+    // Who names no version means the newest, also where others change the same thing at once: one
+    // of them gets on each time.
     const auto wanted = request.header("if-match");
-    const bool means_any =
-        (request.method == Method::patch || request.method == Method::remove) && (wanted.empty() || wanted == "*");
-    for (int tries = 1; means_any && tries < kMostTries && !response && response.error().status == 412; ++tries)
+    const bool means_any = (request.method == Method::patch || request.method == Method::remove) &&
+                           (wanted.empty() || wanted == "*");
+    for (int tries = 1;
+         means_any && tries < kMostTries && !response && response.error().status == 412; ++tries)
       response = answer(request);
     if (response)
       respond(std::move(*response));
@@ -32,9 +34,11 @@ Result<void> check_json_type(const Request& request) {
   const auto sent = request.header("content-type");
   std::string type = to_lower(sent.substr(0, sent.find(';')));
   while (!type.empty() && type.back() == ' ') type.pop_back();
-  if (type.empty() || type == "application/json" || (type.starts_with("application/") && type.ends_with("+json")))
+  if (type.empty() || type == "application/json" ||
+      (type.starts_with("application/") && type.ends_with("+json")))
     return {};
-  return fail(415, "Not JSON", "This address takes JSON: send it with `Content-Type: application/json`.",
+  return fail(415, "Not JSON",
+              "This address takes JSON: send it with `Content-Type: application/json`.",
               "Content-Type");
 }
 
@@ -42,10 +46,12 @@ std::string etag_of(std::int64_t version) { return "\"v" + std::to_string(versio
 
 Response with_etag(Response response, const Request& request, std::int64_t version) {
   std::string etag = etag_of(version);
-  if (request.method != Method::get && request.method != Method::head) return response.with("ETag", etag);
+  if (request.method != Method::get && request.method != Method::head)
+    return response.with("ETag", etag);
   // The same version is told otherwise to another role, and once something was painted.
   etag.insert(etag.size() - 1, "." + sha256_hex(response.body).substr(0, kDigitsOfBody));
-  if (names_tag(request.header("if-none-match"), etag)) return empty_response(304).with("ETag", etag);
+  if (names_tag(request.header("if-none-match"), etag))
+    return empty_response(304).with("ETag", etag);
   return response.with("ETag", etag);
 }
 
@@ -61,22 +67,25 @@ Result<void> check_if_match(const Request& request, std::int64_t version) {
   const auto wanted = request.header("if-match");
   if (wanted.empty() || wanted == "*" || names_version(wanted, version)) return {};
   return fail(412, "Changed meanwhile",
-              "Somebody changed this since you read it; read it again and repeat your change.", "If-Match");
+              "Somebody changed this since you read it; read it again and repeat your change.",
+              "If-Match");
 }
 
 void add_sequences(Response& response, std::int64_t shown, std::int64_t durable) {
-  response.with("Strata-Sequence", std::to_string(shown)).with("Strata-Durable-Sequence", std::to_string(durable));
+  response.with("Strata-Sequence", std::to_string(shown))
+      .with("Strata-Durable-Sequence", std::to_string(durable));
 }
 
 Uuid edit_id(const Request& request, const Layer& layer, std::string_view operation) {
   const auto key = request.header("idempotency-key");
   if (key.empty()) return random_uuid();
-  return uuid_of_text(request.user() + '\n' + std::to_string(layer.id) + '\n' + std::string(operation) + '\n' +
-                      std::string(key));
+  return uuid_of_text(request.user() + '\n' + std::to_string(layer.id) + '\n' +
+                      std::string(operation) + '\n' + std::string(key));
 }
 
-void apply_edit(const RouteContext& context, const Request& request, const std::shared_ptr<room::Room>& room,
-                room::EditRequest edit, const Respond& respond, std::function<nlohmann::json(nlohmann::json)> body_of) {
+void apply_edit(const RouteContext& context, const Request& request,
+                const std::shared_ptr<room::Room>& room, room::EditRequest edit,
+                const Respond& respond, std::function<nlohmann::json(nlohmann::json)> body_of) {
   const auto layer = room->layer(std::to_string(edit.layer_id));
   if (!layer) return respond(layer.error());
   if (auto known = check_keys(context.store, *layer, room::painted_by(*layer, edit)); !known)
@@ -84,21 +93,23 @@ void apply_edit(const RouteContext& context, const Request& request, const std::
   if (Question* question = Question::current()) edit.question = question->shared_from_this();
   const bool keyed = !request.header("idempotency-key").empty();
   if (keyed)
-    if (auto same = context.edit_book.begin(room->model().id, edit); !same) return respond(same.error());
+    if (auto same = context.edit_book.begin(room->model().id, edit); !same)
+      return respond(same.error());
   room->edit(
       std::move(edit),
       [&metrics = context.metrics](const room::EditAnswer& answer) {
         if (!answer.repeated) ++metrics.edits_applied;
       },
-      [&context, keyed, id = edit.id, respond, body_of = std::move(body_of)](Result<room::EditAnswer> answer) {
+      [&context, keyed, id = edit.id, respond,
+       body_of = std::move(body_of)](Result<room::EditAnswer> answer) {
         if (keyed) context.edit_book.end(id);
         if (!answer) {
           ++context.metrics.edits_refused;
           return respond(answer.error());
         }
         if (!answer->repeated) ++context.metrics.edits_saved;
-        respond(
-            json_response(body_of(room::to_json(*answer))).with("Strata-Sequence", std::to_string(answer->sequence)));
+        respond(json_response(body_of(room::to_json(*answer)))
+                    .with("Strata-Sequence", std::to_string(answer->sequence)));
       });
 }
 
@@ -143,7 +154,10 @@ Result<void> check_source_download(const Request& request, const Model& model) {
 Response job_response(const RouteContext& context, std::int64_t job) {
   const auto status = context.jobs.status(job);
   return json_response(status ? to_json(*status)
-                              : nlohmann::json{{"id", job}, {"state", "queued"}, {"progress", 0}, {"message", ""}},
+                              : nlohmann::json{{"id", job},
+                                               {"state", "queued"},
+                                               {"progress", 0},
+                                               {"message", ""}},
                        202)
       .with("Location", "/api/v1/jobs/" + std::to_string(job));
 }
@@ -160,7 +174,8 @@ Response file_response(std::shared_ptr<const jobs::JobFile> file) {
 Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& text) {
   if (!wish) return make_slug(text);
   if (is_all_digits(*wish))
-    return fail(422, "Slug of digits", "A slug of digits only would be taken for an id; add a letter.", "slug");
+    return fail(422, "Slug of digits",
+                "A slug of digits only would be taken for an id; add a letter.", "slug");
   return *wish;
 }
 

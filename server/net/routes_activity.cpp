@@ -17,7 +17,8 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
   if (const auto before = request.query.find("before"); before != request.query.end()) {
     query.before = place_of(before->second);
     if (!query.before)
-      return fail(422, "No such page", "`before` is `next` of an answer: 1777896570120000-7, for example.", "before");
+      return fail(422, "No such page",
+                  "`before` is `next` of an answer: 1777896570120000-7, for example.", "before");
   }
   const auto project = context.store.project(request.param("project"));
   if (!project) return tl::unexpected(project.error());
@@ -25,7 +26,8 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
     const auto model = context.store.model(ref->second);
     if (!model && model.error().status != 404) return tl::unexpected(model.error());
     if (!model || model->project_id != project->id)
-      return fail(422, "No such model", "The project has no model `" + ref->second.substr(0, 100) + "`.", "model");
+      return fail(422, "No such model",
+                  "The project has no model `" + ref->second.substr(0, 100) + "`.", "model");
     query.model = model->id;
   }
   const auto found = context.store.activity(project->id, request.role(), query);
@@ -34,7 +36,8 @@ Result<Response> list_activity(const RouteContext& context, const Request& reque
   for (const Activity& line : found->lines) lines.push_back(to_json(line));
   nlohmann::json answer{{"activity", std::move(lines)}};
   if (found->next) answer["next"] = to_text(*found->next);
-  if (auto named = People::add_to(context.store, answer); !named) return tl::unexpected(named.error());
+  if (auto named = People::add_to(context.store, answer); !named)
+    return tl::unexpected(named.error());
   return json_response(std::move(answer));
 }
 
@@ -46,7 +49,8 @@ Result<Response> listen(const RouteContext& context, const Request& request) {
   if (const auto text = request.header("last-event-id"); !text.empty()) {
     after = place_of(text);
     if (!after)
-      return fail(400, "No such event", "`Last-Event-ID` is the id of an event: 1777896570120000-7, for example.",
+      return fail(400, "No such event",
+                  "`Last-Event-ID` is the id of an event: 1777896570120000-7, for example.",
                   "Last-Event-ID");
   }
   Response response;
@@ -60,11 +64,13 @@ Result<Response> listen(const RouteContext& context, const Request& request) {
 void add_activity_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/projects/{project}/activity",
-              .handler = answering([&context](const Request& request) { return list_activity(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_activity(context, request); }),
               .query = {"model", "before", "limit"}});
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/events",
-              .handler = answering([&context](const Request& request) { return listen(context, request); })});
+              .handler = answering(
+                  [&context](const Request& request) { return listen(context, request); })});
 }
 
 }  // namespace strata::net

@@ -64,11 +64,13 @@ Result<Response> match(const RouteContext& context, const Request& request) {
   if (!table) return tl::unexpected(table.error());
   const Column* column = find_column(table->columns, asked->column);
   if (!column && asked->column != kKey)
-    return fail(422, "No such column", table->name + " has no column `" + asked->column + "`.", "column");
+    return fail(422, "No such column", table->name + " has no column `" + asked->column + "`.",
+                "column");
   const std::string word = column ? column->slug : kKey;
   if (!pattern->has(word))
     return fail(422, "Column not in the pattern",
-                "The pattern has no `{" + word + "}`, which says which record a file is of.", "pattern");
+                "The pattern has no `{" + word + "}`, which says which record a file is of.",
+                "pattern");
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
   auto page = context.store.records(table->id, request.role(), query);
@@ -117,11 +119,12 @@ Result<Response> match(const RouteContext& context, const Request& request) {
 }  // namespace
 
 void add_attachment_match_routes(Router& router, const RouteContext& context) {
-  router.add({.method = Method::post,
-              .pattern = "/api/v1/tables/{table}/attachments/match",
-              .handler = answering([&context](const Request& request) { return match(context, request); }),
-              .body = BodyKind::memory,
-              .max_body = context.options.max_json_bytes});
+  router.add(
+      {.method = Method::post,
+       .pattern = "/api/v1/tables/{table}/attachments/match",
+       .handler = answering([&context](const Request& request) { return match(context, request); }),
+       .body = BodyKind::memory,
+       .max_body = context.options.max_json_bytes});
 }
 
 }  // namespace strata::net

@@ -22,7 +22,8 @@ using NewAttachment = store::Store::NewAttachment;
 
 constexpr const char* kAccepted =
     "Send the file as the body, with its `name` in the address, or one or several files in a multipart/form-data form.";
-constexpr std::size_t kHeadBytes = 1u << 20;      // holds what stands before a picture's pixels, profiles and all
+// holds what stands before a picture's pixels, profiles and all
+constexpr std::size_t kHeadBytes = 1u << 20;
 constexpr std::uint64_t kAtOnceBytes = 4u << 20;  // answers that need no stream
 constexpr std::uint64_t kThumbnailFileBytes = 128u << 20;
 
@@ -60,7 +61,8 @@ NewAttachment inspected(const Upload& upload, const std::string& wished_name) {
 // Parts cut out of a form go with the answer.
 class CutOut {
  public:
-  CutOut(const std::vector<Upload>& uploads, const std::filesystem::path& body) : uploads_(uploads), body_(body) {}
+  CutOut(const std::vector<Upload>& uploads, const std::filesystem::path& body)
+      : uploads_(uploads), body_(body) {}
   CutOut(const CutOut&) = delete;
   ~CutOut() {
     std::error_code gone_already;
@@ -89,7 +91,8 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
   if (const std::string ref = request.query_or("column", {}); !ref.empty()) {
     const Column* column = find_column(place->table.columns, ref);
     if (!column)
-      return fail(422, "No such column", place->table.name + " has no column `" + ref.substr(0, 100) + "`.", "column");
+      return fail(422, "No such column",
+                  place->table.name + " has no column `" + ref.substr(0, 100) + "`.", "column");
     column_id = column->id;
   }
   auto version = wished_record_version(context, request, place->table, *key);
@@ -99,9 +102,12 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
   const CutOut cut_out(*uploads, request.body_file);
   const std::string name = request.query_or("name", {});
   if (!name.empty() && uploads->size() > 1)
-    return fail(422, "Name of several files", "`name` is for one file; those of a form bring theirs.", "name");
+    return fail(422, "Name of several files",
+                "`name` is for one file; those of a form bring theirs.", "name");
   const auto visibility = parse_visibility(request.query_or("visibility", "public"));
-  if (!visibility) return fail(422, "Unknown visibility", "`visibility` is public, team or private.", "visibility");
+  if (!visibility)
+    return fail(422, "Unknown visibility", "`visibility` is public, team or private.",
+                "visibility");
   std::vector<NewAttachment> files;
   for (const Upload& upload : *uploads) {
     files.push_back(inspected(upload, name));
@@ -109,13 +115,14 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
   }
   const auto answer = [role = request.role()](const Attached& attached) {
     auto body = list_json(attached.attachments);
-    body["record"] = to_json(attached.change.records.front(), seen_by(attached.change.table, role).columns);
+    body["record"] =
+        to_json(attached.change.records.front(), seen_by(attached.change.table, role).columns);
     return json_response(body, 201)
         .with("Location", "/api/v1/attachments/" + std::to_string(attached.attachments.front().id))
         .with("ETag", etag_of(attached.change.records.front().version));
   };
-  auto attached = context.store.attach(place->table.id, *key, column_id, files, *version, request.author(),
-                                       first_answer<Attached>(request, answer));
+  auto attached = context.store.attach(place->table.id, *key, column_id, files, *version,
+                                       request.author(), first_answer<Attached>(request, answer));
   if (!attached) return tl::unexpected(attached.error());
   tell_change(context, attached->change, request.user());
   return answer(*attached);
@@ -158,7 +165,8 @@ Result<Response> list_attachments(const RouteContext& context, const Request& re
         list.back()["column"] = column->slug;
       }
   const std::size_t total = list.size();
-  return json_response({{"attachments", std::move(list)}, {"total", total}}).with("ETag", etag_of(record->version));
+  return json_response({{"attachments", std::move(list)}, {"total", total}})
+      .with("ETag", etag_of(record->version));
 }
 
 Result<std::int64_t> attachment_id(const Request& request) {
@@ -181,23 +189,26 @@ Result<Response> thumbnail(const RouteContext& context, const Attachment& attach
   auto kept = context.store.thumbnail(attachment, side);
   if (!kept) return tl::unexpected(kept.error());
   if (*kept) return bytes_response(std::move(**kept), "image/jpeg");
-  constexpr std::array<std::string_view, 5> kTypes{"image/jpeg", "image/png", "image/tiff", "image/webp", "image/bmp"};
+  constexpr std::array<std::string_view, 5> kTypes{"image/jpeg", "image/png", "image/tiff",
+                                                   "image/webp", "image/bmp"};
   if (std::find(kTypes.begin(), kTypes.end(), attachment.media_type) == kTypes.end())
-    return fail(
-        415, "No small picture",
-        "Small pictures are made of JPEG, PNG, TIFF, WebP and BMP pictures; this is " + attachment.media_type + ".",
-        "thumbnail");
+    return fail(415, "No small picture",
+                "Small pictures are made of JPEG, PNG, TIFF, WebP and BMP pictures; this is " +
+                    attachment.media_type + ".",
+                "thumbnail");
   if (attachment.bytes > kThumbnailFileBytes)
     return fail(422, "Picture too large",
-                "Small pictures are made of files of at most " + std::to_string(kThumbnailFileBytes >> 20) + " MiB.",
+                "Small pictures are made of files of at most " +
+                    std::to_string(kThumbnailFileBytes >> 20) + " MiB.",
                 "thumbnail");
   const std::lock_guard lock(decoding);
   std::vector<std::uint8_t> bytes;
   bytes.reserve(attachment.bytes);
-  auto read = context.store.read_attachment(attachment, 0, attachment.bytes, [&](std::span<const std::uint8_t> piece) {
-    bytes.insert(bytes.end(), piece.begin(), piece.end());
-    return true;
-  });
+  auto read = context.store.read_attachment(attachment, 0, attachment.bytes,
+                                            [&](std::span<const std::uint8_t> piece) {
+                                              bytes.insert(bytes.end(), piece.begin(), piece.end());
+                                              return true;
+                                            });
   if (!read) return tl::unexpected(read.error());
   auto picture = make_thumbnail(bytes, side);
   if (!picture) {
@@ -209,27 +220,30 @@ Result<Response> thumbnail(const RouteContext& context, const Attachment& attach
   return bytes_response(std::move(*picture), "image/jpeg");
 }
 
-Result<Response> content(const RouteContext& context, const Attachment& attachment, const AskedRange& asked) {
+Result<Response> content(const RouteContext& context, const Attachment& attachment,
+                         const AskedRange& asked) {
   Response response;
   response.status = asked.is_part ? 206 : 200;
   response.with("Content-Type", attachment.media_type);
   if (asked.is_part)
     response.with("Content-Range", "bytes " + std::to_string(asked.range.begin) + "-" +
-                                       std::to_string(asked.range.end - 1) + "/" + std::to_string(attachment.bytes));
+                                       std::to_string(asked.range.end - 1) + "/" +
+                                       std::to_string(attachment.bytes));
   const std::uint64_t length = asked.range.end - asked.range.begin;
   if (length > kAtOnceBytes) {
-    response.stream =
-        Response::Stream{length, [&store = context.store, attachment, range = asked.range](const Response::Sink& sink) {
-                           return store.read_attachment(attachment, range.begin, range.end, sink).has_value();
-                         }};
+    response.stream = Response::Stream{
+        length,
+        [&store = context.store, attachment, range = asked.range](const Response::Sink& sink) {
+          return store.read_attachment(attachment, range.begin, range.end, sink).has_value();
+        }};
     return response;
   }
   response.bytes.reserve(length);
-  auto read = context.store.read_attachment(attachment, asked.range.begin, asked.range.end,
-                                            [&](std::span<const std::uint8_t> piece) {
-                                              response.bytes.insert(response.bytes.end(), piece.begin(), piece.end());
-                                              return true;
-                                            });
+  auto read = context.store.read_attachment(
+      attachment, asked.range.begin, asked.range.end, [&](std::span<const std::uint8_t> piece) {
+        response.bytes.insert(response.bytes.end(), piece.begin(), piece.end());
+        return true;
+      });
   if (!read) return tl::unexpected(read.error());
   return response;
 }
@@ -246,25 +260,31 @@ Result<Response> read_attachment(const RouteContext& context, const Request& req
     if (!asked) return tl::unexpected(asked.error());
     side = *asked;
   }
-  const std::string etag = "\"" + attachment->sha256 + (small ? "-" + std::to_string(side) : "") + "\"";
-  if (names_tag(request.header("if-none-match"), etag)) return empty_response(304).with("ETag", etag);
+  const std::string etag =
+      "\"" + attachment->sha256 + (small ? "-" + std::to_string(side) : "") + "\"";
+  if (names_tag(request.header("if-none-match"), etag))
+    return empty_response(304).with("ETag", etag);
   Result<Response> response;
   if (small) {
     response = thumbnail(context, *attachment, side);
     if (!response) return response;
   } else {
     const auto if_range = request.header("if-range");
-    const auto range = if_range.empty() || if_range == etag ? request.header("range") : std::string_view();
+    const auto range =
+        if_range.empty() || if_range == etag ? request.header("range") : std::string_view();
     const auto asked = asked_range(range, attachment->bytes);
     if (!asked) {
       Response refusal = problem_response(
-          {416, "No such bytes", "The file has " + std::to_string(attachment->bytes) + " bytes.", "Range"});
+          {416, "No such bytes", "The file has " + std::to_string(attachment->bytes) + " bytes.",
+           "Range"});
       return refusal.with("Content-Range", "bytes */" + std::to_string(attachment->bytes));
     }
     response = content(context, *attachment, *asked);
     if (!response) return response;
     const char* way = is_shown_in_place(attachment->media_type) ? "inline" : "attachment";
-    response->with("Content-Disposition", way + ("; filename*=UTF-8''" + percent_encode(attachment->name)))
+    response
+        ->with("Content-Disposition",
+               way + ("; filename*=UTF-8''" + percent_encode(attachment->name)))
         .with("Accept-Ranges", "bytes");
   }
   response->with("ETag", etag).with("Content-Security-Policy", kSandbox);
@@ -281,7 +301,8 @@ Result<Response> change_attachment(const RouteContext& context, const Request& r
   auto asked = body_of<protocol::AttachmentPatch>(request);
   if (!asked) return tl::unexpected(asked.error());
   const auto answer = [](const Attachment& now) { return json_response(to_json(now)); };
-  auto now = context.store.show_attachment(*id, asked->visibility, first_answer<Attachment>(request, answer));
+  auto now = context.store.show_attachment(*id, asked->visibility,
+                                           first_answer<Attachment>(request, answer));
   if (!now) return tl::unexpected(now.error());
   if (auto table = context.store.table(std::to_string(now->table_id), Role::owner))
     tell_table(context, protocol::TableEventEvent::changed, *table, request.user());
@@ -291,9 +312,11 @@ Result<Response> change_attachment(const RouteContext& context, const Request& r
 Result<Response> detach(const RouteContext& context, const Request& request) {
   auto id = attachment_id(request);
   if (!id) return tl::unexpected(id.error());
-  if (auto seen = context.store.attachment(*id, request.author()); !seen) return tl::unexpected(seen.error());
+  if (auto seen = context.store.attachment(*id, request.author()); !seen)
+    return tl::unexpected(seen.error());
   const auto answer = [](const store::TableChange&) { return empty_response(204); };
-  auto change = context.store.detach(*id, request.user(), first_answer<store::TableChange>(request, answer));
+  auto change =
+      context.store.detach(*id, request.user(), first_answer<store::TableChange>(request, answer));
   if (!change) return tl::unexpected(change.error());
   tell_change(context, *change, request.user());
   return answer(*change);
@@ -302,15 +325,19 @@ Result<Response> detach(const RouteContext& context, const Request& request) {
 }  // namespace
 
 void add_attachment_routes(Router& router, const RouteContext& context) {
-  for (const std::string parent : {"/api/v1/tables/{table}", "/api/v1/models/{model}/layers/{layer}"}) {
+  for (const std::string parent :
+       {"/api/v1/tables/{table}", "/api/v1/models/{model}/layers/{layer}"}) {
     const std::string attachments = parent + "/records/{key}/attachments";
     router.add({.method = Method::get,
                 .pattern = attachments,
-                .handler = answering([&context](const Request& request) { return list_attachments(context, request); }),
+                .handler = answering([&context](const Request& request) {
+                  return list_attachments(context, request);
+                }),
                 .query = {"at"}});
     router.add({.method = Method::post,
                 .pattern = attachments,
-                .handler = answering([&context](const Request& request) { return attach(context, request); }),
+                .handler = answering(
+                    [&context](const Request& request) { return attach(context, request); }),
                 .role = Role::annotator,
                 .query = {"name", "column", "visibility"},
                 .body = BodyKind::file,
@@ -320,18 +347,22 @@ void add_attachment_routes(Router& router, const RouteContext& context) {
   const std::string attachment = "/api/v1/attachments/{attachment}";
   router.add({.method = Method::get,
               .pattern = attachment,
-              .handler = answering([&context](const Request& request) { return read_attachment(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return read_attachment(context, request); }),
               .query = {"thumbnail"}});
   router.add({.method = Method::patch,
               .pattern = attachment,
-              .handler = answering([&context](const Request& request) { return change_attachment(context, request); }),
+              .handler = answering([&context](const Request& request) {
+                return change_attachment(context, request);
+              }),
               .role = Role::annotator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
               .keeps_answer = true});
   router.add({.method = Method::remove,
               .pattern = attachment,
-              .handler = answering([&context](const Request& request) { return detach(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return detach(context, request); }),
               .role = Role::annotator,
               .keeps_answer = true});
 }

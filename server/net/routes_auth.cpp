@@ -14,7 +14,8 @@ namespace strata::net {
 
 Result<Response> who_is_signed_in(const RouteContext& context, const std::string& user, Role role) {
   const auto person = context.store.person(user);
-  if (!person && person.error().status == 404) return fail(401, "Not signed in", "This account was closed meanwhile.");
+  if (!person && person.error().status == 404)
+    return fail(401, "Not signed in", "This account was closed meanwhile.");
   if (!person) return tl::unexpected(person.error());
   nlohmann::json me{{"user", person->name},
                     {"full_name", person->full_name},
@@ -24,18 +25,21 @@ Result<Response> who_is_signed_in(const RouteContext& context, const std::string
   return json_response(std::move(me));
 }
 
-Result<Response> signed_in(const RouteContext& context, const Request& request, const std::string& session) {
+Result<Response> signed_in(const RouteContext& context, const Request& request,
+                           const std::string& session) {
   auto principal = context.auth.identify_token(session);
   if (!principal) return tl::unexpected(principal.error());
   if (!*principal) return fail(401, "Not signed in", "This account was closed meanwhile.");
   auto response = who_is_signed_in(context, (*principal)->user, (*principal)->role);
-  if (response) response->with("Set-Cookie", Authenticator::set_cookie(session, needs_secure_cookie(request)));
+  if (response)
+    response->with("Set-Cookie", Authenticator::set_cookie(session, needs_secure_cookie(request)));
   return response;
 }
 
 Result<void> check_no_script(const Request& request) {
   if (!request.principal->is_script) return {};
-  return fail(403, "Not for scripts", "A token for scripts does nothing to accounts. Sign in with name and password.");
+  return fail(403, "Not for scripts",
+              "A token for scripts does nothing to accounts. Sign in with name and password.");
 }
 
 std::string told_name(const Request& request, const std::string& user) {
@@ -56,8 +60,9 @@ Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Re
   if (!asked) return tl::unexpected(asked.error());
   const std::string user = asked->user.value_or(""), address = address_of(request);
   if (auto free = gate.pass(address, user); !free) return tl::unexpected(free.error());
-  const auto session = asked->token ? context.auth.session_for_token(*asked->token, agent_of(request))
-                                    : context.auth.session_for_password(user, *asked->password, agent_of(request));
+  const auto session =
+      asked->token ? context.auth.session_for_token(*asked->token, agent_of(request))
+                   : context.auth.session_for_password(user, *asked->password, agent_of(request));
   if (!session) return tl::unexpected(session.error());
   gate.was_right(address, user);
   return signed_in(context, request, *session);
@@ -71,7 +76,8 @@ Result<Response> sign_out(const RouteContext& context, const Request& request) {
     if (!ended) return tl::unexpected(ended.error());
     context.live_sockets.close_those_of(session, kClosePolicy, "signed out");
   }
-  return empty_response(204).with("Set-Cookie", Authenticator::clear_cookie(needs_secure_cookie(request)));
+  return empty_response(204).with("Set-Cookie",
+                                  Authenticator::clear_cookie(needs_secure_cookie(request)));
 }
 
 Result<Response> change_me(const RouteContext& context, const Request& request) {
@@ -79,13 +85,14 @@ Result<Response> change_me(const RouteContext& context, const Request& request) 
   if (!asked) return tl::unexpected(asked.error());
   const auto person = context.store.person(request.user());
   if (!person) return tl::unexpected(person.error());
-  const auto changed =
-      context.store.change_person(person->id, {.full_name = asked->full_name, .role = {}, .disabled = {}});
+  const auto changed = context.store.change_person(
+      person->id, {.full_name = asked->full_name, .role = {}, .disabled = {}});
   if (!changed) return tl::unexpected(changed.error());
   return who_is_signed_in(context, request.user(), request.principal->role);
 }
 
-Result<Response> change_password(const RouteContext& context, SignInGate& gate, const Request& request) {
+Result<Response> change_password(const RouteContext& context, SignInGate& gate,
+                                 const Request& request) {
   const auto asked = body_of<protocol::PasswordChange>(request);
   if (!asked) return tl::unexpected(asked.error());
   if (auto good = store::check_password(asked->password, request.user(), "password"); !good)
@@ -94,10 +101,14 @@ Result<Response> change_password(const RouteContext& context, SignInGate& gate, 
   if (!hash) return tl::unexpected(hash.error());
   if (!hash->empty()) {
     // Whoever sits at somebody else's browser guesses no faster than from anywhere.
-    if (auto free = gate.pass(address_of(request), request.user()); !free) return tl::unexpected(free.error());
-    const auto fits = asked->current ? store::password_fits(*hash, *asked->current) : Result<bool>(false);
+    if (auto free = gate.pass(address_of(request), request.user()); !free)
+      return tl::unexpected(free.error());
+    const auto fits =
+        asked->current ? store::password_fits(*hash, *asked->current) : Result<bool>(false);
     if (!fits) return tl::unexpected(fits.error());
-    if (!*fits) return fail(422, "Password does not fit", "This is not the password that you have now.", "current");
+    if (!*fits)
+      return fail(422, "Password does not fit", "This is not the password that you have now.",
+                  "current");
     gate.was_right(address_of(request), request.user());
   }
   const auto chosen = store::hash_password(asked->password);
@@ -109,7 +120,8 @@ Result<Response> change_password(const RouteContext& context, SignInGate& gate, 
   return empty_response(204);
 }
 
-std::optional<std::string> text_of(const std::optional<std::chrono::system_clock::time_point>& time) {
+std::optional<std::string> text_of(
+    const std::optional<std::chrono::system_clock::time_point>& time) {
   return time ? std::optional(utc_text(*time)) : std::nullopt;
 }
 
@@ -135,13 +147,14 @@ nlohmann::json token_json(const store::Token& token) {
 }
 
 template <class Write>
-Result<Response> list_of(const RouteContext& context, const Request& request, TokenKind kind, const char* member,
-                         Write write) {
+Result<Response> list_of(const RouteContext& context, const Request& request, TokenKind kind,
+                         const char* member, Write write) {
   const auto page = page_of(request, kMaxPage);
   if (!page) return tl::unexpected(page.error());
   const auto tokens = context.store.tokens(request.user(), kind);
   if (!tokens) return tl::unexpected(tokens.error());
-  const auto part = slice_by(*page, *tokens, [](const store::Token& token) { return NumberKey{-token.id}; });
+  const auto part =
+      slice_by(*page, *tokens, [](const store::Token& token) { return NumberKey{-token.id}; });
   if (!part) return tl::unexpected(part.error());
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(write((*tokens)[i]));
@@ -152,16 +165,19 @@ Result<Response> list_of(const RouteContext& context, const Request& request, To
 
 Result<Response> end_one(const RouteContext& context, const Request& request, TokenKind kind,
                          const std::string& param) {
-  const auto id = parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), param);
+  const auto id =
+      parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), param);
   if (!id) return tl::unexpected(id.error());
-  if (auto ended = context.store.revoke_token(request.user(), kind, *id); !ended) return tl::unexpected(ended.error());
+  if (auto ended = context.store.revoke_token(request.user(), kind, *id); !ended)
+    return tl::unexpected(ended.error());
   context.auth.forget();
   context.live_sockets.close_user(request.user(), kClosePolicy, "a session ended");
   return empty_response(204);
 }
 
 Result<Response> end_others(const RouteContext& context, const Request& request) {
-  auto ended = context.store.revoke_tokens(request.user(), TokenKind::session, request.principal->secret);
+  auto ended =
+      context.store.revoke_tokens(request.user(), TokenKind::session, request.principal->secret);
   if (!ended) return tl::unexpected(ended.error());
   context.auth.forget();
   context.live_sockets.close_user(request.user(), kClosePolicy, "other sessions ended");
@@ -189,11 +205,12 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
   if (asked->role) role = static_cast<Role>(static_cast<int>(*asked->role));
   if (role > own)
     return fail(403, "Not allowed",
-                "Your highest role " + std::string(only ? "there " : "") + "is " + std::string(name(own)) +
-                    ": a token of yours can do no more.",
+                "Your highest role " + std::string(only ? "there " : "") + "is " +
+                    std::string(name(own)) + ": a token of yours can do no more.",
                 "role");
-  const auto made = context.store.create_token(TokenKind::script, request.user(), role,
-                                               std::chrono::hours(24 * asked->days), asked->name, {}, only);
+  const auto made =
+      context.store.create_token(TokenKind::script, request.user(), role,
+                                 std::chrono::hours(24 * asked->days), asked->name, {}, only);
   if (!made) return tl::unexpected(made.error());
   return json_response({{"secret", made->secret}, {"token", token_json(made->token)}}, 201)
       .with("Cache-Control", "no-store");
@@ -204,7 +221,8 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
 void add_auth_routes(Router& router, const RouteContext& context) {
   auto gate = std::make_shared<SignInGate>();
   // What people change of themselves.
-  const auto add = [&](Method method, std::string pattern, auto answer, std::vector<std::string> query = {}) {
+  const auto add = [&](Method method, std::string pattern, auto answer,
+                       std::vector<std::string> query = {}) {
     const bool has_body = method == Method::post || method == Method::patch;
     router.add({.method = method,
                 .pattern = std::move(pattern),
@@ -219,27 +237,32 @@ void add_auth_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/login",
               .handler = answering([&context, gate](const Request& request) -> Result<Response> {
-                if (auto free = gate->pass(address_of(request), {}); !free) return tl::unexpected(free.error());
-                auto session = context.auth.session_for_link(request.query_or("link", {}), agent_of(request));
+                if (auto free = gate->pass(address_of(request), {}); !free)
+                  return tl::unexpected(free.error());
+                auto session =
+                    context.auth.session_for_link(request.query_or("link", {}), agent_of(request));
                 if (!session) return tl::unexpected(session.error());
                 gate->was_right(address_of(request), {});
                 return empty_response(303)
                     .with("Location", "/")
-                    .with("Set-Cookie", Authenticator::set_cookie(*session, needs_secure_cookie(request)))
+                    .with("Set-Cookie",
+                          Authenticator::set_cookie(*session, needs_secure_cookie(request)))
                     .with("Cache-Control", "no-store");
               }),
               .role = std::nullopt,
               .query = {"link"}});
-  router.add(
-      {.method = Method::post,
-       .pattern = "/api/v1/login",
-       .handler = answering([&context, gate](const Request& request) { return sign_in(context, *gate, request); }),
-       .role = std::nullopt,
-       .body = BodyKind::memory,
-       .max_body = context.options.max_json_bytes});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/login",
+              .handler = answering([&context, gate](const Request& request) {
+                return sign_in(context, *gate, request);
+              }),
+              .role = std::nullopt,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
   router.add({.method = Method::post,
               .pattern = "/api/v1/logout",
-              .handler = answering([&context](const Request& request) { return sign_out(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return sign_out(context, request); }),
               .role = Role::guest});
   router.add({.method = Method::get,
               .pattern = "/api/v1/me",
@@ -247,26 +270,32 @@ void add_auth_routes(Router& router, const RouteContext& context) {
                 return who_is_signed_in(context, request.user(), request.principal->role);
               }),
               .role = Role::guest});
-  add(Method::patch, "/api/v1/me", [&context](const Request& request) { return change_me(context, request); });
-  add(Method::post, "/api/v1/me/password",
-      [&context, gate](const Request& request) { return change_password(context, *gate, request); });
+  add(Method::patch, "/api/v1/me",
+      [&context](const Request& request) { return change_me(context, request); });
+  add(Method::post, "/api/v1/me/password", [&context, gate](const Request& request) {
+    return change_password(context, *gate, request);
+  });
   const std::vector<std::string> paged{"limit", "offset", "after"};
   const auto list_sessions = [&context](const Request& request) {
-    return list_of(context, request, TokenKind::session, "sessions",
-                   [&](const store::Token& token) { return session_json(token, request.principal->secret); });
+    return list_of(
+        context, request, TokenKind::session, "sessions",
+        [&](const store::Token& token) { return session_json(token, request.principal->secret); });
   };
   add(Method::get, "/api/v1/me/sessions", list_sessions, paged);
   add(Method::remove, "/api/v1/me/sessions",
       [&context](const Request& request) { return end_others(context, request); });
-  add(Method::remove, "/api/v1/me/sessions/{session}",
-      [&context](const Request& request) { return end_one(context, request, TokenKind::session, "session"); });
+  add(Method::remove, "/api/v1/me/sessions/{session}", [&context](const Request& request) {
+    return end_one(context, request, TokenKind::session, "session");
+  });
   const auto list_tokens = [&context](const Request& request) {
     return list_of(context, request, TokenKind::script, "tokens", token_json);
   };
   add(Method::get, "/api/v1/me/tokens", list_tokens, paged);
-  add(Method::post, "/api/v1/me/tokens", [&context](const Request& request) { return create_token(context, request); });
-  add(Method::remove, "/api/v1/me/tokens/{token}",
-      [&context](const Request& request) { return end_one(context, request, TokenKind::script, "token"); });
+  add(Method::post, "/api/v1/me/tokens",
+      [&context](const Request& request) { return create_token(context, request); });
+  add(Method::remove, "/api/v1/me/tokens/{token}", [&context](const Request& request) {
+    return end_one(context, request, TokenKind::script, "token");
+  });
 }
 
 }  // namespace strata::net

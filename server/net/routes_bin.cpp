@@ -14,7 +14,9 @@ using store::BinEntry;
 using store::BinRestored;
 
 const char* name_of(BinEntry::Kind kind) {
-  return kind == BinEntry::Kind::layer ? "layer" : kind == BinEntry::Kind::model ? "model" : "record";
+  return kind == BinEntry::Kind::layer   ? "layer"
+         : kind == BinEntry::Kind::model ? "model"
+                                         : "record";
 }
 
 store::Bin::Sight sight_of(const RouteContext& context, const Request& request) {
@@ -56,7 +58,8 @@ Response to_response(const BinRestored& restored) {
 Result<std::optional<store::Bin::Place>> bin_place(const Page& page) {
   if (!page.after) return std::nullopt;
   const ListPlace& place = *page.after;
-  if (place.size() != 4 || !std::ranges::all_of(place, [](const auto& value) { return value.is_number_integer(); }))
+  if (place.size() != 4 ||
+      !std::ranges::all_of(place, [](const auto& value) { return value.is_number_integer(); }))
     return wrong_place();
   const auto kind = place[1].get<std::int64_t>();
   if (kind < 0 || kind > static_cast<int>(BinEntry::Kind::record)) return wrong_place();
@@ -71,19 +74,23 @@ Result<Response> list_bin(const RouteContext& context, const Request& request) {
   if (!project) return tl::unexpected(project.error());
   const auto after = bin_place(*page);
   if (!after) return tl::unexpected(after.error());
-  auto found =
-      context.store.bin().of_project(project->id, sight_of(context, request), page->limit + 1, page->offset, *after);
+  auto found = context.store.bin().of_project(project->id, sight_of(context, request),
+                                              page->limit + 1, page->offset, *after);
   if (!found) return tl::unexpected(found.error());
   const auto last = end_page(found->entries, *page, [](const BinEntry& entry) {
-    const auto deleted = std::chrono::duration_cast<std::chrono::microseconds>(entry.deleted.time_since_epoch());
-    return ListPlace::array({deleted.count(), static_cast<int>(entry.kind), entry.table_id, entry.id});
+    const auto deleted =
+        std::chrono::duration_cast<std::chrono::microseconds>(entry.deleted.time_since_epoch());
+    return ListPlace::array(
+        {deleted.count(), static_cast<int>(entry.kind), entry.table_id, entry.id});
   });
   const std::chrono::days keep(context.options.bin_days);
   nlohmann::json entries = nlohmann::json::array();
   for (const BinEntry& entry : found->entries) entries.push_back(to_json(entry, keep));
-  if (auto named = People::add_to(context.store, entries); !named) return tl::unexpected(named.error());
-  Response response =
-      json_response({{"entries", std::move(entries)}, {"total", found->total}, {"days", context.options.bin_days}});
+  if (auto named = People::add_to(context.store, entries); !named)
+    return tl::unexpected(named.error());
+  Response response = json_response({{"entries", std::move(entries)},
+                                     {"total", found->total},
+                                     {"days", context.options.bin_days}});
   add_page_links(response, request, *page, last);
   return response;
 }
@@ -114,10 +121,11 @@ Result<BinEntry> find_entry(const RouteContext& context, const Request& request)
     const auto numbers = numbers_of(ref.substr(begin.size()));
     const bool is_record = kind == BinEntry::Kind::record;
     if (!numbers || numbers->size() != (is_record ? 2u : 1u)) break;
-    return context.store.bin().entry(project->id, kind, numbers->back(), is_record ? numbers->front() : 0,
-                                     sight_of(context, request));
+    return context.store.bin().entry(project->id, kind, numbers->back(),
+                                     is_record ? numbers->front() : 0, sight_of(context, request));
   }
-  return fail(404, "Not in the Bin", "The project's Bin has no `" + std::string(ref.substr(0, 100)) + "`.");
+  return fail(404, "Not in the Bin",
+              "The project's Bin has no `" + std::string(ref.substr(0, 100)) + "`.");
 }
 
 Result<Response> restore(const RouteContext& context, const Request& request) {
@@ -125,8 +133,8 @@ Result<Response> restore(const RouteContext& context, const Request& request) {
   if (!entry) return tl::unexpected(entry.error());
   if (entry->kind == BinEntry::Kind::record) {
     const auto respond = [&](const store::TableChange&) { return to_response({*entry, {}, {}}); };
-    const auto change =
-        context.store.bin().restore_record(*entry, request.user(), first_answer<store::TableChange>(request, respond));
+    const auto change = context.store.bin().restore_record(
+        *entry, request.user(), first_answer<store::TableChange>(request, respond));
     if (!change) return tl::unexpected(change.error());
     tell_change(context, *change, request.user());
     return respond(*change);
@@ -146,7 +154,8 @@ Result<Response> restore(const RouteContext& context, const Request& request) {
 Result<Response> erase(const RouteContext& context, const Request& request) {
   const auto entry = find_entry(context, request);
   if (!entry) return tl::unexpected(entry.error());
-  const auto gone = context.store.bin().erase(*entry, first_answer<>(request, [] { return empty_response(204); }));
+  const auto gone = context.store.bin().erase(
+      *entry, first_answer<>(request, [] { return empty_response(204); }));
   if (!gone) return tl::unexpected(gone.error());
   context.bin_keeper.look();
   return empty_response(204);
@@ -158,19 +167,22 @@ void add_bin_routes(Router& router, const RouteContext& context) {
   const std::string bin = "/api/v1/projects/{project}/bin", entry = bin + "/{entry}";
   router.add({.method = Method::get,
               .pattern = bin,
-              .handler = answering([&context](const Request& request) { return list_bin(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_bin(context, request); }),
               .role = Role::annotator,
               .query = {"limit", "offset", "after"}});
   router.add({.method = Method::post,
               .pattern = entry + "/restore",
-              .handler = answering([&context](const Request& request) { return restore(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return restore(context, request); }),
               .role = Role::annotator,
               .keeps_answer = true});
-  router.add({.method = Method::remove,
-              .pattern = entry,
-              .handler = answering([&context](const Request& request) { return erase(context, request); }),
-              .role = Role::curator,
-              .keeps_answer = true});
+  router.add(
+      {.method = Method::remove,
+       .pattern = entry,
+       .handler = answering([&context](const Request& request) { return erase(context, request); }),
+       .role = Role::curator,
+       .keeps_answer = true});
 }
 
 }  // namespace strata::net

@@ -1,4 +1,5 @@
-// Threads of comments on a model. Everybody reads them, annotators write; what one wrote one changes oneself, and curators may delete it.
+// Threads of comments on a model. Everybody reads them, annotators write; what one wrote one
+// changes oneself, and curators may delete it.
 #include <set>
 
 #include "core/log.h"
@@ -23,9 +24,10 @@ constexpr double kFarthest = 0.05;  // from the surface, of the model's diagonal
 nlohmann::json to_json(const glm::dvec3& point) { return {point.x, point.y, point.z}; }
 
 nlohmann::json to_json(const Comment& comment) {
-  nlohmann::json json{{"id", comment.id},          {"model", comment.model_id},      {"text", comment.text},
-                      {"user", comment.user},      {"time", utc_text(comment.time)}, {"deleted", comment.deleted},
-                      {"version", comment.version}};
+  nlohmann::json json{
+      {"id", comment.id},          {"model", comment.model_id},      {"text", comment.text},
+      {"user", comment.user},      {"time", utc_text(comment.time)}, {"deleted", comment.deleted},
+      {"version", comment.version}};
   if (comment.thread) json["thread"] = *comment.thread;
   if (comment.place) {
     json["position"] = to_json(comment.place->position);
@@ -38,13 +40,15 @@ nlohmann::json to_json(const Comment& comment) {
     json["record"] = *comment.record;
   }
   if (comment.resolved)
-    json["resolved"] = {{"user", comment.resolved->user}, {"time", utc_text(comment.resolved->time)}};
+    json["resolved"] = {{"user", comment.resolved->user},
+                        {"time", utc_text(comment.resolved->time)}};
   if (comment.edited) json["edited"] = utc_text(*comment.edited);
   return json;
 }
 
 // Those whom a comment, and what is done to it now, may name.
-Result<People> people_of(const RouteContext& context, const Comment& comment, const std::string& asking) {
+Result<People> people_of(const RouteContext& context, const Comment& comment,
+                         const std::string& asking) {
   std::vector<std::string> names{comment.user, asking};
   if (comment.resolved) names.push_back(comment.resolved->user);
   return People::load(context.store, names);
@@ -56,20 +60,21 @@ nlohmann::json to_json(const Comment& comment, const People& people) {
   return json;
 }
 
-Result<Response> page_response(const RouteContext& context, const Request& request, const char* list,
-                               Comments::Page found, const Page& page) {
-  const auto last =
-      end_page(found.comments, page, [](const Comment& comment) { return ListPlace::array({comment.id}); });
+Result<Response> page_response(const RouteContext& context, const Request& request,
+                               const char* list, Comments::Page found, const Page& page) {
+  const auto last = end_page(found.comments, page,
+                             [](const Comment& comment) { return ListPlace::array({comment.id}); });
   nlohmann::json comments = nlohmann::json::array();
   for (const Comment& comment : found.comments) comments.push_back(to_json(comment));
-  if (auto named = People::add_to(context.store, comments); !named) return tl::unexpected(named.error());
+  if (auto named = People::add_to(context.store, comments); !named)
+    return tl::unexpected(named.error());
   Response response = json_response({{list, std::move(comments)}, {"total", found.total}});
   add_page_links(response, request, page, last);
   return response;
 }
 
-void tell(const RouteContext& context, CommentEventEvent event, const Comment& comment, const People& people,
-          const std::string& user) {
+void tell(const RouteContext& context, CommentEventEvent event, const Comment& comment,
+          const People& people, const std::string& user) {
   protocol::CommentEvent message;
   message.event = event;
   message.comment_id = comment.id;
@@ -101,7 +106,9 @@ Result<Response> list_comments(const RouteContext& context, const Request& reque
   if (const auto since = request.query.find("since"); since != request.query.end()) {
     query.since = utc_timestamp(since->second);
     if (!query.since)
-      return fail(422, "Not a time", "`since` is a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).", "since");
+      return fail(422, "Not a time",
+                  "`since` is a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).",
+                  "since");
   }
   const auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
@@ -117,7 +124,8 @@ Result<Response> list_replies(const RouteContext& context, const Request& reques
   if (!thread) return tl::unexpected(thread.error());
   const auto after = number_after(*page);
   if (!after) return tl::unexpected(after.error());
-  auto found = context.store.comments().replies(thread->id, request.role(), page->limit + 1, page->offset, *after);
+  auto found = context.store.comments().replies(thread->id, request.role(), page->limit + 1,
+                                                page->offset, *after);
   if (!found) return tl::unexpected(found.error());
   return page_response(context, request, "replies", *found, *page);
 }
@@ -136,10 +144,12 @@ Result<Comment::Place> place_on(room::Room& room, const glm::dvec3& world) {
 }
 
 // What the comment is about, as asked for.
-Result<void> put_subject(const RouteContext& context, const room::Room& room, const protocol::CommentCreate& asked,
-                         Comment& comment) {
+Result<void> put_subject(const RouteContext& context, const room::Room& room,
+                         const protocol::CommentCreate& asked, Comment& comment) {
   if (!asked.layer) {
-    if (asked.record) return fail(422, "Record of no layer", "`record` is a key of a `layer`; name it, too.", "layer");
+    if (asked.record)
+      return fail(422, "Record of no layer", "`record` is a key of a `layer`; name it, too.",
+                  "layer");
     return {};
   }
   const auto layers = find_layers(room, {protocol::to_ref(*asked.layer)}, "layer");
@@ -148,18 +158,22 @@ Result<void> put_subject(const RouteContext& context, const room::Room& room, co
   comment.layer_id = layer.id;
   if (!asked.record) return {};
   if (!layer.table)
-    return fail(422, "No records", "The layer `" + layer.slug + "` is numeric: it has no records.", "record");
+    return fail(422, "No records", "The layer `" + layer.slug + "` is numeric: it has no records.",
+                "record");
   const auto missing = context.store.missing_records(*layer.table, std::vector{*asked.record});
   if (!missing) return tl::unexpected(missing.error());
   if (!missing->empty())
-    return fail(422, "No such record",
-                "The table of `" + layer.slug + "` has no record " + std::to_string(*asked.record) + ".", "record");
+    return fail(
+        422, "No such record",
+        "The table of `" + layer.slug + "` has no record " + std::to_string(*asked.record) + ".",
+        "record");
   comment.table_id = *layer.table;
   comment.record = *asked.record;
   return {};
 }
 
-Result<Response> write(const RouteContext& context, const Request& request, const Comment& comment) {
+Result<Response> write(const RouteContext& context, const Request& request,
+                       const Comment& comment) {
   const auto people = people_of(context, comment, request.user());
   if (!people) return tl::unexpected(people.error());
   const auto answer = [&people](const Comment& made) {
@@ -167,7 +181,8 @@ Result<Response> write(const RouteContext& context, const Request& request, cons
         .with("Location", "/api/v1/comments/" + std::to_string(made.id))
         .with("ETag", etag_of(made.version));
   };
-  const auto written = context.store.comments().create(comment, first_answer<Comment>(request, answer));
+  const auto written =
+      context.store.comments().create(comment, first_answer<Comment>(request, answer));
   if (!written) return tl::unexpected(written.error());
   tell(context, CommentEventEvent::created, *written, *people, request.user());
   return answer(*written);
@@ -183,7 +198,8 @@ Result<Response> create_comment(const RouteContext& context, const Request& requ
   Comment comment;
   comment.model_id = (*room)->model().id;
   comment.place = *place;
-  if (auto put = put_subject(context, **room, *asked, comment); !put) return tl::unexpected(put.error());
+  if (auto put = put_subject(context, **room, *asked, comment); !put)
+    return tl::unexpected(put.error());
   comment.text = asked->text;
   comment.user = request.user();
   return write(context, request, comment);
@@ -206,19 +222,24 @@ Result<Response> change_comment(const RouteContext& context, const Request& requ
   if (!asked) return tl::unexpected(asked.error());
   auto comment = stored_comment(context, request);
   if (!comment) return tl::unexpected(comment.error());
-  if (auto fresh = check_if_match(request, comment->version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, comment->version); !fresh)
+    return tl::unexpected(fresh.error());
   if (asked->text) {
     if (comment->user != request.user())
-      return fail(403, "Not yours", "Only " + comment->user + " changes the text of this comment. Reply to it.",
+      return fail(403, "Not yours",
+                  "Only " + comment->user + " changes the text of this comment. Reply to it.",
                   "text");
     if (comment->deleted)
-      return fail(409, "Deleted already", "The comment was deleted; it stands there for its replies.", "text");
+      return fail(409, "Deleted already",
+                  "The comment was deleted; it stands there for its replies.", "text");
     comment->text = *asked->text;
   }
   if (asked->state) {
     if (comment->thread)
       return fail(422, "State of a reply",
-                  "The state is that of the thread: change comment " + std::to_string(*comment->thread) + ".", "state");
+                  "The state is that of the thread: change comment " +
+                      std::to_string(*comment->thread) + ".",
+                  "state");
     if (*asked->state == protocol::CommentState::open)
       comment->resolved.reset();
     else if (!comment->resolved)
@@ -229,7 +250,8 @@ Result<Response> change_comment(const RouteContext& context, const Request& requ
   const auto answer = [&people](const Comment& now) {
     return json_response(to_json(now, *people)).with("ETag", etag_of(now.version));
   };
-  const auto changed = context.store.comments().update(*comment, first_answer<Comment>(request, answer));
+  const auto changed =
+      context.store.comments().update(*comment, first_answer<Comment>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   tell(context, CommentEventEvent::changed, *changed, *people, request.user());
   return answer(*changed);
@@ -238,15 +260,18 @@ Result<Response> change_comment(const RouteContext& context, const Request& requ
 Result<Response> delete_comment(const RouteContext& context, const Request& request) {
   const auto comment = stored_comment(context, request);
   if (!comment) return tl::unexpected(comment.error());
-  if (auto fresh = check_if_match(request, comment->version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, comment->version); !fresh)
+    return tl::unexpected(fresh.error());
   if (comment->user != request.user() && request.principal->role < Role::curator)
     return fail(403, "Not yours", "Only " + comment->user + " and curators delete this comment.");
   const auto answer = [](const Comments::Removal&) { return empty_response(204); };
-  const auto removal = context.store.comments().remove(*comment, first_answer<Comments::Removal>(request, answer));
+  const auto removal =
+      context.store.comments().remove(*comment, first_answer<Comments::Removal>(request, answer));
   if (!removal) return tl::unexpected(removal.error());
   if (removal->left) {
     const auto people = people_of(context, *removal->left, request.user());
-    tell(context, CommentEventEvent::changed, *removal->left, people.value_or(People()), request.user());
+    tell(context, CommentEventEvent::changed, *removal->left, people.value_or(People()),
+         request.user());
   }
   for (const auto id : removal->gone) {
     protocol::CommentEvent message;
@@ -260,12 +285,15 @@ Result<Response> delete_comment(const RouteContext& context, const Request& requ
 
 }  // namespace
 
-void tell_threads(const RouteContext& context, const Layer& layer, Visibility before, const std::string& user) {
+void tell_threads(const RouteContext& context, const Layer& layer, Visibility before,
+                  const std::string& user) {
   if (layer.visibility == before) return;
   Comments::Query all;
   all.limit = static_cast<int>(Comments::kMostComments);
   const auto found = context.store.comments().of_model(layer.model_id, Role::owner, all);
-  if (!found) return log::warning("threads about layer " + std::to_string(layer.id) + ": " + found.error().detail);
+  if (!found)
+    return log::warning("threads about layer " + std::to_string(layer.id) + ": " +
+                        found.error().detail);
   std::set<std::int64_t> threads;
   for (const Comment& comment : found->comments)
     if (comment.layer_id == layer.id) threads.insert(comment.id);
@@ -275,7 +303,9 @@ void tell_threads(const RouteContext& context, const Layer& layer, Visibility be
     if (comment.resolved) names.push_back(comment.resolved->user);
   }
   const auto people = People::load(context.store, names);
-  if (!people) return log::warning("threads about layer " + std::to_string(layer.id) + ": " + people.error().detail);
+  if (!people)
+    return log::warning("threads about layer " + std::to_string(layer.id) + ": " +
+                        people.error().detail);
   for (const Comment& comment : found->comments) {
     if (!threads.contains(comment.thread.value_or(comment.id))) continue;
     protocol::CommentEvent message;
@@ -284,15 +314,19 @@ void tell_threads(const RouteContext& context, const Layer& layer, Visibility be
     const bool is_seen_by_more = layer.visibility < before;
     message.event = is_seen_by_more ? CommentEventEvent::changed : CommentEventEvent::deleted;
     if (is_seen_by_more) message.comment = to_json(comment, *people);
-    const auto is_meant = [&](Role role) { return sees(role, before) != sees(role, layer.visibility); };
+    const auto is_meant = [&](Role role) {
+      return sees(role, before) != sees(role, layer.visibility);
+    };
     for (const Visibility sight : {Visibility::everyone, Visibility::team, Visibility::curators})
-      if (is_meant(least_role(sight))) context.live_sockets.tell_sight(layer.model_id, sight, message);
+      if (is_meant(least_role(sight)))
+        context.live_sockets.tell_sight(layer.model_id, sight, message);
   }
 }
 
 void add_comment_routes(Router& router, const RouteContext& context) {
   AnnotatedRoutes routes(router, context);
-  const std::string of_model = "/api/v1/models/{model}/comments", comment = "/api/v1/comments/{comment}";
+  const std::string of_model = "/api/v1/models/{model}/comments",
+                    comment = "/api/v1/comments/{comment}";
   routes.read(of_model, list_comments, {"state", "since", "limit", "offset", "after"});
   routes.change(Method::post, of_model, create_comment);
   routes.read(comment, [](const RouteContext& of, const Request& request) -> Result<Response> {

@@ -15,13 +15,15 @@ Result<Response> history(const RouteContext& context, const Request& request) {
   if (!before) return tl::unexpected(before.error());
   auto rows = context.store.history(layer->id, page->limit + 1, page->offset, *before);
   if (!rows) return tl::unexpected(rows.error());
-  const auto last = end_page(rows->rows, *page, [](const auto& row) { return ListPlace::array({row.sequence}); });
+  const auto last =
+      end_page(rows->rows, *page, [](const auto& row) { return ListPlace::array({row.sequence}); });
   nlohmann::json list = nlohmann::json::array();
   for (const auto& row : rows->rows) {
     nlohmann::json told = to_json(row);
     // An expression of then may name what fewer people see now.
     if (told.contains("expression")) {
-      const auto seen = sees_all_of(context, request.role(), layer->model_id, told.at("expression").get<std::string>());
+      const auto seen = sees_all_of(context, request.role(), layer->model_id,
+                                    told.at("expression").get<std::string>());
       if (!seen) return tl::unexpected(seen.error());
       if (!*seen) told.erase("expression");
     }
@@ -38,17 +40,20 @@ Result<Response> list_review(const RouteContext& context, const Request& request
   auto layer = stored_layer(context, request);
   if (!layer) return tl::unexpected(layer.error());
   std::optional<std::string> user;
-  if (const auto asked = request.query.find("user"); asked != request.query.end()) user = asked->second;
+  if (const auto asked = request.query.find("user"); asked != request.query.end())
+    user = asked->second;
   if (user && (user->empty() || user->size() > 200))
     return fail(422, "Bad name", "`user` is the name of a person.", "user");
   const auto after = number_after(*page);
   if (!after) return tl::unexpected(after.error());
   auto queue = context.store.review_queue(layer->id, user, page->limit + 1, page->offset, *after);
   if (!queue) return tl::unexpected(queue.error());
-  const auto last =
-      end_page(queue->strokes, *page, [](const auto& stroke) { return ListPlace::array({stroke.sequence}); });
+  const auto last = end_page(queue->strokes, *page, [](const auto& stroke) {
+    return ListPlace::array({stroke.sequence});
+  });
   nlohmann::json answer = to_json(*queue);
-  if (auto named = People::add_to(context.store, answer); !named) return tl::unexpected(named.error());
+  if (auto named = People::add_to(context.store, answer); !named)
+    return tl::unexpected(named.error());
   Response response = json_response(std::move(answer));
   add_page_links(response, request, *page, last);
   return response;
@@ -96,8 +101,9 @@ Result<room::EditRequest> review_edit(const Request& request, const Target& targ
   if (asked->edits) edit.record["edits"] = *asked->edits;
   if (asked->user) edit.record["user"] = *asked->user;
   if (asked->reason) edit.record["reason"] = *asked->reason;
-  edit.edit = room::ReviewEdit{
-      decision, {asked->edits.value_or(std::vector<std::int64_t>{}), asked->user}, asked->reason.value_or("")};
+  edit.edit = room::ReviewEdit{decision,
+                               {asked->edits.value_or(std::vector<std::int64_t>{}), asked->user},
+                               asked->reason.value_or("")};
   return edit;
 }
 
@@ -124,47 +130,58 @@ void add_edit_routes(Router& router, const RouteContext& context) {
   };
   router.add({.method = Method::get,
               .pattern = layer + "/edits",
-              .handler = answering([&context](const Request& request) { return history(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return history(context, request); }),
               .query = {"limit", "offset", "after"}});
   change(layer + "/edits",
-         editing(context, [&context](const Request& request, const Target& target) -> Result<room::EditRequest> {
-           auto asked = body_of<protocol::Edit>(request);
-           if (!asked) return tl::unexpected(asked.error());
-           return edit_request(*asked, target.layer, target.room->model(), edit_id(request, target.layer, "edit"),
-                               request.author(), [&](const std::string& ref) { return context.tools.find(ref); });
-         }));
+         editing(
+             context,
+             [&context](const Request& request, const Target& target) -> Result<room::EditRequest> {
+               auto asked = body_of<protocol::Edit>(request);
+               if (!asked) return tl::unexpected(asked.error());
+               return edit_request(*asked, target.layer, target.room->model(),
+                                   edit_id(request, target.layer, "edit"), request.author(),
+                                   [&](const std::string& ref) { return context.tools.find(ref); });
+             }));
   router.add({.method = Method::get,
               .pattern = layer + "/review",
-              .handler = answering([&context](const Request& request) { return list_review(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_review(context, request); }),
               .query = {"user", "limit", "offset", "after"}});
   change(layer + "/review", editing(context, review_edit), Role::curator);
   change(layer + "/undo",
-         editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
-           if (auto empty = check_empty(request); !empty) return tl::unexpected(empty.error());
-           auto edit = bare_edit(request, target, "undo");
-           edit.edit = room::UndoEdit{};
-           return edit;
-         }));
+         editing(context,
+                 [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+                   if (auto empty = check_empty(request); !empty)
+                     return tl::unexpected(empty.error());
+                   auto edit = bare_edit(request, target, "undo");
+                   edit.edit = room::UndoEdit{};
+                   return edit;
+                 }));
   change(layer + "/redo",
-         editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
-           if (auto empty = check_empty(request); !empty) return tl::unexpected(empty.error());
-           auto edit = bare_edit(request, target, "redo");
-           edit.edit = room::RedoEdit{};
-           return edit;
-         }));
+         editing(context,
+                 [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+                   if (auto empty = check_empty(request); !empty)
+                     return tl::unexpected(empty.error());
+                   auto edit = bare_edit(request, target, "redo");
+                   edit.edit = room::RedoEdit{};
+                   return edit;
+                 }));
   change(layer + "/restore",
-         editing(context, [](const Request& request, const Target& target) -> Result<room::EditRequest> {
-           auto asked = body_of<protocol::Restore>(request);
-           if (!asked) return tl::unexpected(asked.error());
-           if (asked->sequence > target.room->sequence())
-             return fail(422, "Not yet there",
-                         "The newest sequence of this model is " + std::to_string(target.room->sequence()) + ".",
-                         "sequence");
-           auto edit = bare_edit(request, target, "restore");
-           edit.record["sequence"] = asked->sequence;
-           edit.edit = room::RestoreEdit{asked->sequence};
-           return edit;
-         }));
+         editing(context,
+                 [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+                   auto asked = body_of<protocol::Restore>(request);
+                   if (!asked) return tl::unexpected(asked.error());
+                   if (asked->sequence > target.room->sequence())
+                     return fail(422, "Not yet there",
+                                 "The newest sequence of this model is " +
+                                     std::to_string(target.room->sequence()) + ".",
+                                 "sequence");
+                   auto edit = bare_edit(request, target, "restore");
+                   edit.record["sequence"] = asked->sequence;
+                   edit.edit = room::RestoreEdit{asked->sequence};
+                   return edit;
+                 }));
 }
 
 }  // namespace strata::net

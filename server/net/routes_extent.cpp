@@ -8,8 +8,8 @@
 namespace strata::net {
 namespace {
 
-// Where the records lie that a person highlights, with what is painted and with their lines and points: to fly there, and to tell how
-// much surface they have.
+// Where the records lie that a person highlights, with what is painted and with their lines and
+// points: to fly there, and to tell how much surface they have.
 Result<Response> extent(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::Highlight>(request);
   if (!asked) return tl::unexpected(asked.error());
@@ -19,7 +19,8 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
   if (!layer) return tl::unexpected(layer.error());
   auto highlight = highlight_of(*asked, *layer, "");
   if (!highlight) return tl::unexpected(highlight.error());
-  auto keys = room::highlighted_keys(context.store, *layer->table, request.role(), *highlight, "filter");
+  auto keys =
+      room::highlighted_keys(context.store, *layer->table, request.role(), *highlight, "filter");
   if (!keys) return tl::unexpected(keys.error());
   auto areas = (*room)->key_areas(layer->slug);
   if (!areas) return tl::unexpected(areas.error());
@@ -64,7 +65,8 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
 void add_extent_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/layers/{layer}/extent",
-              .handler = answering([&context](const Request& request) { return extent(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return extent(context, request); }),
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
               .is_question = true});

@@ -10,12 +10,14 @@ namespace {
 
 enum class FeatureFormat { geojson, gpkg };
 
-// `f`, or where that is absent what Accept names; GeoJSON where neither says anything. 406 for what is none of them.
+// `f`, or where that is absent what Accept names; GeoJSON where neither says anything. 406 for what
+// is none of them.
 Result<FeatureFormat> feature_format(const Request& request) {
   const auto asked = request.query.find("f");
   if (asked == request.query.end())
-    return request.header("accept").find(kGeoPackageType) == std::string_view::npos ? FeatureFormat::geojson
-                                                                                    : FeatureFormat::gpkg;
+    return request.header("accept").find(kGeoPackageType) == std::string_view::npos
+               ? FeatureFormat::geojson
+               : FeatureFormat::gpkg;
   if (asked->second == "geojson") return FeatureFormat::geojson;
   if (asked->second == "gpkg") return FeatureFormat::gpkg;
   return fail(406, "Unknown format", "`f` is geojson or gpkg.", "f");
@@ -30,12 +32,15 @@ Result<Response> read_features(const RouteContext& context, const Request& reque
   if (!language) return tl::unexpected(language.error());
   const auto asked = LayerQuery::from(context, request);
   if (!asked) return tl::unexpected(asked.error());
-  auto set = layer_features(
-      context,
-      {asked->room, asked->layer, asked->at, {axis->u, axis->v, 3 - axis->u - axis->v}, request.role(), *language});
+  auto set = layer_features(context, {asked->room,
+                                      asked->layer,
+                                      asked->at,
+                                      {axis->u, axis->v, 3 - axis->u - axis->v},
+                                      request.role(),
+                                      *language});
   if (!set) return tl::unexpected(set.error());
-  auto response =
-      *format == FeatureFormat::geojson ? feature_json(std::move(*set)) : geopackage(*set, context.options.upload_dir);
+  auto response = *format == FeatureFormat::geojson ? feature_json(std::move(*set))
+                                                    : geopackage(*set, context.options.upload_dir);
   if (!response) return response;
   add_sequences(*response, asked->sequence, asked->room->durable_sequence());
   response->with("Vary", "Accept");
@@ -47,7 +52,8 @@ Result<Response> read_features(const RouteContext& context, const Request& reque
 void add_feature_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/layers/{layer}/features",
-              .handler = answering([&context](const Request& request) { return read_features(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return read_features(context, request); }),
               .query = {"f", "along", "at", "lang"},
               .is_question = true,
               .state = state_of_model(context)});

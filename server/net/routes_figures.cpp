@@ -6,7 +6,8 @@
 namespace strata::net {
 namespace {
 
-constexpr std::uint64_t kFigureBytes = 320u << 20;  // of drawings that are made at one time; A3 at 600 dpi has 260 MB
+// of drawings that are made at one time; A3 at 600 dpi has 260 MB
+constexpr std::uint64_t kFigureBytes = 320u << 20;
 
 // RFC 7240: preferences are parted by commas.
 bool wants_job(const Request& request) {
@@ -26,7 +27,8 @@ Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteB
     const Model model = wish->room->model();
     auto job = context.jobs.add(
         model.project_id,
-        [&context, budget, wish = std::move(*wish), id = model.id](Progress& progress) -> Result<jobs::JobResult> {
+        [&context, budget, wish = std::move(*wish),
+         id = model.id](Progress& progress) -> Result<jobs::JobResult> {
           auto file = make_figure(context, *budget, wish, progress);
           if (!file) return tl::unexpected(file.error());
           jobs::JobResult result(id);
@@ -49,14 +51,15 @@ Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteB
 
 void add_figure_routes(Router& router, const RouteContext& context) {
   const auto budget = std::make_shared<ByteBudget>(kFigureBytes);
-  router.add(
-      {.method = Method::post,
-       .pattern = "/api/v1/models/{model}/figures",
-       .handler = answering([&context, budget](const Request& request) { return answer(context, budget, request); }),
-       .query = {"lang"},
-       .body = BodyKind::memory,
-       .max_body = context.options.max_json_bytes,
-       .is_question = true});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/figures",
+              .handler = answering([&context, budget](const Request& request) {
+                return answer(context, budget, request);
+              }),
+              .query = {"lang"},
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .is_question = true});
 }
 
 }  // namespace strata::net

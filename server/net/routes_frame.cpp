@@ -36,7 +36,8 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
       }
       auto highlight = highlight_of(wished.highlight, *layer, field + ".highlight");
       if (!highlight) return tl::unexpected(highlight.error());
-      wanted.shown.layers.push_back({layer->id, std::nullopt, std::nullopt, std::nullopt, std::move(*highlight)});
+      wanted.shown.layers.push_back(
+          {layer->id, std::nullopt, std::nullopt, std::nullopt, std::move(*highlight)});
     }
   }
   const auto sequence = (*room)->sequence();
@@ -53,7 +54,8 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
   const auto background = background_of(asked->background);
   if (!background) return tl::unexpected(background.error());
   wanted.shown.background = *background;
-  auto response = picture_response(**room, wanted, asked->camera, asked->format == protocol::FrameRequestFormat::png);
+  auto response = picture_response(**room, wanted, asked->camera,
+                                   asked->format == protocol::FrameRequestFormat::png);
   if (!response) return response;
   add_sequences(*response, wanted.at.value_or(sequence), (*room)->durable_sequence());
   return response;
@@ -62,12 +64,13 @@ Result<Response> frame(const RouteContext& context, const Request& request) {
 }  // namespace
 
 void add_frame_routes(Router& router, const RouteContext& context) {
-  router.add({.method = Method::post,
-              .pattern = "/api/v1/models/{model}/frame",
-              .handler = answering([&context](const Request& request) { return frame(context, request); }),
-              .body = BodyKind::memory,
-              .max_body = context.options.max_json_bytes,
-              .is_question = true});
+  router.add(
+      {.method = Method::post,
+       .pattern = "/api/v1/models/{model}/frame",
+       .handler = answering([&context](const Request& request) { return frame(context, request); }),
+       .body = BodyKind::memory,
+       .max_body = context.options.max_json_bytes,
+       .is_question = true});
 }
 
 }  // namespace strata::net

@@ -11,7 +11,8 @@ using store::GroupDetail;
 
 nlohmann::json to_json(const GroupDetail& group) {
   nlohmann::json members = nlohmann::json::array(), projects = nlohmann::json::array();
-  for (const auto& [user, full_name] : group.members) members.push_back({{"user", user}, {"full_name", full_name}});
+  for (const auto& [user, full_name] : group.members)
+    members.push_back({{"user", user}, {"full_name", full_name}});
   for (const auto& [slug, project, role] : group.projects)
     projects.push_back({{"project", slug}, {"name", project}, {"role", std::string(name(role))}});
   return {{"id", group.group.id},
@@ -44,9 +45,11 @@ Result<Response> list_groups(const RouteContext& context, const Request& request
 Result<Response> create_group(const RouteContext& context, const Request& request) {
   auto asked = body_of<protocol::GroupCreate>(request);
   if (!asked) return tl::unexpected(asked.error());
-  const auto made = context.store.groups().create(asked->name, asked->members.value_or(std::vector<std::string>()));
+  const auto made = context.store.groups().create(
+      asked->name, asked->members.value_or(std::vector<std::string>()));
   if (!made) return tl::unexpected(made.error());
-  return json_response(to_json(*made), 201).with("Location", "/api/v1/groups/" + std::to_string(made->group.id));
+  return json_response(to_json(*made), 201)
+      .with("Location", "/api/v1/groups/" + std::to_string(made->group.id));
 }
 
 Result<Response> show_group(const RouteContext& context, const Request& request) {
@@ -117,10 +120,13 @@ void add_group_routes(Router& router, const RouteContext& context) {
   const auto add = [&](Method method, std::string pattern,
                        Result<Response> (*answer)(const RouteContext&, const Request&),
                        std::vector<std::string> query = {}) {
-    const bool has_body = method == Method::post || method == Method::patch || method == Method::put;
+    const bool has_body =
+        method == Method::post || method == Method::patch || method == Method::put;
     router.add({.method = method,
                 .pattern = std::move(pattern),
-                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .handler = answering([&context, answer](const Request& request) {
+                  return answer(context, request);
+                }),
                 .role = Role::administrator,
                 .query = std::move(query),
                 .check = method != Method::get ? std::function(check_no_script) : nullptr,

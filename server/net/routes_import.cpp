@@ -49,7 +49,8 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
   } else if (!unit.empty()) {
     asked.unit = parse_unit(unit);
     if (!asked.unit)
-      return fail(422, "Unknown unit", "The unit is mm, cm or m, or `proposed` for what the file lets one guess.",
+      return fail(422, "Unknown unit",
+                  "The unit is mm, cm or m, or `proposed` for what the file lets one guess.",
                   "unit");
   }
   asked.up = request.query_or("up", {});
@@ -64,9 +65,11 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
     asked.resolution = static_cast<int>(*resolution);
   }
   if (auto text = request.query_or("weld", {}); !text.empty()) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), asked.weld_distance);
+    const auto [end, error] =
+        std::from_chars(text.data(), text.data() + text.size(), asked.weld_distance);
     if (error != std::errc() || end != text.data() + text.size())
-      return fail(422, "Not a number", "`weld` is a distance in the file's units, such as 0.05.", "weld");
+      return fail(422, "Not a number", "`weld` is a distance in the file's units, such as 0.05.",
+                  "weld");
   }
   const std::string strict = request.query_or("strict", "false");
   if (strict != "true" && strict != "false")
@@ -84,14 +87,16 @@ Result<void> check_import(const RouteContext& context, const Request& request) {
   return jobs::check(*asked);
 }
 
-// The upload under a name of its own: the request's file goes with the answer, the job needs it longer.
+// The upload under a name of its own: the request's file goes with the answer, the job needs it
+// longer.
 Result<std::shared_ptr<TemporaryFile>> keep_upload(const Request& request, const fs::path& file,
                                                    const fs::path& folder) {
   if (file != request.body_file) return std::make_shared<TemporaryFile>(file);
   const fs::path kept = folder / (to_string(random_uuid()) + ".upload");
   std::error_code error;
   fs::rename(file, kept, error);
-  if (error) return fail(500, "Upload lost", "The uploaded file could not be kept: " + error.message());
+  if (error)
+    return fail(500, "Upload lost", "The uploaded file could not be kept: " + error.message());
   return std::make_shared<TemporaryFile>(kept);
 }
 
@@ -116,22 +121,24 @@ Result<Response> start_import(const RouteContext& context, JobBook& book, const 
   if (asked->files.size() == 1 && !named.empty()) asked->files[0].filename = named;
   if (auto good = jobs::check(*asked); !good) return tl::unexpected(good.error());
 
-  const store::FirstAnswer<Model> answer{scoped_key(request),
-                                         [print = fingerprint(request)](const Model& model) {
-                                           return nlohmann::json{{"request", print}, {"model", model.id}};
-                                         },
-                                         request.user()};
+  const store::FirstAnswer<Model> answer{
+      scoped_key(request),
+      [print = fingerprint(request)](const Model& model) {
+        return nlohmann::json{{"request", print}, {"model", model.id}};
+      },
+      request.user()};
   const auto project = context.store.project(asked->project);
   if (!project) return tl::unexpected(project.error());
-  auto job = context.jobs.add(project->id,
-                              [&store = context.store, &memory = context.rooms.memory(), asked = *asked,
-                               kept = std::move(kept), answer](Progress& progress) -> Result<jobs::JobResult> {
-                                store::FirstAnswer<Model> kept_answer = answer;
-                                kept_answer.job = progress.job();
-                                auto model = jobs::import_model(store, asked, progress, kept_answer, &memory);
-                                if (!model) return tl::unexpected(model.error());
-                                return model->id;
-                              });
+  auto job = context.jobs.add(
+      project->id,
+      [&store = context.store, &memory = context.rooms.memory(), asked = *asked,
+       kept = std::move(kept), answer](Progress& progress) -> Result<jobs::JobResult> {
+        store::FirstAnswer<Model> kept_answer = answer;
+        kept_answer.job = progress.job();
+        auto model = jobs::import_model(store, asked, progress, kept_answer, &memory);
+        if (!model) return tl::unexpected(model.error());
+        return model->id;
+      });
   if (!job) return tl::unexpected(job.error());
   book.started(request, *job);
   return job_response(context, *job);
@@ -157,17 +164,21 @@ void add_import_routes(Router& router, const RouteContext& context) {
   router.add(
       {.method = Method::post,
        .pattern = "/api/v1/models",
-       .handler = answering([&context, book](const Request& request) { return start_import(context, *book, request); }),
+       .handler = answering([&context, book](const Request& request) {
+         return start_import(context, *book, request);
+       }),
        .role = Role::curator,
-       .query = {"name", "project", "unit", "up", "crs", "resolution", "filename", "weld", "strict"},
+       .query = {"name", "project", "unit", "up", "crs", "resolution", "filename", "weld",
+                 "strict"},
        .project_in_query = true,
        .check = [&context](const Request& request) { return check_import(context, request); },
        .body = BodyKind::file,
        .max_body = context.options.max_upload_bytes,
        .keeps_answer = true,
-       .replay = [&context, book](
-                     const Request& request,
-                     const nlohmann::json& kept) { return repeat_import(context, *book, request, kept); }});
+       .replay =
+           [&context, book](const Request& request, const nlohmann::json& kept) {
+             return repeat_import(context, *book, request, kept);
+           }});
 }
 
 }  // namespace strata::net

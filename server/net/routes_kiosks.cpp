@@ -11,9 +11,11 @@
 
 namespace strata::net {
 
-void end_kiosks(const RouteContext& context, const std::vector<std::int64_t>& kiosks, const std::string& reason) {
+void end_kiosks(const RouteContext& context, const std::vector<std::int64_t>& kiosks,
+                const std::string& reason) {
   context.auth.forget();
-  for (const std::int64_t id : kiosks) context.live_sockets.close_user(kiosk_name(id), kClosePolicy, reason);
+  for (const std::int64_t id : kiosks)
+    context.live_sockets.close_user(kiosk_name(id), kClosePolicy, reason);
 }
 
 namespace {
@@ -51,7 +53,8 @@ Result<Response> list_kiosks(const RouteContext& context, const Request& request
   if (!after) return tl::unexpected(after.error());
   auto found = context.store.kiosks().all(projects, page->limit + 1, page->offset, *after);
   if (!found) return tl::unexpected(found.error());
-  const auto last = end_page(found->kiosks, *page, [](const Kiosk& kiosk) { return ListPlace::array({kiosk.id}); });
+  const auto last = end_page(found->kiosks, *page,
+                             [](const Kiosk& kiosk) { return ListPlace::array({kiosk.id}); });
   nlohmann::json kiosks = nlohmann::json::array();
   for (const Kiosk& kiosk : found->kiosks) kiosks.push_back(to_json(kiosk));
   Response response = json_response({{"kiosks", std::move(kiosks)}, {"total", found->total}});
@@ -98,8 +101,9 @@ Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool want
   if (!tour) return tl::unexpected(tour.error());
   auto told = to_json(context, *tour, Role::viewer, {});
   if (!told) return tl::unexpected(told.error());
-  nlohmann::json json{{"id", kiosk.id},       {"name", kiosk.name},       {"project", kiosk.project},
-                      {"model", kiosk.model}, {"tour", std::move(*told)}, {"wants_reload", wants_reload}};
+  nlohmann::json json{{"id", kiosk.id},           {"name", kiosk.name},
+                      {"project", kiosk.project}, {"model", kiosk.model},
+                      {"tour", std::move(*told)}, {"wants_reload", wants_reload}};
   if (kiosk.expires) json["expires"] = utc_text(*kiosk.expires);
   return json_response(json).with("Cache-Control", "no-store");
 }
@@ -112,19 +116,23 @@ Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Re
   const auto kiosk = context.store.kiosks().find(asked->link);
   if (!kiosk) return tl::unexpected(kiosk.error());
   if (!*kiosk)
-    return fail(401, "Link not valid", "This link is unknown, expired or revoked. A curator makes a new one.", "link");
+    return fail(401, "Link not valid",
+                "This link is unknown, expired or revoked. A curator makes a new one.", "link");
   gate.was_right(address, {});
-  if (auto seen = context.store.kiosks().seen((*kiosk)->id, true); !seen) return tl::unexpected(seen.error());
+  if (auto seen = context.store.kiosks().seen((*kiosk)->id, true); !seen)
+    return tl::unexpected(seen.error());
   auto response = self(context, **kiosk, false);
   if (response)
-    response->with("Set-Cookie", Authenticator::set_kiosk_cookie(asked->link, needs_secure_cookie(request)));
+    response->with("Set-Cookie",
+                   Authenticator::set_kiosk_cookie(asked->link, needs_secure_cookie(request)));
   return response;
 }
 
 Result<Response> kiosk_self(const RouteContext& context, const Request& request) {
   if (!request.principal->kiosk)
-    return fail(403, "Not a kiosk",
-                "This is told to kiosks: with the cookie of one and `as=kiosk`, or its bearer token.");
+    return fail(
+        403, "Not a kiosk",
+        "This is told to kiosks: with the cookie of one and `as=kiosk`, or its bearer token.");
   const auto kiosk = context.store.kiosks().kiosk(request.principal->kiosk->id);
   if (!kiosk) return tl::unexpected(kiosk.error());
   // That it was there is only remembered: it gets its answer also where nothing can be written.
@@ -137,7 +145,8 @@ Result<Response> kiosk_self(const RouteContext& context, const Request& request)
 void add_kiosk_routes(Router& router, const RouteContext& context) {
   using Answer = Result<Response> (*)(const RouteContext&, const Request&);
   const auto answer_by = [&context](Answer answer) {
-    return answering([&context, answer](const Request& request) { return answer(context, request); });
+    return answering(
+        [&context, answer](const Request& request) { return answer(context, request); });
   };
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/tours/{tour}/kiosks",
@@ -160,15 +169,18 @@ void add_kiosk_routes(Router& router, const RouteContext& context) {
               .handler = answer_by(reload_kiosk),
               .role = Role::curator});
   auto gate = std::make_shared<SignInGate>();
-  router.add(
-      {.method = Method::post,
-       .pattern = "/api/v1/auth/kiosk",
-       .handler = answering([&context, gate](const Request& request) { return sign_in(context, *gate, request); }),
-       .role = std::nullopt,
-       .body = BodyKind::memory,
-       .max_body = context.options.max_json_bytes});
-  router.add(
-      {.method = Method::get, .pattern = "/api/v1/kiosk", .handler = answer_by(kiosk_self), .role = Role::guest});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/auth/kiosk",
+              .handler = answering([&context, gate](const Request& request) {
+                return sign_in(context, *gate, request);
+              }),
+              .role = std::nullopt,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/kiosk",
+              .handler = answer_by(kiosk_self),
+              .role = Role::guest});
 }
 
 }  // namespace strata::net

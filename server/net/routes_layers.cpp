@@ -22,7 +22,9 @@ Result<Response> list_layers(const RouteContext& context, const Request& request
   if (!layers) return tl::unexpected(layers.error());
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(layers->size());
-  const auto part = slice_by(*page, *layers, [](const Layer& layer) { return NumberKey{layer.order, layer.id}; });
+  const auto part = slice_by(*page, *layers, [](const Layer& layer) {
+    return NumberKey{layer.order, layer.id};
+  });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*layers)[i]));
   Response response = json_response({{"layers", list}, {"total", total}});
@@ -30,9 +32,12 @@ Result<Response> list_layers(const RouteContext& context, const Request& request
   return response;
 }
 
-bool is_automatic(const std::optional<protocol::Recompute>& asked) { return asked == protocol::Recompute::automatic; }
+bool is_automatic(const std::optional<protocol::Recompute>& asked) {
+  return asked == protocol::Recompute::automatic;
+}
 
-Result<Palette> palette_of(const std::optional<nlohmann::json>& asked, ValueType type, bool categorical) {
+Result<Palette> palette_of(const std::optional<nlohmann::json>& asked, ValueType type,
+                           bool categorical) {
   if (!asked) return default_palette(type, categorical);
   return palette_from_json(*asked);
 }
@@ -59,13 +64,15 @@ int order_at_bottom(const std::vector<Layer>& others) {
   return bottom - 1;
 }
 
-Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, const std::vector<Layer>& others) {
+Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model,
+                        const std::vector<Layer>& others) {
   if ((asked.compute || asked.expression) && asked.kind != LayerKind::numeric)
     return fail(422, "Kind not usable", "What is computed is numeric.", "kind");
   if (asked.compute && asked.expression)
     return fail(422, "Two ways to compute", "Give either `compute` or `expression`.", "expression");
   if (asked.recompute && !asked.expression)
-    return fail(422, "No expression", "`recompute` is for layers with an `expression`.", "recompute");
+    return fail(422, "No expression", "`recompute` is for layers with an `expression`.",
+                "recompute");
   Layer layer;
   layer.model_id = model.id;
   layer.name = asked.name;
@@ -74,28 +81,34 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model, 
   layer.slug = *slug;
   layer.kind = asked.kind;
   layer.type = asked.type.value_or(computes_numbers(asked) ? ValueType::f32 : ValueType::u8);
-  const bool is_key = layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
+  const bool is_key =
+      layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
   if (layer.kind == LayerKind::database && !is_key)
-    return fail(422, "Type not usable", "A database layer holds keys: its type is u8, u16 or u32.", "type");
+    return fail(422, "Type not usable", "A database layer holds keys: its type is u8, u16 or u32.",
+                "type");
   if ((asked.table || asked.columns) && layer.kind != LayerKind::database)
     return fail(422, "Table on a numeric layer", "Only database layers have a table.",
                 asked.table ? "table" : "columns");
   if (asked.table && asked.columns)
-    return fail(422, "Table and columns", "Name a table, or give the columns of a new one.", "columns");
-  layer.resolution = asked.resolution.value_or(std::max(model.default_resolution, model.atlas.lowest_resolution));
+    return fail(422, "Table and columns", "Name a table, or give the columns of a new one.",
+                "columns");
+  layer.resolution =
+      asked.resolution.value_or(std::max(model.default_resolution, model.atlas.lowest_resolution));
   if (layer.resolution < model.atlas.lowest_resolution)
-    return fail(
-        422, "Resolution too low",
-        "Layers of this model have at least " + std::to_string(model.atlas.lowest_resolution) + " texels a side.",
-        "resolution");
+    return fail(422, "Resolution too low",
+                "Layers of this model have at least " +
+                    std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+                "resolution");
   layer.unit = asked.unit;
   layer.description = asked.description;
   layer.labels = asked.labels.value_or(Labels());
   layer.descriptions = asked.descriptions.value_or(Labels());
   const bool is_computed = asked.compute || asked.expression;
   if (is_computed && asked.locked == false)
-    return fail(422, "Locked at first",
-                "A computed layer is locked when it is made. Unlock it afterwards to edit it by hand.", "locked");
+    return fail(
+        422, "Locked at first",
+        "A computed layer is locked when it is made. Unlock it afterwards to edit it by hand.",
+        "locked");
   const bool is_condition = asked.expression && !computes_numbers(asked);
   auto palette = is_condition && !asked.palette
                      ? Result<Palette>(palette_of_condition(asked.name))
@@ -131,29 +144,35 @@ Result<Response> create_layer(const RouteContext& context, JobBook& book, const 
   Result<std::vector<Column>> columns = std::vector{name};
   if (asked->columns) columns = new_columns(context.store, model.project_id, *asked->columns);
   if (!columns) return tl::unexpected(columns.error());
-  if (asked->compute) return start_computing(context, book, request, *room, *asked, std::move(*layer));
+  if (asked->compute)
+    return start_computing(context, book, request, *room, *asked, std::move(*layer));
   if (asked->expression) {
-    auto formula = read_formula(**room, *asked->expression, is_automatic(asked->recompute), layer->visibility);
+    auto formula =
+        read_formula(**room, *asked->expression, is_automatic(asked->recompute), layer->visibility);
     if (!formula) return tl::unexpected(formula.error());
     layer->formula = std::move(*formula);
     layer->origin = LayerOrigin::expression;
   }
-  if (auto good = check_shows_nothing(context, *layer, {}); !good) return tl::unexpected(good.error());
+  if (auto good = check_shows_nothing(context, *layer, {}); !good)
+    return tl::unexpected(good.error());
   const auto answer = [model_slug = model.slug](const Layer& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/models/" + model_slug + "/layers/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
   if (layer->formula)
-    return create_formula_layer(context, book, request, *room, std::move(*layer), asked->palette.has_value(), answer);
-  auto created = (*room)->create_layer(std::move(*layer), first_answer<Layer>(request, answer), std::move(*columns));
+    return create_formula_layer(context, book, request, *room, std::move(*layer),
+                                asked->palette.has_value(), answer);
+  auto created = (*room)->create_layer(std::move(*layer), first_answer<Layer>(request, answer),
+                                       std::move(*columns));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);
 }
 
-// An expression makes a numeric layer a computed one; an empty one makes it a layer like others, with the values that it has. `before`: who
-// saw the layer, which must see nothing more through it.
-Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& asked, Visibility before, Layer& layer) {
+// An expression makes a numeric layer a computed one; an empty one makes it a layer like others,
+// with the values that it has. `before`: who saw the layer, which must see nothing more through it.
+Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& asked,
+                         Visibility before, Layer& layer) {
   const bool is_seen_by_more = layer.formula && layer.visibility < before;
   if (!asked.expression && !asked.recompute && !is_seen_by_more) return {};
   if (layer.kind != LayerKind::numeric)
@@ -166,10 +185,13 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& ask
     return {};
   }
   if (!asked.expression && !layer.formula)
-    return fail(422, "No expression", "`recompute` is for layers with an `expression`.", "recompute");
-  const bool automatic = asked.recompute ? is_automatic(asked.recompute) : layer.formula && layer.formula->automatic;
-  auto formula = read_formula(room, asked.expression ? *asked.expression : layer.formula->expression, automatic,
-                              layer.visibility, layer.id);
+    return fail(422, "No expression", "`recompute` is for layers with an `expression`.",
+                "recompute");
+  const bool automatic =
+      asked.recompute ? is_automatic(asked.recompute) : layer.formula && layer.formula->automatic;
+  auto formula =
+      read_formula(room, asked.expression ? *asked.expression : layer.formula->expression,
+                   automatic, layer.visibility, layer.id);
   if (!formula) return tl::unexpected(formula.error());
   // Another expression: what was painted is going to be overwritten.
   const bool is_other = !layer.formula || layer.formula->expression != formula->expression;
@@ -191,9 +213,11 @@ Result<Response> compute(const RouteContext& context, const Request& request) {
   if (overwrite != "true" && overwrite != "false")
     return fail(422, "Bad value", "`overwrite` is true or false.", "overwrite");
   if (overwrite == "true" && layer->edited_by_hand && request.role() < Role::curator)
-    return fail(403, "Not allowed", "Only curators have what was edited by hand computed again.", "overwrite");
+    return fail(403, "Not allowed", "Only curators have what was edited by hand computed again.",
+                "overwrite");
   Progress progress;
-  auto computed = compute_layer(context, *room, *layer, request.author(), progress, overwrite == "true");
+  auto computed =
+      compute_layer(context, *room, *layer, request.author(), progress, overwrite == "true");
   if (!computed) return tl::unexpected(computed.error());
   return json_response(to_json(*computed)).with("ETag", etag_of(computed->version));
 }
@@ -206,13 +230,17 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   // As it is stored: what is open may be a moment behind.
   auto layer = context.store.layer((*room)->model().id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
-  if (auto fresh = check_if_match(request, layer->version); !fresh) return tl::unexpected(fresh.error());
-  const auto answer = [](const Layer& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
+  if (auto fresh = check_if_match(request, layer->version); !fresh)
+    return tl::unexpected(fresh.error());
+  const auto answer = [](const Layer& now) {
+    return json_response(to_json(now)).with("ETag", etag_of(now.version));
+  };
   if (asked->type) {
     protocol::LayerPatch alone;
     alone.type = asked->type;
     if (!(*asked == alone))
-      return fail(422, "Type with other changes", "Change the type of a layer in a call of its own.", "type");
+      return fail(422, "Type with other changes",
+                  "Change the type of a layer in a call of its own.", "type");
     auto widened = (*room)->widen_layer(*layer, *asked->type, first_answer<Layer>(request, answer));
     return widened ? Result<Response>(answer(*widened)) : tl::unexpected(widened.error());
   }
@@ -236,15 +264,17 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
   if (asked->visibility) layer->visibility = *asked->visibility;
   if (asked->order) layer->order = *asked->order;
   const bool was_painted = !layer->formula;
-  if (auto set = set_formula(**room, *asked, before, *layer); !set) return tl::unexpected(set.error());
+  if (auto set = set_formula(**room, *asked, before, *layer); !set)
+    return tl::unexpected(set.error());
   if (was_painted && layer->formula) {
     const auto queue = context.store.review_queue(layer->id, {}, 0, 0);
     if (!queue) return tl::unexpected(queue.error());
     if (queue->total > 0)
-      return fail(409, "Edits wait for review", "Accept or reject what waits on this layer before it is computed.",
-                  "expression");
+      return fail(409, "Edits wait for review",
+                  "Accept or reject what waits on this layer before it is computed.", "expression");
   }
-  if (auto good = check_shows_nothing(context, *layer, (*room)->layers()); !good) return tl::unexpected(good.error());
+  if (auto good = check_shows_nothing(context, *layer, (*room)->layers()); !good)
+    return tl::unexpected(good.error());
   auto changed = (*room)->update_layer(std::move(*layer), first_answer<Layer>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   tell_threads(context, *changed, before, request.user());
@@ -256,8 +286,10 @@ Result<Response> delete_layer(const RouteContext& context, const Request& reques
   if (!room) return tl::unexpected(room.error());
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
-  if (auto fresh = check_if_match(request, layer->version); !fresh) return tl::unexpected(fresh.error());
-  auto gone = (*room)->bin_layer(layer->id, first_answer<>(request, [] { return empty_response(204); }));
+  if (auto fresh = check_if_match(request, layer->version); !fresh)
+    return tl::unexpected(fresh.error());
+  auto gone =
+      (*room)->bin_layer(layer->id, first_answer<>(request, [] { return empty_response(204); }));
   if (!gone) return tl::unexpected(gone.error());
   if (context.options.bin_days == 0) context.bin_keeper.look();
   return empty_response(204);
@@ -270,19 +302,23 @@ void add_layer_routes(Router& router, const RouteContext& context) {
   const std::string layers = "/api/v1/models/{model}/layers";
   router.add({.method = Method::get,
               .pattern = layers,
-              .handler = answering([&context](const Request& request) { return list_layers(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_layers(context, request); }),
               .query = {"limit", "offset", "after"}});
-  router.add(
-      {.method = Method::post,
-       .pattern = layers,
-       .handler = answering([&context, book](const Request& request) { return create_layer(context, *book, request); }),
-       .role = Role::curator,
-       .body = BodyKind::memory,
-       .max_body = context.options.max_json_bytes,
-       .keeps_answer = true,
-       .replay = [&context, book](const Request& request, const nlohmann::json& kept) -> Result<Response> {
-         return kept.contains("layers") ? repeat_layer_job(context, *book, request, kept) : response_of(kept);
-       }});
+  router.add({.method = Method::post,
+              .pattern = layers,
+              .handler = answering([&context, book](const Request& request) {
+                return create_layer(context, *book, request);
+              }),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true,
+              .replay = [&context, book](const Request& request,
+                                         const nlohmann::json& kept) -> Result<Response> {
+                return kept.contains("layers") ? repeat_layer_job(context, *book, request, kept)
+                                               : response_of(kept);
+              }});
   router.add({.method = Method::get,
               .pattern = layers + "/{layer}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
@@ -292,7 +328,8 @@ void add_layer_routes(Router& router, const RouteContext& context) {
               })});
   router.add({.method = Method::patch,
               .pattern = layers + "/{layer}",
-              .handler = answering([&context](const Request& request) { return change_layer(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return change_layer(context, request); }),
               .role = Role::curator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
@@ -300,13 +337,15 @@ void add_layer_routes(Router& router, const RouteContext& context) {
               .needs_version = true});
   router.add({.method = Method::remove,
               .pattern = layers + "/{layer}",
-              .handler = answering([&context](const Request& request) { return delete_layer(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return delete_layer(context, request); }),
               .role = Role::curator,
               .keeps_answer = true,
               .needs_version = true});
   router.add({.method = Method::post,
               .pattern = layers + "/{layer}/compute",
-              .handler = answering([&context](const Request& request) { return compute(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return compute(context, request); }),
               .role = Role::annotator,
               .query = {"overwrite"}});
 }

@@ -26,7 +26,9 @@ Result<Response> list_looks(const RouteContext& context, const Request& request)
   if (!model) return tl::unexpected(model.error());
   auto looks = context.store.looks(model->id);
   if (!looks) return tl::unexpected(looks.error());
-  const auto part = slice_by(*page, *looks, [](const Look& look) { return NumberKey{look.order, look.id}; });
+  const auto part = slice_by(*page, *looks, [](const Look& look) {
+    return NumberKey{look.order, look.id};
+  });
   if (!part) return tl::unexpected(part.error());
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*looks)[i]));
@@ -54,7 +56,8 @@ Result<Response> create_look(const RouteContext& context, const Request& request
   if (!look) return tl::unexpected(look.error());
   const auto body = MappedFile::open(request.body_file);
   if (!body || body->bytes().empty())
-    return fail(400, "Empty body", "Send a picture as the body: JPEG, PNG, TIFF, WebP, BMP or TGA.", "body");
+    return fail(400, "Empty body", "Send a picture as the body: JPEG, PNG, TIFF, WebP, BMP or TGA.",
+                "body");
   std::span<const std::uint8_t> picture = body->bytes();
   const auto info = inspect_picture(picture);
   if (!info) return tl::unexpected(info.error());
@@ -63,10 +66,10 @@ Result<Response> create_look(const RouteContext& context, const Request& request
   const bool stays = is_look_format(info->format);
   look->media_type = media_type(stays ? info->format : PictureFormat::png);
   // Whole, so that what cannot be shown is told now.
-  const auto memory =
-      context.rooms.memory().reserve(std::uint64_t{stays ? 4u : 8u} * static_cast<std::uint64_t>(info->width) *
-                                         static_cast<std::uint64_t>(info->height),
-                                     "the picture of a new look");
+  const auto memory = context.rooms.memory().reserve(std::uint64_t{stays ? 4u : 8u} *
+                                                         static_cast<std::uint64_t>(info->width) *
+                                                         static_cast<std::uint64_t>(info->height),
+                                                     "the picture of a new look");
   if (!memory) return tl::unexpected(memory.error());
   auto decoded = decode_picture(picture);
   if (!decoded) return tl::unexpected(decoded.error());
@@ -85,7 +88,8 @@ Result<Response> create_look(const RouteContext& context, const Request& request
         .with("Location", "/api/v1/models/" + model + "/looks/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  auto created = (*room)->create_look(std::move(*look), picture, first_answer<Look>(request, answer));
+  auto created =
+      (*room)->create_look(std::move(*look), picture, first_answer<Look>(request, answer));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);
 }
@@ -97,13 +101,16 @@ Result<Response> change_look(const RouteContext& context, const Request& request
   if (!look) return tl::unexpected(look.error());
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  if (auto fresh = check_if_match(request, look->version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, look->version); !fresh)
+    return tl::unexpected(fresh.error());
   if (asked->name) look->name = *asked->name;
   if (asked->description) look->description = *asked->description;
   if (asked->opacity) look->opacity = *asked->opacity;
   if (asked->visible) look->visible = *asked->visible;
   if (asked->order) look->order = *asked->order;
-  const auto answer = [](const Look& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
+  const auto answer = [](const Look& now) {
+    return json_response(to_json(now)).with("ETag", etag_of(now.version));
+  };
   auto changed = (*room)->update_look(*look, first_answer<Look>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   return answer(*changed);
@@ -114,8 +121,10 @@ Result<Response> delete_look(const RouteContext& context, const Request& request
   if (!look) return tl::unexpected(look.error());
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  if (auto fresh = check_if_match(request, look->version); !fresh) return tl::unexpected(fresh.error());
-  auto gone = (*room)->delete_look(look->id, first_answer<>(request, [] { return empty_response(204); }));
+  if (auto fresh = check_if_match(request, look->version); !fresh)
+    return tl::unexpected(fresh.error());
+  auto gone =
+      (*room)->delete_look(look->id, first_answer<>(request, [] { return empty_response(204); }));
   if (!gone) return tl::unexpected(gone.error());
   return empty_response(204);
 }
@@ -149,11 +158,13 @@ void add_look_routes(Router& router, const RouteContext& context) {
   const std::string looks = "/api/v1/models/{model}/looks";
   router.add({.method = Method::get,
               .pattern = looks,
-              .handler = answering([&context](const Request& request) { return list_looks(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_looks(context, request); }),
               .query = {"limit", "offset", "after"}});
   router.add({.method = Method::post,
               .pattern = looks,
-              .handler = answering([&context](const Request& request) { return create_look(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return create_look(context, request); }),
               .role = Role::curator,
               .query = {"name", "description", "visible"},
               .check = [](const Request& request) -> Result<void> {
@@ -172,7 +183,8 @@ void add_look_routes(Router& router, const RouteContext& context) {
               })});
   router.add({.method = Method::patch,
               .pattern = looks + "/{look}",
-              .handler = answering([&context](const Request& request) { return change_look(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return change_look(context, request); }),
               .role = Role::curator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
@@ -180,13 +192,15 @@ void add_look_routes(Router& router, const RouteContext& context) {
               .needs_version = true});
   router.add({.method = Method::remove,
               .pattern = looks + "/{look}",
-              .handler = answering([&context](const Request& request) { return delete_look(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return delete_look(context, request); }),
               .role = Role::curator,
               .keeps_answer = true,
               .needs_version = true});
   router.add({.method = Method::get,
               .pattern = looks + "/{look}/picture",
-              .handler = answering([&context](const Request& request) { return look_picture(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return look_picture(context, request); }),
               .query = {"thumbnail"},
               .state = state_of_look(context)});
 }

@@ -45,7 +45,9 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
     // With the names that the map brought.
     const auto named = (*room)->layer(std::to_string(layer->id));
     if (!named) return respond(named.error());
-    if (auto made = records_from_legend(context, *named, room::painted_by(*named, edit), request.author()); !made)
+    if (auto made =
+            records_from_legend(context, *named, room::painted_by(*named, edit), request.author());
+        !made)
       return respond(made.error());
     apply_edit(context, request, *room, std::move(edit), respond);
   };
@@ -53,7 +55,8 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
 
 Result<Painted> paint_readings(const Request& request, const Target& target) {
   const auto file = MappedFile::open(request.body_file);
-  if (!file || file->bytes().empty()) return fail(400, "Empty body", "Send the file as the body.", "body");
+  if (!file || file->bytes().empty())
+    return fail(400, "Empty body", "Send the file as the body.", "body");
   const auto radius_mm = number_of(request, "radius_mm", 1e-6, kLargestLength_mm);
   if (!radius_mm) return tl::unexpected(radius_mm.error());
   const auto tolerance_mm = number_of(request, "tolerance_mm", 0, kLargestLength_mm, *radius_mm);
@@ -62,40 +65,46 @@ Result<Painted> paint_readings(const Request& request, const Target& target) {
   if (!readings) return tl::unexpected(readings.error());
   std::vector<room::Room::PlacedValue> values;
   for (const query::Reading& reading : *readings) {
-    const auto bits = bits_of(target.layer, reading.value, "Line " + std::to_string(reading.line) + ": ");
+    const auto bits =
+        bits_of(target.layer, reading.value, "Line " + std::to_string(reading.line) + ": ");
     if (!bits) return tl::unexpected(bits.error());
     values.push_back({reading.position, *bits, reading.line});
   }
   const Unit unit = target.room->model().unit;
-  auto tiles =
-      target.room->dabs(target.layer, values, in_model_units(*radius_mm, unit), in_model_units(*tolerance_mm, unit));
+  auto tiles = target.room->dabs(target.layer, values, in_model_units(*radius_mm, unit),
+                                 in_model_units(*tolerance_mm, unit));
   if (!tiles) return tl::unexpected(tiles.error());
-  return Painted{std::move(*tiles), {{"bytes", request.body_bytes}, {"sha256", sha256_hex(file->view())}}};
+  return Painted{std::move(*tiles),
+                 {{"bytes", request.body_bytes}, {"sha256", sha256_hex(file->view())}}};
 }
 
 // What a map paints at a place, and the keys that it brings to the layer's legend.
-using MakeValues = Result<MapValues> (*)(const Request& request, const MapFiles& files, const MapTarget& target,
-                                         ByteBudget& budget);
+using MakeValues = Result<MapValues> (*)(const Request& request, const MapFiles& files,
+                                         const MapTarget& target, ByteBudget& budget);
 
-Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeValues make, const Request& request,
-                          const Target& target) {
+Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeValues make,
+                          const Request& request, const Target& target) {
   const auto axis = axis_of(request);
   if (!axis) return tl::unexpected(axis.error());
   auto files = MapFiles::take(request, context.options.upload_dir);
   if (!files) return tl::unexpected(files.error());
   MapTarget map_target{*target.room, target.layer};
   if (target.layer.table) {
-    auto page = context.store.records(*target.layer.table, request.role(), {{}, {}, {}, store::kMostRecords, 0});
+    auto page = context.store.records(*target.layer.table, request.role(),
+                                      {{}, {}, {}, store::kMostRecords, 0});
     if (!page) return tl::unexpected(page.error());
-    for (const Record& record : page->records) map_target.records.insert(static_cast<double>(record.key));
+    for (const Record& record : page->records)
+      map_target.records.insert(static_cast<double>(record.key));
   }
   auto values = make(request, *files, map_target, budget);
   if (!values) return tl::unexpected(values.error());
-  auto tiles = target.room->project(target.layer, axis->direction,
-                                    [&](const glm::dvec3& world) { return values->bits_at(axis->on_map(world)); });
+  auto tiles = target.room->project(target.layer, axis->direction, [&](const glm::dvec3& world) {
+    return values->bits_at(axis->on_map(world));
+  });
   if (!tiles) return tl::unexpected(tiles.error());
   if (values->keys)
-    if (auto extended = extend_legend(request, *target.room, target.layer, *values->keys); !extended)
+    if (auto extended = extend_legend(request, *target.room, target.layer, *values->keys);
+        !extended)
       return tl::unexpected(extended.error());
   return Painted{std::move(*tiles), files->record()};
 }
@@ -105,7 +114,8 @@ Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeV
 void add_map_routes(Router& router, const RouteContext& context) {
   const std::string model = "/api/v1/models/{model}", layer = model + "/layers/{layer}";
   const auto budget = std::make_shared<ByteBudget>(context.options.max_rasters_at_once);
-  const auto add = [&](const std::string& pattern, Handler handler, std::vector<std::string> query) {
+  const auto add = [&](const std::string& pattern, Handler handler,
+                       std::vector<std::string> query) {
     router.add({.method = Method::post,
                 .pattern = pattern,
                 .handler = std::move(handler),
@@ -120,13 +130,15 @@ void add_map_routes(Router& router, const RouteContext& context) {
       return paint_map(context, *budget, make, request, target);
     };
   };
-  add(layer + "/readings", painting(context, "readings", paint_readings), {"radius_mm", "tolerance_mm"});
+  add(layer + "/readings", painting(context, "readings", paint_readings),
+      {"radius_mm", "tolerance_mm"});
   add(layer + "/polygons", painting(context, "polygons", map(polygon_values)),
       {"along", "value", "attribute", "names", "crs"});
   add(layer + "/picture", painting(context, "picture", map(picture_values)),
       {"along", "world", "band", "colors", "tolerance", "crs"});
-  add(model + "/map-contents",
-      answering([&context, budget](const Request& request) { return map_contents(context, *budget, request); }),
+  add(model + "/map-contents", answering([&context, budget](const Request& request) {
+        return map_contents(context, *budget, request);
+      }),
       {"tolerance"});
 }
 

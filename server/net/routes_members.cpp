@@ -10,8 +10,9 @@ namespace strata::net {
 namespace {
 
 nlohmann::json to_json(const store::Membership& member) {
-  nlohmann::json json{
-      {"user", member.person.name}, {"full_name", member.person.full_name}, {"role", std::string(name(member.role))}};
+  nlohmann::json json{{"user", member.person.name},
+                      {"full_name", member.person.full_name},
+                      {"role", std::string(name(member.role))}};
   add_color(json, member.person);
   return json;
 }
@@ -32,12 +33,14 @@ Result<Response> list_members(const RouteContext& context, const Request& reques
   nlohmann::json list = nlohmann::json::array(), groups = nlohmann::json::array();
   for (const store::ProjectGroup& group : *with_role) groups.push_back(net::to_json(group));
   const int total = static_cast<int>(members->size());
-  const auto part = slice_by_name(*page, *members, context.store, [](const store::Membership& member) {
-    return store::Store::NamedId{member.person.name, member.person.id};
-  });
+  const auto part =
+      slice_by_name(*page, *members, context.store, [](const store::Membership& member) {
+        return store::Store::NamedId{member.person.name, member.person.id};
+      });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*members)[i]));
-  Response response = json_response({{"members", std::move(list)}, {"groups", std::move(groups)}, {"total", total}});
+  Response response = json_response(
+      {{"members", std::move(list)}, {"groups", std::move(groups)}, {"total", total}});
   add_page_links(response, request, *page, part->last);
   return response;
 }
@@ -77,7 +80,8 @@ Result<Response> put_member(const RouteContext& context, const Request& request)
   const auto project = project_of(context, request);
   if (!project) return tl::unexpected(project.error());
   const Role role = parse_role(protocol::name(asked->role)).value_or(Role::viewer);
-  const auto member = context.store.put_member(project->id, request.param("user"), role, request.user());
+  const auto member =
+      context.store.put_member(project->id, request.param("user"), role, request.user());
   if (!member) return tl::unexpected(member.error());
   roles_changed(context, {member->person.name});
   return json_response(to_json(*member));
@@ -98,31 +102,36 @@ Result<Response> remove_member(const RouteContext& context, const Request& reque
 
 void roles_changed(const RouteContext& context, const std::vector<std::string>& people) {
   context.auth.forget();
-  for (const std::string& user : people) context.live_sockets.close_user(user, kClosePolicy, "your role was changed");
+  for (const std::string& user : people)
+    context.live_sockets.close_user(user, kClosePolicy, "your role was changed");
 }
 
 void add_member_routes(Router& router, const RouteContext& context) {
   const std::string members = "/api/v1/projects/{project}/members";
   router.add({.method = Method::get,
               .pattern = members,
-              .handler = answering([&context](const Request& request) { return list_members(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_members(context, request); }),
               .role = Role::curator,
               .query = {"limit", "offset", "after"}});
   router.add({.method = Method::get,
               .pattern = "/api/v1/projects/{project}/people",
-              .handler = answering([&context](const Request& request) { return list_people(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_people(context, request); }),
               .role = Role::annotator,
               .query = {"limit", "offset", "after"}});
   router.add({.method = Method::put,
               .pattern = members + "/{user}",
-              .handler = answering([&context](const Request& request) { return put_member(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return put_member(context, request); }),
               .role = Role::administrator,
               .check = check_no_script,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes});
   router.add({.method = Method::remove,
               .pattern = members + "/{user}",
-              .handler = answering([&context](const Request& request) { return remove_member(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return remove_member(context, request); }),
               .role = Role::administrator,
               .check = check_no_script});
 }

@@ -12,7 +12,8 @@ Result<std::string> project_slug(const RouteContext& context, std::int64_t proje
   return project->slug;
 }
 
-Result<Response> model_answer(const RouteContext& context, const Request& request, const Model& model) {
+Result<Response> model_answer(const RouteContext& context, const Request& request,
+                              const Model& model) {
   auto slug = project_slug(context, model.project_id);
   if (!slug) return tl::unexpected(slug.error());
   return with_etag(json_response(to_json(model, *slug)), request, model.version);
@@ -27,17 +28,20 @@ Result<Response> list_models(const RouteContext& context, const Request& request
   for (const auto& project : *projects) slugs[project.id] = project.slug;
   std::optional<std::int64_t> only;
   if (auto wanted = request.query.find("project"); wanted != request.query.end()) {
-    if (auto seen = check_seen(context, request, wanted->second, "project"); !seen) return tl::unexpected(seen.error());
+    if (auto seen = check_seen(context, request, wanted->second, "project"); !seen)
+      return tl::unexpected(seen.error());
     auto project = context.store.project(wanted->second);
     if (!project) return tl::unexpected(project.error());
     only = project->id;
   }
   auto models = context.store.models(only);
   if (!models) return tl::unexpected(models.error());
-  std::erase_if(*models, [&](const Model& model) { return !request.principal->sees(model.project_id); });
+  std::erase_if(*models,
+                [&](const Model& model) { return !request.principal->sees(model.project_id); });
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(models->size());
-  const auto part = slice_by(*page, *models, [](const Model& model) { return NumberKey{model.id}; });
+  const auto part =
+      slice_by(*page, *models, [](const Model& model) { return NumberKey{model.id}; });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i)
     list.push_back(to_json((*models)[i], slugs[(*models)[i].project_id]));
@@ -58,10 +62,10 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
   if (patch.crs) model.crs = *patch.crs;
   if (patch.default_resolution) {
     if (*patch.default_resolution < model.atlas.lowest_resolution)
-      return fail(
-          422, "Resolution too low",
-          "Layers of this model have at least " + std::to_string(model.atlas.lowest_resolution) + " texels a side.",
-          "default_resolution");
+      return fail(422, "Resolution too low",
+                  "Layers of this model have at least " +
+                      std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+                  "default_resolution");
     model.default_resolution = *patch.default_resolution;
   }
   auto set = [](std::string& member, const std::optional<std::string>& value) {
@@ -76,7 +80,8 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
   set(model.processing, patch.processing);
   set(model.rights_uri, patch.rights_uri);
   set(model.credit, patch.credit);
-  if (patch.source_download) model.source_download = *parse_role(protocol::name(*patch.source_download));
+  if (patch.source_download)
+    model.source_download = *parse_role(protocol::name(*patch.source_download));
   return {};
 }
 
@@ -87,7 +92,8 @@ Result<Response> change_model(const RouteContext& context, const Request& reques
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   Model model = (*room)->model();
-  if (auto fresh = check_if_match(request, model.version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, model.version); !fresh)
+    return tl::unexpected(fresh.error());
   if (auto fits = apply_patch(*asked, model); !fits) return tl::unexpected(fits.error());
   auto slug = project_slug(context, model.project_id);
   if (!slug) return tl::unexpected(slug.error());
@@ -107,17 +113,19 @@ Result<Response> source(const RouteContext& context, const Request& request) {
   for (const auto& file : model->source_files) {
     if (file.name != wanted) continue;
     const std::string etag = "\"" + file.sha256 + "\"";
-    if (names_tag(request.header("if-none-match"), etag)) return empty_response(304).with("ETag", etag);
+    if (names_tag(request.header("if-none-match"), etag))
+      return empty_response(304).with("ETag", etag);
     Response response;
     response.with("Content-Type", "application/octet-stream").with("ETag", etag);
     name_download(response, file.name);
-    response.stream =
-        Response::Stream{file.bytes, [&store = context.store, id = model->id, wanted](const Response::Sink& sink) {
-                           return store.read_source(id, wanted, sink).has_value();
-                         }};
+    response.stream = Response::Stream{
+        file.bytes, [&store = context.store, id = model->id, wanted](const Response::Sink& sink) {
+          return store.read_source(id, wanted, sink).has_value();
+        }};
     return response;
   }
-  return fail(404, "No such file", "The model was not made from a file of this name; see `source_files`.", "name");
+  return fail(404, "No such file",
+              "The model was not made from a file of this name; see `source_files`.", "name");
 }
 
 }  // namespace
@@ -125,7 +133,8 @@ Result<Response> source(const RouteContext& context, const Request& request) {
 void add_model_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models",
-              .handler = answering([&context](const Request& request) { return list_models(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_models(context, request); }),
               .role = Role::guest,
               .query = {"project", "limit", "offset", "after"}});
   router.add({.method = Method::get,
@@ -137,7 +146,8 @@ void add_model_routes(Router& router, const RouteContext& context) {
               })});
   router.add({.method = Method::patch,
               .pattern = "/api/v1/models/{model}",
-              .handler = answering([&context](const Request& request) { return change_model(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return change_model(context, request); }),
               .role = Role::curator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
@@ -148,9 +158,10 @@ void add_model_routes(Router& router, const RouteContext& context) {
               .handler = answering([&context](const Request& request) -> Result<Response> {
                 auto model = context.store.model(request.param("model"));
                 if (!model) return tl::unexpected(model.error());
-                if (auto fresh = check_if_match(request, model->version); !fresh) return tl::unexpected(fresh.error());
-                auto gone = context.store.bin().put_model(model->id,
-                                                          first_answer<>(request, [] { return empty_response(204); }));
+                if (auto fresh = check_if_match(request, model->version); !fresh)
+                  return tl::unexpected(fresh.error());
+                auto gone = context.store.bin().put_model(
+                    model->id, first_answer<>(request, [] { return empty_response(204); }));
                 if (!gone) return tl::unexpected(gone.error());
                 context.rooms.forget(model->id);
                 if (context.options.bin_days == 0) context.bin_keeper.look();
@@ -161,7 +172,8 @@ void add_model_routes(Router& router, const RouteContext& context) {
               .needs_version = true});
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/source/{name}",
-              .handler = answering([&context](const Request& request) { return source(context, request); })});
+              .handler = answering(
+                  [&context](const Request& request) { return source(context, request); })});
 }
 
 }  // namespace strata::net

@@ -40,10 +40,11 @@ double texel_area(const Model& model, int resolution) {
   return texels > 0 ? model.area / texels : 0;
 }
 
-Result<Look> bake(room::Room& room, const Wish& wish, const MapPicture& map, const store::FirstAnswer<Look>& answer,
-                  Progress& progress) {
+Result<Look> bake(room::Room& room, const Wish& wish, const MapPicture& map,
+                  const store::FirstAnswer<Look>& answer, Progress& progress) {
   progress.report(0, "Finding what is seen");
-  const jobs::OrthophotoSampler sampler(map.picture, map.world, texel_area(room.model(), wish.resolution));
+  const jobs::OrthophotoSampler sampler(map.picture, map.world,
+                                        texel_area(room.model(), wish.resolution));
   if (progress.cancelled()) return cancelled_problem();
   Layer colors;  // of the surface: never stored, its numbers are RGBA
   colors.type = ValueType::u32;
@@ -54,8 +55,10 @@ Result<Look> bake(room::Room& room, const Wish& wish, const MapPicture& map, con
   if (progress.cancelled()) return cancelled_problem();
   if (!tiles) return tl::unexpected(tiles.error());
   if (tiles->empty())
-    return fail(422, "Beside the model",
-                "Nothing of the model lies under the picture. Check its place, the direction and the unit.", "world");
+    return fail(
+        422, "Beside the model",
+        "Nothing of the model lies under the picture. Check its place, the direction and the unit.",
+        "world");
   progress.report(0.4, "Painting the look");
   const auto map_of_surface = room.surface_map(wish.resolution);
   if (!map_of_surface) return tl::unexpected(map_of_surface.error());
@@ -86,10 +89,10 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
   if (!room) return tl::unexpected(room.error());
   const Model model = (*room)->model();
   if (wish->resolution != 0 && wish->resolution < model.atlas.lowest_resolution)
-    return fail(
-        422, "Resolution too low",
-        "Pictures of this model have at least " + std::to_string(model.atlas.lowest_resolution) + " texels a side.",
-        "resolution");
+    return fail(422, "Resolution too low",
+                "Pictures of this model have at least " +
+                    std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+                "resolution");
   const auto files = MapFiles::take(request, context.options.upload_dir);
   if (!files) return tl::unexpected(files.error());
   auto map = map_picture(request, *files, model, budget);
@@ -105,7 +108,8 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
   auto job = context.jobs.add(
       model.project_id,
       [room = *room, wish = std::move(*wish), answer,
-       map = std::make_shared<const MapPicture>(std::move(*map))](Progress& progress) -> Result<jobs::JobResult> {
+       map = std::make_shared<const MapPicture>(std::move(*map))](
+          Progress& progress) -> Result<jobs::JobResult> {
         store::FirstAnswer<Look> kept = answer;
         kept.job = progress.job();
         auto look = bake(*room, wish, *map, kept, progress);
@@ -120,8 +124,8 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
   return job_response(context, *job);
 }
 
-Result<Response> repeat_orthophoto(const RouteContext& context, JobBook& book, const Request& request,
-                                   const nlohmann::json& kept) {
+Result<Response> repeat_orthophoto(const RouteContext& context, JobBook& book,
+                                   const Request& request, const nlohmann::json& kept) {
   auto known = book.find(request);
   if (!known) return tl::unexpected(known.error());
   if (*known) return job_response(context, **known);
@@ -153,9 +157,10 @@ void add_orthophoto_routes(Router& router, const RouteContext& context) {
               .body = BodyKind::file,
               .max_body = kMaxMapBytes,
               .keeps_answer = true,
-              .replay = [&context, book](
-                            const Request& request,
-                            const nlohmann::json& kept) { return repeat_orthophoto(context, *book, request, kept); }});
+              .replay =
+                  [&context, book](const Request& request, const nlohmann::json& kept) {
+                    return repeat_orthophoto(context, *book, request, kept);
+                  }});
 }
 
 }  // namespace strata::net

@@ -43,16 +43,19 @@ Result<Response> list_people(const RouteContext& context, const Request& request
   return response;
 }
 
-Result<Role> usable_role(const Request& request, std::optional<protocol::Role> asked, Role otherwise) {
+Result<Role> usable_role(const Request& request, std::optional<protocol::Role> asked,
+                         Role otherwise) {
   const Role role = asked ? static_cast<Role>(static_cast<int>(*asked)) : otherwise;
   if (role == Role::owner)
     return fail(422, "One owner", "A server has one owner. Make the person administrator.", "role");
-  if (role > request.principal->role) return fail(403, "Not allowed", "Nobody gives a role above their own.", "role");
+  if (role > request.principal->role)
+    return fail(403, "Not allowed", "Nobody gives a role above their own.", "role");
   return role;
 }
 
 Result<Response> with_invitation(const RouteContext& context, const Person& person, int status) {
-  const auto link = context.store.create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
+  const auto link =
+      context.store.create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
   if (!link) return tl::unexpected(link.error());
   // Behind a #, so that it is in no log: browsers keep that to themselves.
   return json_response({{"path", "/join#" + link->secret},
@@ -67,21 +70,25 @@ Result<Response> invite(const RouteContext& context, const Request& request) {
   if (!asked) return tl::unexpected(asked.error());
   const auto role = usable_role(request, asked->role, Role::viewer);
   if (!role) return tl::unexpected(role.error());
-  const auto person = context.store.create_person(asked->user, asked->full_name.value_or(""), *role,
-                                                  asked->groups.value_or(std::vector<std::int64_t>()), request.user());
+  const auto person = context.store.create_person(
+      asked->user, asked->full_name.value_or(""), *role,
+      asked->groups.value_or(std::vector<std::int64_t>()), request.user());
   if (!person) return tl::unexpected(person.error());
   auto response = with_invitation(context, *person, 201);
   if (response) response->with("Location", "/api/v1/users/" + percent_encode(person->name));
   return response;
 }
 
-// Whom the caller may change: not themselves, so that no server is left without who runs it, and not the owner.
+// Whom the caller may change: not themselves, so that no server is left without who runs it, and
+// not the owner.
 Result<Person> somebody_else(const RouteContext& context, const Request& request) {
   auto person = context.store.person(request.param("user"));
   if (!person) return person;
   if (person->name == request.user())
-    return fail(409, "That is you", "Nobody changes their own account here. Ask another administrator.");
-  if (person->role == Role::owner) return fail(409, "The owner", "The owner's account is changed by nobody else.");
+    return fail(409, "That is you",
+                "Nobody changes their own account here. Ask another administrator.");
+  if (person->role == Role::owner)
+    return fail(409, "The owner", "The owner's account is changed by nobody else.");
   // Otherwise they could let themselves in as one another.
   if (person->role == Role::administrator && request.principal->role < Role::owner)
     return fail(403, "Not allowed", "Only the owner changes accounts of administrators.");
@@ -95,8 +102,8 @@ Result<Response> change_person(const RouteContext& context, const Request& reque
   if (!person) return tl::unexpected(person.error());
   const auto role = usable_role(request, asked->role, person->role);
   if (!role) return tl::unexpected(role.error());
-  const store::PersonChange change{asked->full_name, asked->role ? std::optional(*role) : std::nullopt,
-                                   asked->disabled};
+  const store::PersonChange change{
+      asked->full_name, asked->role ? std::optional(*role) : std::nullopt, asked->disabled};
   const auto changed = context.store.change_person(person->id, change);
   if (!changed) return tl::unexpected(changed.error());
   context.auth.forget();
@@ -109,13 +116,15 @@ Result<Response> delete_person(const RouteContext& context, const Request& reque
   const auto person = somebody_else(context, request);
   if (!person) return tl::unexpected(person.error());
   // Out first, so that nothing more is written under the name.
-  const auto out = context.store.change_person(person->id, {.full_name = {}, .role = {}, .disabled = true});
+  const auto out =
+      context.store.change_person(person->id, {.full_name = {}, .role = {}, .disabled = true});
   if (!out) return tl::unexpected(out.error());
   context.auth.forget();
   context.live_sockets.close_user(person->name, kClosePolicy, "your account was deleted");
   // What they drew last may be on its way to the journal still.
   if (auto settled = context.rooms.settle(); !settled) return tl::unexpected(settled.error());
-  if (auto done = context.store.delete_person(person->name); !done) return tl::unexpected(done.error());
+  if (auto done = context.store.delete_person(person->name); !done)
+    return tl::unexpected(done.error());
   return empty_response(204);
 }
 
@@ -125,7 +134,8 @@ Result<Person> invited_by(const RouteContext& context, const std::string& invita
   const auto principal = context.store.find_token(invitation);
   if (!principal) return tl::unexpected(principal.error());
   if (!*principal || (*principal)->kind != TokenKind::invitation)
-    return fail(401, "Link not valid", "This invitation was used, or is too old. Ask for a new one.", "invitation");
+    return fail(401, "Link not valid",
+                "This invitation was used, or is too old. Ask for a new one.", "invitation");
   return context.store.person((*principal)->user);
 }
 
@@ -146,10 +156,11 @@ Result<Response> accept_invitation(const RouteContext& context, const Request& r
     return tl::unexpected(good.error());
   const auto hash = store::hash_password(asked->password);
   if (!hash) return tl::unexpected(hash.error());
-  const auto session =
-      context.store.accept_invitation(asked->invitation, *hash, asked->full_name, kSessionLifetime, agent_of(request));
+  const auto session = context.store.accept_invitation(asked->invitation, *hash, asked->full_name,
+                                                       kSessionLifetime, agent_of(request));
   if (!session) return tl::unexpected(session.error());
-  if (!*session) return fail(401, "Link not valid", "This invitation was used meanwhile.", "invitation");
+  if (!*session)
+    return fail(401, "Link not valid", "This invitation was used meanwhile.", "invitation");
   context.auth.forget();
   context.live_sockets.close_user(person->name, kClosePolicy, "the password was changed");
   return signed_in(context, request, **session);
@@ -159,12 +170,15 @@ Result<Response> accept_invitation(const RouteContext& context, const Request& r
 
 void add_people_routes(Router& router, const RouteContext& context) {
   const auto add = [&](Method method, std::string pattern,
-                       Result<Response> (*answer)(const RouteContext&, const Request&), std::optional<Role> role,
-                       std::vector<std::string> query = {}) {
-    const bool has_body = method == Method::patch || (method == Method::post && !pattern.ends_with("/invite"));
+                       Result<Response> (*answer)(const RouteContext&, const Request&),
+                       std::optional<Role> role, std::vector<std::string> query = {}) {
+    const bool has_body =
+        method == Method::patch || (method == Method::post && !pattern.ends_with("/invite"));
     router.add({.method = method,
                 .pattern = std::move(pattern),
-                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .handler = answering([&context, answer](const Request& request) {
+                  return answer(context, request);
+                }),
                 .role = role,
                 .query = std::move(query),
                 .check = role && method != Method::get ? std::function(check_no_script) : nullptr,

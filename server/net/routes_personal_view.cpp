@@ -4,7 +4,8 @@
 
 namespace strata::net {
 
-Result<nlohmann::json> personal_view(store::Store& store, const std::string& user, Role role, const room::Room& room) {
+Result<nlohmann::json> personal_view(store::Store& store, const std::string& user, Role role,
+                                     const room::Room& room) {
   auto layers = store.personal_view(user, room.model().id);
   if (!layers) return tl::unexpected(layers.error());
   leave_out_unseen(store, role, room, *layers);
@@ -26,14 +27,15 @@ Result<Response> put_view(const RouteContext& context, const Request& request) {
   if (!asked) return tl::unexpected(asked.error());
   for (std::size_t i = 0; i < asked->layers.size(); ++i)
     if (asked->layers[i].highlight)
-      return fail(422, "Not kept", "Records that stand out belong to a named view; here they are not kept.",
+      return fail(422, "Not kept",
+                  "Records that stand out belong to a named view; here they are not kept.",
                   "layers[" + std::to_string(i) + "].highlight");
   const auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const auto settings = view_settings(**room, asked->layers, {}, {});
   if (!settings) return tl::unexpected(settings.error());
-  if (auto kept =
-          context.store.keep_personal_view(request.user(), (*room)->model().id, kept_layers(asked->layers, *settings));
+  if (auto kept = context.store.keep_personal_view(request.user(), (*room)->model().id,
+                                                   kept_layers(asked->layers, *settings));
       !kept)
     return tl::unexpected(kept.error());
   return get_view(context, request);
@@ -42,7 +44,9 @@ Result<Response> put_view(const RouteContext& context, const Request& request) {
 Result<Response> delete_view(const RouteContext& context, const Request& request) {
   const auto model = context.store.model(request.param("model"));
   if (!model) return tl::unexpected(model.error());
-  if (auto gone = context.store.keep_personal_view(request.user(), model->id, nlohmann::json::array()); !gone)
+  if (auto gone =
+          context.store.keep_personal_view(request.user(), model->id, nlohmann::json::array());
+      !gone)
     return tl::unexpected(gone.error());
   return empty_response(204);
 }
@@ -51,17 +55,20 @@ Result<Response> delete_view(const RouteContext& context, const Request& request
 
 void add_personal_view_routes(Router& router, const RouteContext& context) {
   const std::string view = "/api/v1/me/models/{model}/view";
-  router.add({.method = Method::get, .pattern = view, .handler = answering([&context](const Request& request) {
-                                                        return get_view(context, request);
-                                                      })});
+  router.add({.method = Method::get,
+              .pattern = view,
+              .handler = answering(
+                  [&context](const Request& request) { return get_view(context, request); })});
   router.add({.method = Method::put,
               .pattern = view,
-              .handler = answering([&context](const Request& request) { return put_view(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return put_view(context, request); }),
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes});
-  router.add({.method = Method::remove, .pattern = view, .handler = answering([&context](const Request& request) {
-                                                           return delete_view(context, request);
-                                                         })});
+  router.add({.method = Method::remove,
+              .pattern = view,
+              .handler = answering(
+                  [&context](const Request& request) { return delete_view(context, request); })});
 }
 
 }  // namespace strata::net

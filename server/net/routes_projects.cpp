@@ -5,8 +5,10 @@
 namespace strata::net {
 namespace {
 
-// Where a role higher than the one everywhere is by groups, and not as high of the person's own, these. A token may do less than they give.
-Result<std::map<std::int64_t, nlohmann::json>> groups_that_give(const RouteContext& context, const Principal& who) {
+// Where a role higher than the one everywhere is by groups, and not as high of the person's own,
+// these. A token may do less than they give.
+Result<std::map<std::int64_t, nlohmann::json>> groups_that_give(const RouteContext& context,
+                                                                const Principal& who) {
   std::map<std::int64_t, nlohmann::json> groups;
   if (who.roles.in_projects.empty()) return groups;
   const auto given = context.store.groups().roles_of(who.user);
@@ -22,18 +24,21 @@ Result<Response> list_projects(const RouteContext& context, const Request& reque
   if (!page) return tl::unexpected(page.error());
   auto projects = context.store.projects();
   if (!projects) return tl::unexpected(projects.error());
-  std::erase_if(*projects, [&](const Project& project) { return !request.principal->sees(project.id); });
+  std::erase_if(*projects,
+                [&](const Project& project) { return !request.principal->sees(project.id); });
   const auto groups = groups_that_give(context, *request.principal);
   if (!groups) return tl::unexpected(groups.error());
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(projects->size());
-  const auto part = slice_by(*page, *projects, [](const Project& project) { return NumberKey{project.id}; });
+  const auto part =
+      slice_by(*page, *projects, [](const Project& project) { return NumberKey{project.id}; });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i) {
     const Project& project = (*projects)[i];
     list.push_back(to_json(project));
     list.back()["role"] = std::string(name(request.principal->roles.in(project.id)));
-    if (const auto by = groups->find(project.id); by != groups->end()) list.back()["groups"] = by->second;
+    if (const auto by = groups->find(project.id); by != groups->end())
+      list.back()["groups"] = by->second;
   }
   Response response = json_response({{"projects", list}, {"total", total}});
   add_page_links(response, request, *page, part->last);
@@ -54,7 +59,8 @@ Result<Response> create_project(const RouteContext& context, const Request& requ
         .with("Location", "/api/v1/projects/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  auto created = context.store.create_project(std::move(project), first_answer<Project>(request, answer));
+  auto created =
+      context.store.create_project(std::move(project), first_answer<Project>(request, answer));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);
 }
@@ -62,17 +68,22 @@ Result<Response> create_project(const RouteContext& context, const Request& requ
 Result<Response> change_project(const RouteContext& context, const Request& request) {
   auto project = context.store.project(request.param("project"));
   if (!project) return tl::unexpected(project.error());
-  if (auto fresh = check_if_match(request, project->version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, project->version); !fresh)
+    return tl::unexpected(fresh.error());
   auto asked = body_of<protocol::ProjectPatch>(request);
   if (!asked) return tl::unexpected(asked.error());
   // Curators say how work goes on in their project, not what it is called.
   if ((asked->name || asked->description) && request.role() < Role::administrator)
-    return fail(403, "Not allowed", "Administrators name and describe projects.", asked->name ? "name" : "description");
+    return fail(403, "Not allowed", "Administrators name and describe projects.",
+                asked->name ? "name" : "description");
   if (asked->require_if_match) project->require_if_match = *asked->require_if_match;
   if (asked->name) project->name = *asked->name;
   if (asked->description) project->description = *asked->description;
-  const auto answer = [](const Project& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
-  auto changed = context.store.update_project(std::move(*project), first_answer<Project>(request, answer));
+  const auto answer = [](const Project& now) {
+    return json_response(to_json(now)).with("ETag", etag_of(now.version));
+  };
+  auto changed =
+      context.store.update_project(std::move(*project), first_answer<Project>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   return answer(*changed);
 }
@@ -82,12 +93,14 @@ Result<Response> change_project(const RouteContext& context, const Request& requ
 void add_project_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/projects",
-              .handler = answering([&context](const Request& request) { return list_projects(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_projects(context, request); }),
               .role = Role::guest,
               .query = {"limit", "offset", "after"}});
   router.add({.method = Method::post,
               .pattern = "/api/v1/projects",
-              .handler = answering([&context](const Request& request) { return create_project(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return create_project(context, request); }),
               .role = Role::administrator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
@@ -101,7 +114,8 @@ void add_project_routes(Router& router, const RouteContext& context) {
               })});
   router.add({.method = Method::patch,
               .pattern = "/api/v1/projects/{project}",
-              .handler = answering([&context](const Request& request) { return change_project(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return change_project(context, request); }),
               .role = Role::curator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
@@ -114,8 +128,8 @@ void add_project_routes(Router& router, const RouteContext& context) {
                 if (!project) return tl::unexpected(project.error());
                 if (auto fresh = check_if_match(request, project->version); !fresh)
                   return tl::unexpected(fresh.error());
-                auto gone = context.store.delete_project(project->id,
-                                                         first_answer<>(request, [] { return empty_response(204); }));
+                auto gone = context.store.delete_project(
+                    project->id, first_answer<>(request, [] { return empty_response(204); }));
                 if (!gone) return tl::unexpected(gone.error());
                 return empty_response(204);
               }),

@@ -15,7 +15,8 @@ namespace {
 
 using Names = RecordNames;
 
-// What records have besides texels: lines and points, of those that have some. Names as in RecordMeasures.
+// What records have besides texels: lines and points, of those that have some. Names as in
+// RecordMeasures.
 struct OfMarks {
   std::vector<std::string> names;
   std::map<std::int64_t, std::vector<double>> of_key;
@@ -40,11 +41,13 @@ Result<OfMarks> marks_of(const RouteContext& context, const Table& table, Role s
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
   query.at = at;
-  if (std::ranges::none_of(table.columns, [](const Column& column) { return holds_marks(column.kind); }))
+  if (std::ranges::none_of(table.columns,
+                           [](const Column& column) { return holds_marks(column.kind); }))
     return OfMarks{};
   const auto page = context.store.records(table.id, seen_by, query);
   if (!page) return tl::unexpected(page.error());
-  const auto measures = RecordMeasures::of_place(context, {page->table, model, {}}, page->table.columns);
+  const auto measures =
+      RecordMeasures::of_place(context, {page->table, model, {}}, page->table.columns);
   if (!measures) return tl::unexpected(measures.error());
   OfMarks marks{measures->names(), {}};
   for (const Record& record : page->records) {
@@ -63,7 +66,8 @@ double share_of(const query::Quantity& quantity, const query::Quantities& all) {
   return all.surface_m2 > 0 ? std::min(1.0, quantity.area_m2 / all.surface_m2) : 0;
 }
 
-nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const Names& names, const OfMarks& marks) {
+nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const Names& names,
+                       const OfMarks& marks) {
   nlohmann::json list = nlohmann::json::array();
   const auto add_share = [&](nlohmann::json json, const query::Quantity& quantity) {
     json["share"] = share_of(quantity, all);
@@ -88,13 +92,17 @@ nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const N
   const std::size_t count = list.size();
   nlohmann::json sum = add_share(sums_json(all.sum), all.sum);
   add_measures(sum, marks.names, marks.sum());
-  return {{"quantities", std::move(list)}, {"total", count}, {"sum", std::move(sum)}, {"surface_m2", all.surface_m2}};
+  return {{"quantities", std::move(list)},
+          {"total", count},
+          {"sum", std::move(sum)},
+          {"surface_m2", all.surface_m2}};
 }
 
-Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& names, const OfMarks& marks,
-               const std::string& name) {
+Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& names,
+               const OfMarks& marks, const std::string& name) {
   Sheet sheet{name, {"class"}, {}};
-  const bool has_keys = layer.kind == LayerKind::database, has_values = query::classes_of(layer).each;
+  const bool has_keys = layer.kind == LayerKind::database,
+             has_values = query::classes_of(layer).each;
   if (has_keys)
     sheet.heads.emplace_back("key");
   else if (has_values)
@@ -104,8 +112,11 @@ Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& na
   sheet.heads.insert(sheet.heads.end(), {"pieces", "texels", "area_m2"});
   sheet.heads.insert(sheet.heads.end(), marks.names.begin(), marks.names.end());
   sheet.heads.emplace_back("percent_of_surface");
-  const auto number = [](const std::optional<double>& value) { return value ? SheetCell(*value) : SheetCell(); };
-  const auto add = [&](const query::Quantity& quantity, SheetCell name_cell, const std::vector<double>& marked) {
+  const auto number = [](const std::optional<double>& value) {
+    return value ? SheetCell(*value) : SheetCell();
+  };
+  const auto add = [&](const query::Quantity& quantity, SheetCell name_cell,
+                       const std::vector<double>& marked) {
     std::vector<SheetCell> row{std::move(name_cell)};
     if (has_keys || has_values)
       row.push_back(number(quantity.value));
@@ -118,7 +129,9 @@ Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& na
   };
   for (const query::Quantity& quantity : all.classes) {
     const std::string label = quantity_label(quantity, layer, names);
-    add(quantity, label.empty() && quantity.value ? SheetCell(*quantity.value) : quantity_text(quantity, label),
+    add(quantity,
+        label.empty() && quantity.value ? SheetCell(*quantity.value)
+                                        : quantity_text(quantity, label),
         has_keys ? marks.of(static_cast<std::int64_t>(*quantity.value)) : std::vector<double>());
   }
   add(all.sum, "total", marks.sum());
@@ -134,10 +147,12 @@ void add_classes(query::Quantities& all, const OfMarks& marks) {
     query::Quantity& quantity = all.classes.emplace_back();
     quantity.value = static_cast<double>(key);
   }
-  std::ranges::stable_sort(all.classes, {}, [](const query::Quantity& quantity) { return *quantity.value; });
+  std::ranges::stable_sort(all.classes, {},
+                           [](const query::Quantity& quantity) { return *quantity.value; });
 }
 
-Result<Response> quantity_sheet(const RouteContext& context, Sheet sheet, SheetFormat format, char separator) {
+Result<Response> quantity_sheet(const RouteContext& context, Sheet sheet, SheetFormat format,
+                                char separator) {
   add_readable_areas(sheet);
   return sheet_response(sheet, format, separator, context.options.upload_dir);
 }
@@ -158,7 +173,8 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
   if (asked->layer.table) {
     std::optional<std::int64_t> records_at;  // as they were when that edit was made
     if (asked->at) {
-      auto found = context.store.table_sequence_when(*asked->layer.table, asked->layer.model_id, *asked->at);
+      auto found =
+          context.store.table_sequence_when(*asked->layer.table, asked->layer.model_id, *asked->at);
       if (!found) return tl::unexpected(found.error());
       records_at = *found;
     }
@@ -169,16 +185,19 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
     marks = std::move(*marked);
     add_classes(*all, marks);
     std::vector<std::int64_t> keys;
-    for (const query::Quantity& quantity : all->classes) keys.push_back(static_cast<std::int64_t>(*quantity.value));
-    auto found = record_names(context, *asked->layer.table, request.role(), std::move(keys), records_at, *language);
+    for (const query::Quantity& quantity : all->classes)
+      keys.push_back(static_cast<std::int64_t>(*quantity.value));
+    auto found = record_names(context, *asked->layer.table, request.role(), std::move(keys),
+                              records_at, *language);
     if (!found) return tl::unexpected(found.error());
     names = std::move(*found);
   }
-  auto response =
-      *format == SheetFormat::json
-          ? json_response(to_json(*all, asked->layer, names, marks))
-          : quantity_sheet(context, to_sheet(*all, asked->layer, names, marks, asked->layer.slug + "-quantities"),
-                           *format, *separator);
+  auto response = *format == SheetFormat::json
+                      ? json_response(to_json(*all, asked->layer, names, marks))
+                      : quantity_sheet(context,
+                                       to_sheet(*all, asked->layer, names, marks,
+                                                asked->layer.slug + "-quantities"),
+                                       *format, *separator);
   if (!response) return response;
   add_sequences(*response, asked->sequence, asked->room->durable_sequence());
   response->with("Vary", "Accept");
@@ -193,7 +212,8 @@ struct OfLayer {
   std::map<std::int64_t, query::Quantity> of_key;
 };
 
-Result<std::vector<OfLayer>> of_layers(const RouteContext& context, std::int64_t table_id, Role seen_by) {
+Result<std::vector<OfLayer>> of_layers(const RouteContext& context, std::int64_t table_id,
+                                       Role seen_by) {
   auto layers = context.store.layers_of_table(table_id, seen_by);
   if (!layers) return tl::unexpected(layers.error());
   std::vector<OfLayer> found;
@@ -278,16 +298,18 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
     const std::size_t count = list.size();
     nlohmann::json total = sums_json(sum);
     add_measures(total, marks->names, marks->sum());
-    return json_response({{"quantities", std::move(list)}, {"total", count}, {"sum", std::move(total)}})
+    return json_response(
+               {{"quantities", std::move(list)}, {"total", count}, {"sum", std::move(total)}})
         .with("Vary", "Accept");
   }
   Sheet sheet{table->slug + "-quantities", {"class", "key", "pieces", "texels", "area_m2"}, {}};
   sheet.heads.insert(sheet.heads.end(), marks->names.begin(), marks->names.end());
-  for (const OfLayer& layer : *layers) sheet.heads.push_back(layer.model.slug + "/" + layer.layer.slug + " area_m2");
+  for (const OfLayer& layer : *layers)
+    sheet.heads.push_back(layer.model.slug + "/" + layer.layer.slug + " area_m2");
   for (const auto& [key, of_one] : of_key) {
     const query::Quantity& quantity = of_one.sum();
-    std::vector<SheetCell> row{text_of(key), double(key), double(quantity.pieces), double(quantity.texels),
-                               quantity.area_m2};
+    std::vector<SheetCell> row{text_of(key), double(key), double(quantity.pieces),
+                               double(quantity.texels), quantity.area_m2};
     const auto marked = marks->of(key);
     row.insert(row.end(), marked.begin(), marked.end());
     for (const OfLayer& layer : *layers) {
@@ -296,7 +318,8 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
     }
     sheet.rows.push_back(std::move(row));
   }
-  std::vector<SheetCell> last{std::string("total"), {}, double(sum.pieces), double(sum.texels), sum.area_m2};
+  std::vector<SheetCell> last{
+      std::string("total"), {}, double(sum.pieces), double(sum.texels), sum.area_m2};
   const auto marked = marks->sum();
   last.insert(last.end(), marked.begin(), marked.end());
   for (const OfLayer& layer : *layers) {
@@ -315,13 +338,17 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
 void add_quantity_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/layers/{layer}/quantities",
-              .handler = answering([&context](const Request& request) { return layer_quantities(context, request); }),
+              .handler = answering([&context](const Request& request) {
+                return layer_quantities(context, request);
+              }),
               .query = {"at", "lang", "f", "separator"},
               .is_question = true,
               .state = state_of_model(context)});
   router.add({.method = Method::get,
               .pattern = "/api/v1/tables/{table}/quantities",
-              .handler = answering([&context](const Request& request) { return table_quantities(context, request); }),
+              .handler = answering([&context](const Request& request) {
+                return table_quantities(context, request);
+              }),
               .query = {"lang", "f", "separator"},
               .is_question = true,
               .state = state_of_painted_table(context)});

@@ -14,8 +14,8 @@ std::vector<std::string> slugs_of(const std::vector<Layer>& layers) {
 }
 
 // Those of a body, or all.
-Result<std::vector<Layer>> asked_layers(const room::Room& room,
-                                        const std::optional<std::vector<protocol::LayerRef>>& asked) {
+Result<std::vector<Layer>> asked_layers(
+    const room::Room& room, const std::optional<std::vector<protocol::LayerRef>>& asked) {
   if (!asked) return room.layers();
   std::vector<std::string> refs;
   for (const auto& ref : *asked) refs.push_back(protocol::to_ref(ref));
@@ -130,25 +130,29 @@ Result<Response> pick(const RouteContext& context, const Request& request) {
 void add_query_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/position",
-              .handler = answering([&context](const Request& request) { return position(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return position(context, request); }),
               .query = {"coords", "parameter-name", "f", "at"}});
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/positions",
-              .handler = answering([&context](const Request& request) { return positions(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return positions(context, request); }),
               .body = BodyKind::memory,
               .max_body = context.options.max_positions_bytes,
               .is_question = true});
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/profile",
-              .handler = answering([&context](const Request& request) { return profile(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return profile(context, request); }),
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
               .is_question = true});
-  router.add({.method = Method::post,
-              .pattern = "/api/v1/models/{model}/pick",
-              .handler = answering([&context](const Request& request) { return pick(context, request); }),
-              .body = BodyKind::memory,
-              .max_body = context.options.max_json_bytes});
+  router.add(
+      {.method = Method::post,
+       .pattern = "/api/v1/models/{model}/pick",
+       .handler = answering([&context](const Request& request) { return pick(context, request); }),
+       .body = BodyKind::memory,
+       .max_body = context.options.max_json_bytes});
 }
 
 }  // namespace strata::net

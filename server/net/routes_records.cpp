@@ -30,30 +30,38 @@ Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& te
     const std::size_t end = std::min(text.find(',', begin), text.size());
     std::string word = text.substr(begin, end - begin);
     const bool descending = word.starts_with('-');
-    if (descending || word.starts_with('+') || word.starts_with(' ')) word.erase(0, 1);  // a plus in a query is a space
-    if (!word.empty() && std::ranges::find(order, word, &std::pair<std::string, bool>::first) == order.end())
+    // a plus in a query is a space
+    if (descending || word.starts_with('+') || word.starts_with(' ')) word.erase(0, 1);
+    if (!word.empty() &&
+        std::ranges::find(order, word, &std::pair<std::string, bool>::first) == order.end())
       order.emplace_back(std::move(word), descending);
     if (order.size() > kMostSortColumns)
       return fail(422, "Too many columns to sort by",
-                  "Records are sorted by at most " + std::to_string(kMostSortColumns) + " columns.", "sortby");
+                  "Records are sorted by at most " + std::to_string(kMostSortColumns) + " columns.",
+                  "sortby");
     begin = end + 1;
   }
   return order;
 }
 
-// Sorted by what they measure, such as the area that they have on the layer: all other order is the database's.
-Result<store::Store::RecordPage> page_by_measure(const RouteContext& context, const RecordPlace& place,
-                                                 const RecordMeasures& measures, std::size_t measure, Role seen_by,
+// Sorted by what they measure, such as the area that they have on the layer: all other order is the
+// database's.
+Result<store::Store::RecordPage> page_by_measure(const RouteContext& context,
+                                                 const RecordPlace& place,
+                                                 const RecordMeasures& measures,
+                                                 std::size_t measure, Role seen_by,
                                                  store::Store::RecordQuery query) {
   const bool descending = query.order.front().second;
-  const auto limit = static_cast<std::size_t>(query.limit), offset = static_cast<std::size_t>(query.offset);
+  const auto limit = static_cast<std::size_t>(query.limit),
+             offset = static_cast<std::size_t>(query.offset);
   const auto after = std::exchange(query.after, std::nullopt);
   query.order.erase(query.order.begin());
   query.limit = store::kMostRecords;
   query.offset = 0;
   auto page = context.store.records(place.table.id, seen_by, query);
   if (!page) return page;
-  std::vector<std::pair<double, Record>> by_value;  // worked out once: a line may have thousands of places
+  // worked out once: a line may have thousands of places
+  std::vector<std::pair<double, Record>> by_value;
   by_value.reserve(page->records.size());
   for (Record& record : page->records) {
     const double value = measures.of(record)[measure];
@@ -63,25 +71,33 @@ Result<store::Store::RecordPage> page_by_measure(const RouteContext& context, co
   std::ranges::stable_sort(by_value, comes_before, &std::pair<double, Record>::first);
   auto begin = by_value.begin() + static_cast<std::ptrdiff_t>(std::min(offset, by_value.size()));
   if (after) {
-    if (after->size() != 2 || !after->at(0).is_number() || !after->at(1).is_number_integer()) return wrong_place();
+    if (after->size() != 2 || !after->at(0).is_number() || !after->at(1).is_number_integer())
+      return wrong_place();
     const auto value = after->at(0).get<double>();
     const auto key = after->at(1).get<std::int64_t>();
-    const auto [low, high] = std::ranges::equal_range(by_value, value, comes_before, &std::pair<double, Record>::first);
-    const auto same = std::find_if(low, high, [key](const auto& each) { return each.second.key == key; });
-    // Where it is gone, of those with its value the ones with higher keys follow: that is how they stand, unless more was sorted by.
-    begin =
-        same != high ? same + 1 : std::find_if(low, high, [key](const auto& each) { return each.second.key > key; });
+    const auto [low, high] =
+        std::ranges::equal_range(by_value, value, comes_before, &std::pair<double, Record>::first);
+    const auto same =
+        std::find_if(low, high, [key](const auto& each) { return each.second.key == key; });
+    // Where it is gone, of those with its value the ones with higher keys follow: that is how they
+    // stand, unless more was sorted by.
+    begin = same != high ? same + 1 : std::find_if(low, high, [key](const auto& each) {
+      return each.second.key > key;
+    });
   }
-  const auto end = begin + static_cast<std::ptrdiff_t>(std::min<std::size_t>(limit, by_value.end() - begin));
+  const auto end =
+      begin + static_cast<std::ptrdiff_t>(std::min<std::size_t>(limit, by_value.end() - begin));
   auto& records = page->records;
   records.clear();
   page->last.reset();
-  if (end != by_value.end() && end != begin) page->last = ListPlace::array({(end - 1)->first, (end - 1)->second.key});
+  if (end != by_value.end() && end != begin)
+    page->last = ListPlace::array({(end - 1)->first, (end - 1)->second.key});
   for (; begin != end; ++begin) records.push_back(std::move(begin->second));
   return page;
 }
 
-// The columns of `records_csv`, with values of their own types; under a layer the last one has areas in a unit that people read.
+// The columns of `records_csv`, with values of their own types; under a layer the last one has
+// areas in a unit that people read.
 Result<Response> records_book(const RouteContext& context, const store::Store::RecordPage& page,
                               const RecordMeasures& measures, const WordsOfTables& words) {
   std::vector<BookColumn> heads{{"key", {}}};
@@ -89,10 +105,12 @@ Result<Response> records_book(const RouteContext& context, const store::Store::R
   for (const std::string& name : measures.names()) heads.push_back({name, {}});
   const bool has_area = std::ranges::count(measures.names(), kAreaMeasure) > 0;
   double largest_m2 = 0;
-  for (const Record& record : page.records) largest_m2 = std::max(largest_m2, measures.area_m2(record.key));
+  for (const Record& record : page.records)
+    largest_m2 = std::max(largest_m2, measures.area_m2(record.key));
   const AreaUnit unit = readable_area(largest_m2);
   if (has_area) {
-    std::ranges::find(heads, kAreaMeasure, &BookColumn::head)->number_format = number_format(largest_m2);
+    std::ranges::find(heads, kAreaMeasure, &BookColumn::head)->number_format =
+        number_format(largest_m2);
     heads.push_back({readable_head(kAreaMeasure, unit), number_format(largest_m2 * unit.per_m2)});
   }
   Workbook book(context.options.upload_dir, page.table.slug, heads);
@@ -129,8 +147,10 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   if (!language) return tl::unexpected(language.error());
   query.language = *language;
   const std::string terms = request.query_or("terms", "words");
-  if (terms != "words" && terms != "keys") return fail(422, "Unknown choice", "`terms` is words or keys.", "terms");
-  if (auto filter = request.query.find("filter"); filter != request.query.end() && !filter->second.empty()) {
+  if (terms != "words" && terms != "keys")
+    return fail(422, "Unknown choice", "`terms` is words or keys.", "terms");
+  if (auto filter = request.query.find("filter");
+      filter != request.query.end() && !filter->second.empty()) {
     auto condition = query::parse_condition(filter->second, "filter", query::Names::columns);
     if (!condition) return tl::unexpected(condition.error());
     query.filter = std::move(*condition);
@@ -149,10 +169,12 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   auto measures = RecordMeasures::of_place(context, *place, place->table.columns);
   if (!measures) return tl::unexpected(measures.error());
   const auto& names = measures->names();
-  const auto measure = query.order.empty() ? names.end() : std::ranges::find(names, query.order.front().first);
+  const auto measure =
+      query.order.empty() ? names.end() : std::ranges::find(names, query.order.front().first);
   auto records = measure == names.end()
                      ? context.store.records(place->table.id, request.role(), query)
-                     : page_by_measure(context, *place, *measures, static_cast<std::size_t>(measure - names.begin()),
+                     : page_by_measure(context, *place, *measures,
+                                       static_cast<std::size_t>(measure - names.begin()),
                                        request.role(), query);
   if (!records) return tl::unexpected(records.error());
   WordsOfTables words;
@@ -162,8 +184,10 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     words = std::move(*known);
   }
   if (page->after && records->last && !cursor_of(request, *records->last))
-    return fail(422, "Sorted by too much",
-                "The values by which this page ends are too long for an address; sort by fewer columns.", "sortby");
+    return fail(
+        422, "Sorted by too much",
+        "The values by which this page ends are too long for an address; sort by fewer columns.",
+        "sortby");
   Response response;
   if (*format == SheetFormat::xlsx) {
     auto book = records_book(context, *records, *measures, words);
@@ -217,15 +241,18 @@ Result<Response> read_record(const RouteContext& context, const Request& request
 Problem first_problem(const TableChange& change, bool is_list) {
   Problem problem = change.problems.front().problem;
   if (is_list && change.problems.front().index)
-    problem.field = "records[" + std::to_string(*change.problems.front().index) + "]." + problem.field;
+    problem.field =
+        "records[" + std::to_string(*change.problems.front().index) + "]." + problem.field;
   return problem;
 }
 
-Result<Response> create_from_json(const RouteContext& context, const Request& request, const RecordPlace& place) {
+Result<Response> create_from_json(const RouteContext& context, const Request& request,
+                                  const RecordPlace& place) {
   auto asked = body_of<protocol::RecordsCreate>(request, kMaxRecordsBytes);
   if (!asked) return tl::unexpected(asked.error());
   if (asked->records && (asked->key || asked->values))
-    return fail(422, "One or several", "Give either `records`, or `key` and `values` of one.", "records");
+    return fail(422, "One or several", "Give either `records`, or `key` and `values` of one.",
+                "records");
   store::WriteRecords write;
   write.may_change = false;
   const bool is_list = asked->records.has_value();
@@ -236,7 +263,8 @@ Result<Response> create_from_json(const RouteContext& context, const Request& re
     inputs.push_back({asked->key, asked->values});
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const std::string field = is_list ? "records[" + std::to_string(i) + "].values" : "values";
-    auto values = values_by_column(place.table, inputs[i].values.value_or(nlohmann::json::object()), field);
+    auto values =
+        values_by_column(place.table, inputs[i].values.value_or(nlohmann::json::object()), field);
     if (!values) return tl::unexpected(values.error());
     write.records.push_back({inputs[i].key, std::move(*values)});
   }
@@ -245,7 +273,8 @@ Result<Response> create_from_json(const RouteContext& context, const Request& re
     if (!is_list) {
       const Record& record = change.records.front();
       return json_response(to_json(record, seen.columns), 201)
-          .with("Location", "/api/v1/tables/" + change.table.slug + "/records/" + std::to_string(record.key))
+          .with("Location",
+                "/api/v1/tables/" + change.table.slug + "/records/" + std::to_string(record.key))
           .with("ETag", etag_of(record.version));
     }
     nlohmann::json list = nlohmann::json::array();
@@ -253,8 +282,8 @@ Result<Response> create_from_json(const RouteContext& context, const Request& re
     const std::size_t total = list.size();
     return json_response({{"records", std::move(list)}, {"total", total}}, 201);
   };
-  auto change =
-      context.store.write_records(place.table.id, write, request.user(), first_answer<TableChange>(request, answer));
+  auto change = context.store.write_records(place.table.id, write, request.user(),
+                                            first_answer<TableChange>(request, answer));
   if (!change) return tl::unexpected(change.error());
   if (!change->problems.empty()) return tl::unexpected(first_problem(*change, is_list));
   tell_change(context, *change, request.user());
@@ -268,7 +297,8 @@ nlohmann::json report_of(const RecordRows& rows, const TableChange& change, bool
     problems.push_back({{"line", line}, {"title", problem.title}, {"detail", problem.detail}});
     if (!column.empty()) problems.back()["column"] = column;
   };
-  for (const RowMistake& mistake : rows.mistakes) add(mistake.line, mistake.column, mistake.problem);
+  for (const RowMistake& mistake : rows.mistakes)
+    add(mistake.line, mistake.column, mistake.problem);
   for (const store::RowProblem& problem : change.problems) {
     std::string head = problem.problem.field;
     for (const Column& column : change.table.columns)
@@ -280,7 +310,8 @@ nlohmann::json report_of(const RecordRows& rows, const TableChange& change, bool
     add(problem.index ? rows.lines[*problem.index] : 1, head, problem.problem);
   }
   const bool refused = !problems.empty();
-  const std::size_t created = refused ? 0 : change.created.size(), changed = refused ? 0 : change.changed.size();
+  const std::size_t created = refused ? 0 : change.created.size(),
+                    changed = refused ? 0 : change.changed.size();
   return {{"rows", rows.rows},
           {"created", created},
           {"changed", changed},
@@ -290,9 +321,11 @@ nlohmann::json report_of(const RecordRows& rows, const TableChange& change, bool
           {"problems", std::move(problems)}};
 }
 
-Result<Response> import_csv(const RouteContext& context, const Request& request, const RecordPlace& place) {
+Result<Response> import_csv(const RouteContext& context, const Request& request,
+                            const RecordPlace& place) {
   const std::string tried = request.query_or("dry_run", "false");
-  if (tried != "true" && tried != "false") return fail(422, "Bad value", "`dry_run` is true or false.", "dry_run");
+  if (tried != "true" && tried != "false")
+    return fail(422, "Bad value", "`dry_run` is true or false.", "dry_run");
   const auto words = words_of(context.store, place.table.columns, request.role(), {});
   if (!words) return tl::unexpected(words.error());
   auto rows = read_records_csv(request.body, place.table, *words);
@@ -300,11 +333,14 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
   store::WriteRecords write;
   write.records = rows->records;
   write.op = "import";
-  // Where a row cannot even be read, the others are looked at all the same, so that one look finds all that is wrong.
+  // Where a row cannot even be read, the others are looked at all the same, so that one look finds
+  // all that is wrong.
   write.dry_run = tried == "true" || !rows->mistakes.empty();
-  const auto answer = [&rows](const TableChange& change) { return json_response(report_of(*rows, change, false)); };
-  auto change =
-      context.store.write_records(place.table.id, write, request.user(), first_answer<TableChange>(request, answer));
+  const auto answer = [&rows](const TableChange& change) {
+    return json_response(report_of(*rows, change, false));
+  };
+  auto change = context.store.write_records(place.table.id, write, request.user(),
+                                            first_answer<TableChange>(request, answer));
   if (!change) return tl::unexpected(change.error());
   const bool refused = !rows->mistakes.empty() || !change->problems.empty();
   if (tried == "true") return json_response(report_of(*rows, *change, true));
@@ -312,8 +348,9 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
     const nlohmann::json report = report_of(*rows, *change, false);
     const auto& first = report.at("problems").front();
     Response response = problem_response({422, "Rows refused",
-                                          "Nothing was written. Line " + std::to_string(first.at("line").get<int>()) +
-                                              ": " + first.at("detail").get<std::string>(),
+                                          "Nothing was written. Line " +
+                                              std::to_string(first.at("line").get<int>()) + ": " +
+                                              first.at("detail").get<std::string>(),
                                           "body"});
     auto body = nlohmann::json::parse(response.body);
     body["rows"] = report;
@@ -327,7 +364,8 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
 Result<Response> create_records(const RouteContext& context, const Request& request) {
   auto place = record_place(context, request);
   if (!place) return tl::unexpected(place.error());
-  if (to_lower(request.header("content-type")).starts_with("text/csv")) return import_csv(context, request, *place);
+  if (to_lower(request.header("content-type")).starts_with("text/csv"))
+    return import_csv(context, request, *place);
   if (request.query.contains("dry_run"))
     return fail(422, "Not for JSON", "`dry_run` is for records sent as text/csv.", "dry_run");
   return create_from_json(context, request, *place);
@@ -349,18 +387,20 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
   write.records.push_back({*key, std::move(*values), *version ? *version : asked->version});
   const auto answer = [role = request.role()](const TableChange& change) {
     const Record& record = change.records.front();
-    return json_response(to_json(record, seen_by(change.table, role).columns)).with("ETag", etag_of(record.version));
+    return json_response(to_json(record, seen_by(change.table, role).columns))
+        .with("ETag", etag_of(record.version));
   };
   // What stays the same is no entry, and no record comes with it.
   std::optional<Record> same;
-  if (auto now = stored_record(context, place->table, request.role(), *key, {})) same = std::move(*now);
+  if (auto now = stored_record(context, place->table, request.role(), *key, {}))
+    same = std::move(*now);
   const auto keep = [&](const TableChange& change) {
     if (!change.records.empty() || !same) return answer(change);
     return json_response(to_json(*same, seen_by(change.table, request.role()).columns))
         .with("ETag", etag_of(same->version));
   };
-  auto change =
-      context.store.write_records(place->table.id, write, request.user(), first_answer<TableChange>(request, keep));
+  auto change = context.store.write_records(place->table.id, write, request.user(),
+                                            first_answer<TableChange>(request, keep));
   if (!change) return tl::unexpected(change.error());
   if (!change->problems.empty()) return tl::unexpected(first_problem(*change, false));
   tell_change(context, *change, request.user());
@@ -368,8 +408,9 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
 }
 
 // Nothing paints the key any more.
-Result<Response> delete_retired(const RouteContext& context, const Request& request, const Table& table,
-                                std::int64_t key, std::optional<std::int64_t> version, const std::string& texels,
+Result<Response> delete_retired(const RouteContext& context, const Request& request,
+                                const Table& table, std::int64_t key,
+                                std::optional<std::int64_t> version, const std::string& texels,
                                 std::optional<std::int64_t> to) {
   auto painted = painted_layers(context, table.id, request.role());
   if (!painted) return tl::unexpected(painted.error());
@@ -379,7 +420,8 @@ Result<Response> delete_retired(const RouteContext& context, const Request& requ
                 "Record " + std::to_string(key) + " covers " + where +
                     ". Say what becomes of it: texels=clear, or texels=reassign&to=KEY.",
                 "texels");
-  if (auto done = repaint_key(context, *painted, key, to, request.author()); !done) return tl::unexpected(done.error());
+  if (auto done = repaint_key(context, *painted, key, to, request.author()); !done)
+    return tl::unexpected(done.error());
   const auto answer = [](const TableChange&) { return empty_response(204); };
   auto change = context.store.delete_record(table.id, key, version, request.user(), false,
                                             first_answer<TableChange>(request, answer));
@@ -396,7 +438,8 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
     return fail(422, "Unknown choice", "`texels` is refuse, clear or reassign.", "texels");
   std::optional<std::int64_t> to;
   if ((texels == "reassign") != request.query.contains("to"))
-    return fail(422, "Which record", "`to` is the key that the texels get, with texels=reassign.", "to");
+    return fail(422, "Which record", "`to` is the key that the texels get, with texels=reassign.",
+                "to");
   auto place = record_place(context, request);
   if (!place) return tl::unexpected(place.error());
   const Table& table = place->table;
@@ -419,7 +462,8 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
   auto deleted = retired ? delete_retired(context, request, table, *key, *version, texels, to)
                          : Result<Response>(tl::unexpected(retired.error()));
   if (!deleted)
-    if (const auto missing = context.store.missing_records(table.id, std::vector{*key}); missing && missing->empty())
+    if (const auto missing = context.store.missing_records(table.id, std::vector{*key});
+        missing && missing->empty())
       context.rooms.admit_keys(table.id, std::vector{*key});
   return deleted;
 }
@@ -428,12 +472,15 @@ Result<Response> delete_record(const RouteContext& context, const Request& reque
 
 void add_record_routes(Router& router, const RouteContext& context) {
   using Answer = Result<Response> (*)(const RouteContext&, const Request&);
-  const auto add = [&](Method method, const std::string& pattern, Answer answer, std::vector<std::string> query,
-                       BodyKind body = BodyKind::none, std::uint64_t max_body = 0, StateOf state = {}) {
+  const auto add = [&](Method method, const std::string& pattern, Answer answer,
+                       std::vector<std::string> query, BodyKind body = BodyKind::none,
+                       std::uint64_t max_body = 0, StateOf state = {}) {
     const bool changes = method != Method::get;
     router.add({.method = method,
                 .pattern = pattern,
-                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .handler = answering([&context, answer](const Request& request) {
+                  return answer(context, request);
+                }),
                 .role = changes ? Role::annotator : Role::viewer,
                 .query = std::move(query),
                 .body = body,
@@ -442,11 +489,12 @@ void add_record_routes(Router& router, const RouteContext& context) {
                 .needs_version = method == Method::patch || method == Method::remove,
                 .state = std::move(state)});
   };
-  for (const std::string parent : {"/api/v1/tables/{table}", "/api/v1/models/{model}/layers/{layer}"}) {
+  for (const std::string parent :
+       {"/api/v1/tables/{table}", "/api/v1/models/{model}/layers/{layer}"}) {
     const std::string records = parent + "/records", record = records + "/{key}";
     add(Method::get, records, list_records,
-        {"f", "separator", "filter", "sortby", "lang", "terms", "limit", "offset", "after", "at"}, BodyKind::none, 0,
-        state_of_records(context));
+        {"f", "separator", "filter", "sortby", "lang", "terms", "limit", "offset", "after", "at"},
+        BodyKind::none, 0, state_of_records(context));
     add(Method::post, records, create_records, {"dry_run"}, BodyKind::memory, kMaxRecordsBytes);
     add(Method::get, record, read_record, {"at"});
     add(Method::patch, record, change_record, {}, BodyKind::memory, context.options.max_json_bytes);

@@ -15,7 +15,8 @@ namespace {
 constexpr std::size_t kMostProperties = 10000;
 constexpr std::uint64_t kMaxCsvBytes = 1ull << 30;
 
-Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& source, Role seen_by, const Model& target,
+Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& source, Role seen_by,
+                                         const Model& target,
                                          const std::optional<std::vector<std::string>>& refs) {
   std::vector<Layer> layers;
   if (refs) {
@@ -31,13 +32,15 @@ Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& sourc
     if (!all) return tl::unexpected(all.error());
     layers = std::move(*all);
   }
-  if (layers.empty()) return fail(422, "No layers", source.name + " has no layers that could be brought over.", "from");
+  if (layers.empty())
+    return fail(422, "No layers", source.name + " has no layers that could be brought over.",
+                "from");
   for (const Layer& layer : layers)
     if (layer.table && source.project_id != target.project_id)
-      return fail(
-          422, "Table of another project",
-          "The keys of " + layer.name + " are of a table that this project does not have; name the other layers.",
-          "layers");
+      return fail(422, "Table of another project",
+                  "The keys of " + layer.name +
+                      " are of a table that this project does not have; name the other layers.",
+                  "layers");
   return layers;
 }
 
@@ -48,15 +51,18 @@ Result<jobs::TransferRequest> transfer_request(store::Store& store, const protoc
     return fail(422, "No such model", "There is no model \"" + asked.from + "\".", "from");
   if (!source) return tl::unexpected(source.error());
   if (source->id == target.id)
-    return fail(422, "The same model", "Name the other version of the scan, whose layers are taken.", "from");
+    return fail(422, "The same model",
+                "Name the other version of the scan, whose layers are taken.", "from");
   if (!source->crs.empty() && !target.crs.empty() && source->crs != target.crs)
     return fail(422, "Other coordinates",
                 "This model lies in " + target.crs + ", the other one in " + source->crs +
                     "; bring both into one coordinate system before importing them.",
                 "from");
-  auto layers = chosen_layers(store, *source, who.roles.in(source->project_id), target, asked.layers);
+  auto layers =
+      chosen_layers(store, *source, who.roles.in(source->project_id), target, asked.layers);
   if (!layers) return tl::unexpected(layers.error());
-  return jobs::TransferRequest{std::move(*source), std::move(*layers), asked.tolerance_mm, asked.max_angle};
+  return jobs::TransferRequest{std::move(*source), std::move(*layers), asked.tolerance_mm,
+                               asked.max_angle};
 }
 
 // The layer as it is on the source, for the target.
@@ -69,13 +75,15 @@ Layer copy_of(const Layer& from, int resolution, int order, const jobs::Transfer
   layer.formula.reset();  // its values are brought over, as they are
   layer.origin.reset();
   layer.edited_by_hand = false;
-  layer.description += (layer.description.empty() ? "" : "\n\n") + std::string("Brought over from ") +
-                       request.source.name + ", within " + short_number(request.tolerance_mm) + " mm.";
+  layer.description += (layer.description.empty() ? "" : "\n\n") +
+                       std::string("Brought over from ") + request.source.name + ", within " +
+                       short_number(request.tolerance_mm) + " mm.";
   return layer;
 }
 
-Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room, const jobs::TransferRequest& request,
-                                const std::string& user, NewLayers& layers, Progress& progress) {
+Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room,
+                                const jobs::TransferRequest& request, const std::string& user,
+                                NewLayers& layers, Progress& progress) {
   jobs::TransferTarget target{room.model(), room.geometry(), room.search_tree(),
                               [&room](int resolution) { return room.surface_map(resolution); }};
   int order = order_on_top(room.layers());
@@ -109,18 +117,19 @@ Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room, c
   return report;
 }
 
-Result<Response> start_transfer(const RouteContext& context, JobBook& book, const Request& request) {
+Result<Response> start_transfer(const RouteContext& context, JobBook& book,
+                                const Request& request) {
   auto asked = body_of<protocol::Transfer>(request);
   if (!asked) return tl::unexpected(asked.error());
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   auto wish = transfer_request(context.store, *asked, (*room)->model(), *request.principal);
   if (!wish) return tl::unexpected(wish.error());
-  return start_layer_job(
-      context, book, request, *room,
-      [&context, room = *room, wish = std::move(*wish), user = request.user()](NewLayers& layers, Progress& progress) {
-        return transfer(context, *room, wish, user, layers, progress);
-      });
+  return start_layer_job(context, book, request, *room,
+                         [&context, room = *room, wish = std::move(*wish), user = request.user()](
+                             NewLayers& layers, Progress& progress) {
+                           return transfer(context, *room, wish, user, layers, progress);
+                         });
 }
 
 Result<Response> list_properties(const RouteContext& context, const Request& request) {
@@ -129,13 +138,15 @@ Result<Response> list_properties(const RouteContext& context, const Request& req
   nlohmann::json list = nlohmann::json::array();
   for (const SourceFile& source : model->source_files) {
     std::vector<std::uint8_t> beginning;
-    auto read = context.store.read_source(model->id, source.name, [&](std::span<const std::uint8_t> chunk) {
-      beginning.assign(chunk.begin(), chunk.end());
-      return false;
-    });
+    auto read =
+        context.store.read_source(model->id, source.name, [&](std::span<const std::uint8_t> chunk) {
+          beginning.assign(chunk.begin(), chunk.end());
+          return false;
+        });
     if (!read) return tl::unexpected(read.error());
     for (const std::string& property : mesh::vertex_property_names(beginning))
-      if (list.size() < kMostProperties) list.push_back({{"source", source.name}, {"property", property}});
+      if (list.size() < kMostProperties)
+        list.push_back({{"source", source.name}, {"property", property}});
   }
   const std::size_t total = list.size();
   return json_response({{"properties", std::move(list)}, {"total", total}});
@@ -151,8 +162,9 @@ Result<std::string> scan_of(const Model& model, const std::string& wanted) {
   }
   if (scans.size() == 1) return scans.front();
   return fail(422, "Which scan?",
-              scans.empty() ? "This model has no such PLY or OBJ file whose vertices the values could be of."
-                            : "Several files of this model have vertices; name one as `source`.",
+              scans.empty()
+                  ? "This model has no such PLY or OBJ file whose vertices the values could be of."
+                  : "Several files of this model have vertices; name one as `source`.",
               "source");
 }
 
@@ -174,9 +186,9 @@ void write_vertices(const RouteContext& context, const Request& request, const R
   if (!values) return respond(values.error());
   scan->clear();
   const auto geometry = (*room)->geometry();
-  auto tiles =
-      jobs::paint_vertex_values(geometry, mesh::values_at_positions(*geometry, *values, !is_float(layer->type)),
-                                layer->type, layer->resolution, progress);
+  auto tiles = jobs::paint_vertex_values(
+      geometry, mesh::values_at_positions(*geometry, *values, !is_float(layer->type)), layer->type,
+      layer->resolution, progress);
   if (!tiles) {
     Problem problem = tiles.error();
     if (problem.field == "type")
@@ -199,8 +211,9 @@ void add_shape_routes(Router& router, const RouteContext& context) {
   auto book = std::make_shared<JobBook>(context.jobs);
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/transfer",
-              .handler = answering(
-                  [&context, book](const Request& request) { return start_transfer(context, *book, request); }),
+              .handler = answering([&context, book](const Request& request) {
+                return start_transfer(context, *book, request);
+              }),
               .role = Role::curator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
@@ -208,17 +221,20 @@ void add_shape_routes(Router& router, const RouteContext& context) {
               .replay = [&context, book](const Request& request, const nlohmann::json& kept) {
                 return repeat_layer_job(context, *book, request, kept);
               }});
-  router.add({.method = Method::put,
-              .pattern = "/api/v1/models/{model}/layers/{layer}/vertices.csv",
-              .handler = [&context](const Request& request,
-                                    const Respond& respond) { write_vertices(context, request, respond); },
-              .role = Role::annotator,
-              .query = {"source"},
-              .body = BodyKind::file,
-              .max_body = kMaxCsvBytes});
+  router.add(
+      {.method = Method::put,
+       .pattern = "/api/v1/models/{model}/layers/{layer}/vertices.csv",
+       .handler = [&context](const Request& request,
+                             const Respond& respond) { write_vertices(context, request, respond); },
+       .role = Role::annotator,
+       .query = {"source"},
+       .body = BodyKind::file,
+       .max_body = kMaxCsvBytes});
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/vertex-properties",
-              .handler = answering([&context](const Request& request) { return list_properties(context, request); })});
+              .handler = answering([&context](const Request& request) {
+                return list_properties(context, request);
+              })});
 }
 
 }  // namespace strata::net

@@ -21,7 +21,8 @@ Result<room::Selection> selection_of(const RouteContext& context, const room::Ro
     selection.where = std::move(*condition);
   }
   if (within && within->path) {
-    selection.within = room::Outline{*within->camera, *within->path, within->through.value_or(false)};
+    selection.within =
+        room::Outline{*within->camera, *within->path, within->through.value_or(false)};
   } else if (within) {
     room::Selection::Around around;
     around.at = place_of(*within->at);
@@ -44,7 +45,8 @@ Result<Response> statistics(const RouteContext& context, const Request& request)
     else if (part == "quantiles")
       wanted.quantiles = true;
     else
-      return fail(422, "Unknown part", "`include` takes pieces, perimeter and quantiles, with commas between.",
+      return fail(422, "Unknown part",
+                  "`include` takes pieces, perimeter and quantiles, with commas between.",
                   "include");
   }
   auto room = context.rooms.open(request.param("model"), request.role());
@@ -52,7 +54,8 @@ Result<Response> statistics(const RouteContext& context, const Request& request)
   auto layer = (*room)->layer(request.param("layer"));
   if (!layer) return tl::unexpected(layer.error());
   std::optional<std::string> where;
-  if (const auto given = request.query.find("where"); given != request.query.end()) where = given->second;
+  if (const auto given = request.query.find("where"); given != request.query.end())
+    where = given->second;
   const auto selection = selection_of(context, **room, where, std::nullopt, as_of(request));
   if (!selection) return tl::unexpected(selection.error());
   const auto sequence = selection->at.value_or((*room)->sequence());
@@ -69,8 +72,10 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
   if (request.principal->role < Role::annotator)
     return fail(403, "Not allowed", "`into` paints, which needs the role annotator.", "into");
   if (!asked.where || asked.within || asked.at)
-    return fail(422, "Cannot be painted",
-                "`into` paints where a condition holds now: give `where`, and neither `within` nor `at`.", "into");
+    return fail(
+        422, "Cannot be painted",
+        "`into` paints where a condition holds now: give `where`, and neither `within` nor `at`.",
+        "into");
   const auto layer = room.layer(protocol::to_ref(asked.into->layer));
   if (!layer) {
     Problem problem = layer.error();
@@ -82,7 +87,8 @@ Result<room::EditRequest> painting(const Request& request, const protocol::Selec
   fill.where = asked.where;
   fill.value = asked.into->value;
   fill.erase = asked.into->erase;
-  return edit_request(fill, *layer, room.model(), edit_id(request, *layer, "select"), request.author());
+  return edit_request(fill, *layer, room.model(), edit_id(request, *layer, "select"),
+                      request.author());
 }
 
 void select(const RouteContext& context, const Request& request, const Respond& respond) {
@@ -99,7 +105,8 @@ void select(const RouteContext& context, const Request& request, const Respond& 
   const auto selection = selection_of(context, **room, asked->where, asked->within, asked->at);
   if (!selection) return respond(selection.error());
   room::StatisticsWanted wanted;
-  for (const auto part : asked->include.value_or(std::vector<protocol::StatisticsPart>{})) switch (part) {
+  for (const auto part : asked->include.value_or(std::vector<protocol::StatisticsPart>{}))
+    switch (part) {
       case protocol::StatisticsPart::pieces: wanted.pieces = true; break;
       case protocol::StatisticsPart::perimeter: wanted.perimeter = true; break;
       case protocol::StatisticsPart::quantiles: wanted.quantiles = true; break;
@@ -115,10 +122,11 @@ void select(const RouteContext& context, const Request& request, const Respond& 
   if (!area) return respond(area.error());
   nlohmann::json body = to_json(*area);
   if (edit)
-    return apply_edit(context, request, *room, std::move(*edit), respond, [body](nlohmann::json of_edit) mutable {
-      body["edit"] = std::move(of_edit);
-      return std::move(body);
-    });
+    return apply_edit(context, request, *room, std::move(*edit), respond,
+                      [body](nlohmann::json of_edit) mutable {
+                        body["edit"] = std::move(of_edit);
+                        return std::move(body);
+                      });
   Response response = json_response(body);
   add_sequences(response, sequence, (*room)->durable_sequence());
   respond(std::move(response));
@@ -127,9 +135,11 @@ void select(const RouteContext& context, const Request& request, const Respond& 
 constexpr const char* kNoValue = "–";  // where one of the two layers has none
 
 // What one side of a cross-table is called.
-Result<std::vector<std::string>> side_names(const RouteContext& context, const room::Room& room, const Layer& layer,
-                                            Role role, const std::vector<query::CrossTable::Key>& side,
-                                            std::optional<std::int64_t> at, const std::string& language) {
+Result<std::vector<std::string>> side_names(const RouteContext& context, const room::Room& room,
+                                            const Layer& layer, Role role,
+                                            const std::vector<query::CrossTable::Key>& side,
+                                            std::optional<std::int64_t> at,
+                                            const std::string& language) {
   std::vector<double> values;
   for (const auto& key : side)
     if (key) values.push_back(*key);
@@ -146,12 +156,16 @@ Result<std::vector<std::string>> side_names(const RouteContext& context, const r
 
 // With names and sums, as people read it: in the unit that suits the sum of all.
 Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Layer& columns,
-               const std::vector<std::string>& row_names, const std::vector<std::string>& column_names) {
+               const std::vector<std::string>& row_names,
+               const std::vector<std::string>& column_names) {
   CompensatedSum all_m2;
   for (const auto& row : table.area_m2)
     for (const double area_m2 : row) all_m2 += area_m2;
   const AreaUnit unit = readable_area(all_m2.value());
-  Sheet sheet{rows.slug + "-" + columns.slug, {rows.name + " / " + columns.name + ", " + unit.name}, {}, {}};
+  Sheet sheet{rows.slug + "-" + columns.slug,
+              {rows.name + " / " + columns.name + ", " + unit.name},
+              {},
+              {}};
   sheet.heads.insert(sheet.heads.end(), column_names.begin(), column_names.end());
   sheet.heads.emplace_back("total");
   std::vector<CompensatedSum> sums(column_names.size() + 1);
@@ -179,8 +193,8 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
   const auto asked = body_of<protocol::CrossTableRequest>(request);
   if (!asked) return tl::unexpected(asked.error());
   // Without `f` scripts get keys; what is asked for as a sheet is for people.
-  const bool as_csv =
-      !request.query.contains("f") && request.header("accept").find("text/csv") != std::string_view::npos;
+  const bool as_csv = !request.query.contains("f") &&
+                      request.header("accept").find("text/csv") != std::string_view::npos;
   const auto format = as_csv ? Result<SheetFormat>(SheetFormat::csv) : sheet_format(request);
   if (!format) return tl::unexpected(format.error());
   const auto separator = csv_separator(request);
@@ -198,9 +212,10 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
   const auto sequence = selection->at.value_or((*room)->sequence());
   const auto table = (*room)->cross_table(rows->front().slug, columns->front().slug, *selection);
   if (!table) return tl::unexpected(table.error());
-  Response response = as_csv
-                          ? text_response(cross_table_csv(*table, rows->front().slug, columns->front().slug), kCsvType)
-                          : json_response(to_json(*table));
+  Response response =
+      as_csv ? text_response(cross_table_csv(*table, rows->front().slug, columns->front().slug),
+                             kCsvType)
+             : json_response(to_json(*table));
   if (!as_csv && *format != SheetFormat::json) {
     const auto side = [&](const Layer& layer, const std::vector<query::CrossTable::Key>& keys) {
       return side_names(context, **room, layer, request.role(), keys, selection->at, *language);
@@ -209,8 +224,9 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
     if (!row_names) return tl::unexpected(row_names.error());
     const auto column_names = side(columns->front(), table->columns);
     if (!column_names) return tl::unexpected(column_names.error());
-    auto sheet = sheet_response(sheet_of(*table, rows->front(), columns->front(), *row_names, *column_names), *format,
-                                *separator, context.options.upload_dir);
+    auto sheet =
+        sheet_response(sheet_of(*table, rows->front(), columns->front(), *row_names, *column_names),
+                       *format, *separator, context.options.upload_dir);
     if (!sheet) return sheet;
     response = std::move(*sheet);
   }
@@ -224,20 +240,22 @@ Result<Response> cross_table(const RouteContext& context, const Request& request
 void add_statistics_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/layers/{layer}/statistics",
-              .handler = answering([&context](const Request& request) { return statistics(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return statistics(context, request); }),
               .query = {"include", "at", "where"},
               .is_question = true,
               .state = state_of_model(context)});
-  router.add(
-      {.method = Method::post,
-       .pattern = "/api/v1/models/{model}/select",
-       .handler = [&context](const Request& request, const Respond& respond) { select(context, request, respond); },
-       .body = BodyKind::memory,
-       .max_body = context.options.max_json_bytes,
-       .is_question = true});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/select",
+              .handler = [&context](const Request& request,
+                                    const Respond& respond) { select(context, request, respond); },
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .is_question = true});
   router.add({.method = Method::post,
               .pattern = "/api/v1/models/{model}/cross-table",
-              .handler = answering([&context](const Request& request) { return cross_table(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return cross_table(context, request); }),
               .query = {"f", "separator", "lang"},
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,

@@ -10,7 +10,8 @@ namespace {
 Response readiness(const RouteContext& context) {
   nlohmann::json reasons = nlohmann::json::array();
   if (!context.store.ready()) reasons.push_back("The database does not answer.");
-  if (!context.renderer.ready()) reasons.push_back("The graphics context was lost and cannot be replaced yet.");
+  if (!context.renderer.ready())
+    reasons.push_back("The graphics context was lost and cannot be replaced yet.");
   const bool ready = reasons.empty();
   return json_response({{"ready", ready}, {"reasons", reasons}}, ready ? 200 : 503);
 }
@@ -23,7 +24,9 @@ Result<Response> contract(const RouteContext& context, const Request& request) {
   Response response = text_response(std::move(text).str(), "application/json");
   const auto tag = tag_of_body(response);
   response.with("ETag", tag.value_or("")).with("Cache-Control", "no-cache");
-  return names_tag(request.header("if-none-match"), tag.value_or("")) ? not_modified(std::move(response)) : response;
+  return names_tag(request.header("if-none-match"), tag.value_or(""))
+             ? not_modified(std::move(response))
+             : response;
 }
 
 }  // namespace
@@ -35,18 +38,25 @@ void add_system_routes(Router& router, const RouteContext& context) {
                 .handler = answering(std::move(answer)),
                 .role = std::nullopt});
   };
-  open("/livez", [](const Request&) -> Result<Response> { return text_response("ok\n", "text/plain; charset=utf-8"); });
+  open("/livez", [](const Request&) -> Result<Response> {
+    return text_response("ok\n", "text/plain; charset=utf-8");
+  });
   open("/readyz", [&context](const Request&) -> Result<Response> { return readiness(context); });
   open("/metrics", [&context](const Request&) -> Result<Response> {
-    return text_response(metrics_text(context.metrics, {context.rooms.open_rooms(), context.renderer.gpu_bytes_used(),
-                                                        context.rooms.memory_bytes_used(), context.workers.waiting(),
-                                                        context.questions.waiting(), context.questions.under_way(),
-                                                        context.questions.steps()}),
-                         "text/plain; version=0.0.4; charset=utf-8");
+    return text_response(
+        metrics_text(context.metrics,
+                     {context.rooms.open_rooms(), context.renderer.gpu_bytes_used(),
+                      context.rooms.memory_bytes_used(), context.workers.waiting(),
+                      context.questions.waiting(), context.questions.under_way(),
+                      context.questions.steps()}),
+        "text/plain; version=0.0.4; charset=utf-8");
   });
-  open("/api/v1/openapi.json", [&context](const Request& request) { return contract(context, request); });
+  open("/api/v1/openapi.json",
+       [&context](const Request& request) { return contract(context, request); });
   for (const char* pattern : {"/docs", "/api/v1/docs"})
-    open(pattern, [&context](const Request&) { return docs_page(context.options.protocol_dir / "openapi.json"); });
+    open(pattern, [&context](const Request&) {
+      return docs_page(context.options.protocol_dir / "openapi.json");
+    });
   open("/api/v1/docs.css", [](const Request&) -> Result<Response> {
     return text_response(std::string(docs_style()), "text/css; charset=utf-8");
   });

@@ -68,20 +68,24 @@ Result<Response> create_table(const RouteContext& context, const Request& reques
 Result<Response> change_table(const RouteContext& context, const Request& request) {
   auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
-  if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, table->version); !fresh)
+    return tl::unexpected(fresh.error());
   auto asked = body_of<protocol::TablePatch>(request);
   if (!asked) return tl::unexpected(asked.error());
   if (asked->name) table->name = *asked->name;
   if (asked->labels) table->labels = *asked->labels;
   if (asked->description) table->description = *asked->description;
   if (asked->title_column) {
-    const Column* title = asked->title_column->empty() ? nullptr : find_column(table->columns, *asked->title_column);
+    const Column* title =
+        asked->title_column->empty() ? nullptr : find_column(table->columns, *asked->title_column);
     if (!title && !asked->title_column->empty())
-      return fail(422, "No such column", table->name + " has no column `" + *asked->title_column + "`.",
-                  "title_column");
+      return fail(422, "No such column",
+                  table->name + " has no column `" + *asked->title_column + "`.", "title_column");
     table->title_column = title ? std::optional(title->id) : std::nullopt;
   }
-  const auto answer = [](const Table& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
+  const auto answer = [](const Table& now) {
+    return json_response(to_json(now)).with("ETag", etag_of(now.version));
+  };
   auto changed = context.store.update_table(*table, first_answer<Table>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   tell_table(context, protocol::TableEventEvent::changed, *changed, request.user());
@@ -91,8 +95,10 @@ Result<Response> change_table(const RouteContext& context, const Request& reques
 Result<Response> delete_table(const RouteContext& context, const Request& request) {
   auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
-  if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
-  auto gone = context.store.delete_table(table->id, first_answer<>(request, [] { return empty_response(204); }));
+  if (auto fresh = check_if_match(request, table->version); !fresh)
+    return tl::unexpected(fresh.error());
+  auto gone = context.store.delete_table(
+      table->id, first_answer<>(request, [] { return empty_response(204); }));
   if (!gone) return tl::unexpected(gone.error());
   tell_table(context, protocol::TableEventEvent::deleted, *table, request.user());
   return empty_response(204);
@@ -107,7 +113,8 @@ std::optional<std::int64_t> wished_version(const Request& request, const Table& 
 Result<const Column*> column_of(const Table& table, const Request& request) {
   const Column* column = find_column(table.columns, request.param("column"));
   if (!column)
-    return fail(404, "Not found", table.name + " has no column `" + request.param("column").substr(0, 100) + "`.");
+    return fail(404, "Not found",
+                table.name + " has no column `" + request.param("column").substr(0, 100) + "`.");
   return column;
 }
 
@@ -131,7 +138,8 @@ Result<Response> list_columns(const RouteContext& context, const Request& reques
   if (!part) return tl::unexpected(part.error());
   nlohmann::json list = nlohmann::json::array();
   for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json(table->columns[i]));
-  Response response = json_response({{"columns", std::move(list)}, {"total", table->columns.size()}});
+  Response response =
+      json_response({{"columns", std::move(list)}, {"total", table->columns.size()}});
   add_page_links(response, request, *page, part->last);
   return with_etag(std::move(response), request, table->version);
 }
@@ -141,26 +149,29 @@ Result<Response> create_column(const RouteContext& context, const Request& reque
   if (!asked) return tl::unexpected(asked.error());
   auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
-  if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, table->version); !fresh)
+    return tl::unexpected(fresh.error());
   auto column = new_column(context.store, table->project_id, *asked);
   if (!column) return tl::unexpected(column.error());
-  for (const Column& other : table->columns) column->order = std::max(column->order, other.order + 1);
+  for (const Column& other : table->columns)
+    column->order = std::max(column->order, other.order + 1);
   const auto answer = [](const TableChange& change) {
     const std::int64_t id = change.record.at("column").get<std::int64_t>();
     return json_response(column_json(change, id), 201)
         .with("Location", "/api/v1/tables/" + change.table.slug + "/columns/" + std::to_string(id))
         .with("ETag", etag_of(change.table.version));
   };
-  auto change =
-      context.store.create_column(table->id, *column, request.user(), first_answer<TableChange>(request, answer));
+  auto change = context.store.create_column(table->id, *column, request.user(),
+                                            first_answer<TableChange>(request, answer));
   if (!change) return tl::unexpected(change.error());
   tell_change(context, *change, request.user());
   return answer(*change);
 }
 
-// Null takes a default or a limit away, which the typed body cannot tell from a member that is absent.
-Result<void> change(const RouteContext& context, const Request& request, const protocol::ColumnPatch& asked,
-                    const Table& table, Column& column) {
+// Null takes a default or a limit away, which the typed body cannot tell from a member that is
+// absent.
+Result<void> change(const RouteContext& context, const Request& request,
+                    const protocol::ColumnPatch& asked, const Table& table, Column& column) {
   const auto body = nlohmann::json::parse(request.body);
   if (asked.name) column.name = *asked.name;
   if (asked.slug) {
@@ -175,7 +186,8 @@ Result<void> change(const RouteContext& context, const Request& request, const p
     const bool is_number = column.kind == ColumnKind::integer || column.kind == ColumnKind::numeric;
     if (!is_number) column.unit.clear(), column.minimum.reset(), column.maximum.reset();
     if (column.kind != ColumnKind::enumeration) column.choices.clear();
-    if (column.kind != ColumnKind::term && column.kind != ColumnKind::relation) column.target.reset();
+    if (column.kind != ColumnKind::term && column.kind != ColumnKind::relation)
+      column.target.reset();
     if (!body.contains("default")) column.default_value = nullptr;
   }
   if (asked.unit) column.unit = *asked.unit;
@@ -195,16 +207,17 @@ Result<void> change(const RouteContext& context, const Request& request, const p
   return {};
 }
 
-Result<Response> show_column(const RouteContext& context, const Request& request, const Table& table,
-                             const Column& column, Visibility visibility) {
-  if (auto good = check_shows_nothing(context, table, column, visibility); !good) return tl::unexpected(good.error());
+Result<Response> show_column(const RouteContext& context, const Request& request,
+                             const Table& table, const Column& column, Visibility visibility) {
+  if (auto good = check_shows_nothing(context, table, column, visibility); !good)
+    return tl::unexpected(good.error());
   const auto answer = [id = column.id](const Table& now) {
     TableChange shown;
     shown.table = now;
     return json_response(column_json(shown, id)).with("ETag", etag_of(now.version));
   };
-  auto now =
-      context.store.show_column(table.id, column.id, visibility, table.version, first_answer<Table>(request, answer));
+  auto now = context.store.show_column(table.id, column.id, visibility, table.version,
+                                       first_answer<Table>(request, answer));
   if (!now) return tl::unexpected(now.error());
   // Colours, lines and points that are drawn from it are others for who does not see it any more.
   context.rooms.records_changed(now->id);
@@ -217,24 +230,28 @@ Result<Response> change_column(const RouteContext& context, const Request& reque
   if (!table) return tl::unexpected(table.error());
   auto found = column_of(*table, request);
   if (!found) return tl::unexpected(found.error());
-  if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, table->version); !fresh)
+    return tl::unexpected(fresh.error());
   auto asked = body_of<protocol::ColumnPatch>(request);
   if (!asked) return tl::unexpected(asked.error());
   if (asked->visibility) {
     protocol::ColumnPatch alone;
     alone.visibility = asked->visibility;
     if (!(*asked == alone))
-      return fail(422, "Visibility with other changes", "Say who sees a column in a call of its own.", "visibility");
+      return fail(422, "Visibility with other changes",
+                  "Say who sees a column in a call of its own.", "visibility");
     return show_column(context, request, *table, **found, *asked->visibility);
   }
   Column column = **found;
-  if (auto good = change(context, request, *asked, *table, column); !good) return tl::unexpected(good.error());
+  if (auto good = change(context, request, *asked, *table, column); !good)
+    return tl::unexpected(good.error());
   const auto answer = [id = column.id](const TableChange& done) {
     const auto now = done.record.is_object() ? done.record.value("column", id) : id;
     return json_response(column_json(done, now)).with("ETag", etag_of(done.table.version));
   };
-  auto done = context.store.update_column(table->id, column, wished_version(request, *table), request.user(),
-                                          first_answer<TableChange>(request, answer));
+  auto done =
+      context.store.update_column(table->id, column, wished_version(request, *table),
+                                  request.user(), first_answer<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
   tell_change(context, *done, request.user());
   return answer(*done);
@@ -245,16 +262,18 @@ Result<Response> drop_column(const RouteContext& context, const Request& request
   if (!table) return tl::unexpected(table.error());
   auto column = column_of(*table, request);
   if (!column) return tl::unexpected(column.error());
-  if (auto fresh = check_if_match(request, table->version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, table->version); !fresh)
+    return tl::unexpected(fresh.error());
   const auto answer = [](const TableChange&) { return empty_response(204); };
-  auto done = context.store.drop_column(table->id, (*column)->id, wished_version(request, *table), request.user(),
-                                        first_answer<TableChange>(request, answer));
+  auto done = context.store.drop_column(table->id, (*column)->id, wished_version(request, *table),
+                                        request.user(), first_answer<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
   tell_change(context, *done, request.user());
   return answer(*done);
 }
 
-// A record that lies above itself cannot be: told, not refused, since excavation drawings have such things to be found.
+// A record that lies above itself cannot be: told, not refused, since excavation drawings have such
+// things to be found.
 Result<Response> cycles(const RouteContext& context, const Request& request) {
   auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
@@ -262,7 +281,8 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
   if (!column) return tl::unexpected(column.error());
   if ((*column)->target != table->id)
     return fail(422, "No relation of its own",
-                "Cycles are those of a relation or term that names records of its own table.", "column");
+                "Cycles are those of a relation or term that names records of its own table.",
+                "column");
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
   auto page = context.store.records(table->id, request.role(), query);
@@ -270,8 +290,9 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
   Relation relation;
   for (const Record& record : page->records)
     if (const auto named = record.values.find((*column)->id); named != record.values.end())
-      relation[record.key] = named->second.is_array() ? named->second.get<std::vector<std::int64_t>>()
-                                                      : std::vector{named->second.get<std::int64_t>()};
+      relation[record.key] = named->second.is_array()
+                                 ? named->second.get<std::vector<std::int64_t>>()
+                                 : std::vector{named->second.get<std::int64_t>()};
   const auto found = relation_cycles(relation);
   return json_response({{"cycles", found}, {"total", found.size()}});
 }
@@ -310,11 +331,13 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
   } else {
     if ((*column)->kind != ColumnKind::integer && (*column)->kind != ColumnKind::numeric)
       return fail(422, "Column holds no numbers",
-                  "'" + (*column)->name + "' holds no numbers: its classes are its unique values.", "method");
+                  "'" + (*column)->name + "' holds no numbers: its classes are its unique values.",
+                  "method");
     Expression number;
     number.op = Expression::Op::column;
     number.path = {(*column)->slug};
-    auto cells = context.store.record_numbers(table->id, request.role(), number, std::nullopt, "column");
+    auto cells =
+        context.store.record_numbers(table->id, request.role(), number, std::nullopt, "column");
     if (!cells) return tl::unexpected(cells.error());
     std::vector<double> values;
     for (const KeyNumber& cell : *cells) values.push_back(cell.number);
@@ -344,9 +367,11 @@ Result<Response> history(const RouteContext& context, const Request& request) {
   }
   const auto before = number_after(*page, INT64_MAX);
   if (!before) return tl::unexpected(before.error());
-  auto rows = context.store.table_history(table->id, request.role(), key, page->limit + 1, page->offset, *before);
+  auto rows = context.store.table_history(table->id, request.role(), key, page->limit + 1,
+                                          page->offset, *before);
   if (!rows) return tl::unexpected(rows.error());
-  const auto last = end_page(rows->rows, *page, [](const auto& row) { return ListPlace::array({row.sequence}); });
+  const auto last =
+      end_page(rows->rows, *page, [](const auto& row) { return ListPlace::array({row.sequence}); });
   nlohmann::json list = nlohmann::json::array();
   for (const auto& row : rows->rows) list.push_back(to_json(row));
   Response response = json_response({{"edits", std::move(list)}, {"total", rows->total}});
@@ -356,7 +381,8 @@ Result<Response> history(const RouteContext& context, const Request& request) {
 
 Result<Response> undo(const RouteContext& context, const Request& request, bool redo) {
   if (!request.body.empty())
-    if (auto empty = body_of<protocol::Empty>(request); !empty) return tl::unexpected(empty.error());
+    if (auto empty = body_of<protocol::Empty>(request); !empty)
+      return tl::unexpected(empty.error());
   auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   auto plan = context.store.plan_table_undo(table->id, request.user(), redo);
@@ -401,7 +427,8 @@ Result<Response> areas(const RouteContext& context, const Request& request) {
       sum.area_m2 += area.area_m2;
       auto& [model_area_m2, layers] = sum.models[layer.layer.model_id];
       model_area_m2 += area.area_m2;
-      layers.push_back({{"layer", layer.layer.id}, {"area_m2", area.area_m2}, {"texels", area.texels}});
+      layers.push_back(
+          {{"layer", layer.layer.id}, {"area_m2", area.area_m2}, {"texels", area.texels}});
     }
   std::vector<std::int64_t> keys;
   for (const auto& [key, sum] : sums) keys.push_back(key);
@@ -411,7 +438,9 @@ Result<Response> areas(const RouteContext& context, const Request& request) {
   for (auto& [key, sum] : sums) {
     nlohmann::json models = nlohmann::json::array();
     for (auto& [model, of_model] : sum.models)
-      models.push_back({{"model", model}, {"area_m2", of_model.first.value()}, {"layers", std::move(of_model.second)}});
+      models.push_back({{"model", model},
+                        {"area_m2", of_model.first.value()},
+                        {"layers", std::move(of_model.second)}});
     list.push_back({{"key", key},
                     {"area_m2", sum.area_m2.value()},
                     {"has_record", !std::binary_search(missing->begin(), missing->end(), key)},
@@ -426,18 +455,23 @@ Result<Response> areas(const RouteContext& context, const Request& request) {
 void add_table_routes(Router& router, const RouteContext& context) {
   const std::string tables = "/api/v1/projects/{project}/tables", table = "/api/v1/tables/{table}";
   using Answer = Result<Response> (*)(const RouteContext&, const Request&);
-  const auto read = [&](const std::string& pattern, Answer answer, std::vector<std::string> query = {},
-                        StateOf state = {}) {
+  const auto read = [&](const std::string& pattern, Answer answer,
+                        std::vector<std::string> query = {}, StateOf state = {}) {
     router.add({.method = Method::get,
                 .pattern = pattern,
-                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .handler = answering([&context, answer](const Request& request) {
+                  return answer(context, request);
+                }),
                 .query = std::move(query),
                 .state = std::move(state)});
   };
-  const auto write = [&](Method method, const std::string& pattern, Answer answer, BodyKind body = BodyKind::memory) {
+  const auto write = [&](Method method, const std::string& pattern, Answer answer,
+                         BodyKind body = BodyKind::memory) {
     router.add({.method = method,
                 .pattern = pattern,
-                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .handler = answering([&context, answer](const Request& request) {
+                  return answer(context, request);
+                }),
                 .role = Role::curator,
                 .body = body,
                 .max_body = body == BodyKind::none ? 0 : context.options.max_json_bytes,
@@ -458,13 +492,16 @@ void add_table_routes(Router& router, const RouteContext& context) {
   write(Method::patch, table + "/columns/{column}", change_column);
   write(Method::remove, table + "/columns/{column}", drop_column, BodyKind::none);
   read(table + "/columns/{column}/cycles", cycles, {}, state_of_records(context));
-  read(table + "/columns/{column}/classes", classes, {"method", "count"}, state_of_records(context));
+  read(table + "/columns/{column}/classes", classes, {"method", "count"},
+       state_of_records(context));
   read(table + "/edits", history, {"key", "limit", "offset", "after"});
   read(table + "/areas", areas, {}, state_of_painted_table(context));
   for (const bool redo : {false, true})
     router.add({.method = Method::post,
                 .pattern = table + (redo ? "/redo" : "/undo"),
-                .handler = answering([&context, redo](const Request& request) { return undo(context, request, redo); }),
+                .handler = answering([&context, redo](const Request& request) {
+                  return undo(context, request, redo);
+                }),
                 .role = Role::annotator,
                 .body = BodyKind::memory,
                 .max_body = context.options.max_json_bytes,

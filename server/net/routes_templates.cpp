@@ -21,7 +21,8 @@ Result<Response> list_templates(const RouteContext& context, const Request& requ
   const int total = static_cast<int>(templates.size());
   // They are those that the server began with, in the order of then.
   std::int64_t place = 0;
-  const auto part = slice_by(*page, templates, [&place](const auto&) { return NumberKey{place++}; });
+  const auto part =
+      slice_by(*page, templates, [&place](const auto&) { return NumberKey{place++}; });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json(templates[i]));
   Response response = json_response({{"templates", std::move(list)}, {"total", total}});
@@ -55,10 +56,11 @@ Result<std::vector<WishedLayer>> wished_layers(const protocol::Template& of, con
     const std::string plain = search_text(next.layer.name);
     for (const Layer& other : others)
       if (search_text(other.name) == plain)
-        return fail(409, "Name taken",
-                    "The model has a layer \"" + other.name +
-                        "\" already. Rename or delete it first, or use the template without a model.",
-                    "model");
+        return fail(
+            409, "Name taken",
+            "The model has a layer \"" + other.name +
+                "\" already. Rename or delete it first, or use the template without a model.",
+            "model");
     auto slug = slug_of({}, told.name);
     if (!slug) return tl::unexpected(slug.error());
     next.layer.slug = *slug;
@@ -67,9 +69,11 @@ Result<std::vector<WishedLayer>> wished_layers(const protocol::Template& of, con
     next.layer.resolution = std::max(model.default_resolution, model.atlas.lowest_resolution);
     next.layer.order = order++;
     next.table = static_cast<std::size_t>(
-        std::find_if(of.tables.begin(), of.tables.end(), [&](const auto& table) { return table.slug == told.table; }) -
+        std::find_if(of.tables.begin(), of.tables.end(),
+                     [&](const auto& table) { return table.slug == told.table; }) -
         of.tables.begin());
-    next.layer.palette = of.tables.at(next.table).terms ? terms_palette({}) : default_palette(next.layer.type, true);
+    next.layer.palette =
+        of.tables.at(next.table).terms ? terms_palette({}) : default_palette(next.layer.type, true);
     wished.push_back(std::move(next));
   }
   return wished;
@@ -84,7 +88,8 @@ void take_back(const RouteContext& context, const std::vector<Table>& tables) {
 }
 
 Result<std::vector<Layer>> make_layers(const RouteContext& context, const Request& request,
-                                       const std::shared_ptr<room::Room>& room, std::vector<WishedLayer> wished,
+                                       const std::shared_ptr<room::Room>& room,
+                                       std::vector<WishedLayer> wished,
                                        const std::vector<Table>& tables) {
   NewLayers layers(room, context.metrics, request.author());
   std::vector<Layer> made;
@@ -94,7 +99,8 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
   };
   for (WishedLayer& next : wished) {
     next.layer.table = tables.at(next.table).id;
-    auto created = layers.add(std::move(next.layer), [](const Layer& layer) -> Result<Layer> { return layer; });
+    auto created = layers.add(std::move(next.layer),
+                              [](const Layer& layer) -> Result<Layer> { return layer; });
     if (!created) return refuse(created.error());
     made.push_back(std::move(*created));
   }
@@ -107,7 +113,8 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
     }
     return answer_with(tables, made);
   };
-  if (auto shown = layers.show(first_answer<Layer>(request, now)); !shown) return refuse(shown.error());
+  if (auto shown = layers.show(first_answer<Layer>(request, now)); !shown)
+    return refuse(shown.error());
   for (Layer& layer : made)
     if (auto shown = room->layer(std::to_string(layer.id))) layer = std::move(*shown);
   return made;
@@ -119,7 +126,9 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
   auto project = context.store.project(request.param("project"));
   if (!project) return tl::unexpected(project.error());
   const protocol::Template* of = context.templates.find(request.param("template"));
-  if (!of) return fail(404, "Not found", "There is no template `" + request.param("template").substr(0, 100) + "`.");
+  if (!of)
+    return fail(404, "Not found",
+                "There is no template `" + request.param("template").substr(0, 100) + "`.");
   auto tables = new_tables(*of, project->id, asked->language);
   if (!tables) return tl::unexpected(tables.error());
   std::shared_ptr<room::Room> room;
@@ -128,7 +137,8 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
     auto opened = context.rooms.open(*asked->model, request.role());
     if (!opened && opened.error().status != 404) return tl::unexpected(opened.error());
     if (!opened || (*opened)->model().project_id != project->id)
-      return fail(422, "No such model", "The project has no model `" + *asked->model + "`.", "model");
+      return fail(422, "No such model", "The project has no model `" + *asked->model + "`.",
+                  "model");
     room = std::move(*opened);
     auto layers = wished_layers(*of, *room, asked->language);
     if (!layers) return tl::unexpected(layers.error());
@@ -142,9 +152,9 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
   };
   auto changes = context.store.create_tables(
       *tables, false, request.user(), "template",
-      wished.empty()
-          ? first_answer<std::vector<store::TableChange>>(request, tables_alone)
-          : store::FirstAnswer<std::vector<store::TableChange>>{.key = {}, .make = {}, .user = request.user()});
+      wished.empty() ? first_answer<std::vector<store::TableChange>>(request, tables_alone)
+                     : store::FirstAnswer<std::vector<store::TableChange>>{
+                           .key = {}, .make = {}, .user = request.user()});
   if (!changes) return tl::unexpected(changes.error());
   std::vector<Table> made;
   for (const auto& change : *changes) {
@@ -160,7 +170,8 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
     }
     layers = std::move(*added);
   }
-  for (const Table& table : made) tell_table(context, protocol::TableEventEvent::created, table, request.user());
+  for (const Table& table : made)
+    tell_table(context, protocol::TableEventEvent::created, table, request.user());
   return answer_with(made, layers);
 }
 
@@ -169,12 +180,14 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
 void add_template_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/templates",
-              .handler = answering([&context](const Request& request) { return list_templates(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_templates(context, request); }),
               .role = Role::guest,
               .query = {"limit", "offset", "after"}});
   router.add({.method = Method::post,
               .pattern = "/api/v1/projects/{project}/templates/{template}",
-              .handler = answering([&context](const Request& request) { return use_template(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return use_template(context, request); }),
               .role = Role::curator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,

@@ -23,7 +23,8 @@ Result<TermList> read_terms(const Request& request) {
   if (kind == "text/csv") return read_terms_csv(request.body);
   if (kind == "text/turtle") return read_terms_skos(request.body, RdfSyntax::turtle);
   if (kind == "application/rdf+xml") return read_terms_skos(request.body, RdfSyntax::rdf_xml);
-  return fail(415, "Format not known", "Terms come as text/csv, text/turtle or application/rdf+xml.", "Content-Type");
+  return fail(415, "Format not known",
+              "Terms come as text/csv, text/turtle or application/rdf+xml.", "Content-Type");
 }
 
 Result<bool> is_dry_run(const Request& request) {
@@ -34,13 +35,15 @@ Result<bool> is_dry_run(const Request& request) {
 
 nlohmann::json report_of(const TermList& list, const TableChange& change, bool dry_run) {
   nlohmann::json problems = nlohmann::json::array();
-  const auto add = [&](int line, const std::string& code, const std::string& column, const Problem& problem) {
+  const auto add = [&](int line, const std::string& code, const std::string& column,
+                       const Problem& problem) {
     if (problems.size() == store::kMostRowProblems) return;
     problems.push_back({{"line", line}, {"title", problem.title}, {"detail", problem.detail}});
     if (!code.empty()) problems.back()["code"] = code;
     if (!column.empty()) problems.back()["column"] = column;
   };
-  for (const TermMistake& mistake : list.mistakes) add(mistake.line, mistake.code, mistake.column, mistake.problem);
+  for (const TermMistake& mistake : list.mistakes)
+    add(mistake.line, mistake.code, mistake.column, mistake.problem);
   for (const store::RowProblem& problem : change.problems) {
     const Term* term = problem.index ? &list.terms[*problem.index] : nullptr;
     constexpr std::string_view kValues = "values.";
@@ -49,11 +52,16 @@ nlohmann::json report_of(const TermList& list, const TableChange& change, bool d
         field.starts_with(kValues) ? field.substr(kValues.size()) : field, problem.problem);
   }
   const bool refused = !problems.empty();
-  const std::size_t created = refused ? 0 : change.created.size(), changed = refused ? 0 : change.changed.size();
-  nlohmann::json report{{"rows", list.rows},         {"created", created},
-                        {"changed", changed},        {"unchanged", refused ? 0 : list.terms.size() - created - changed},
-                        {"dry_run", dry_run},        {"sequence", refused || dry_run ? 0 : change.sequence},
-                        {"left_out", list.left_out}, {"problems", std::move(problems)}};
+  const std::size_t created = refused ? 0 : change.created.size(),
+                    changed = refused ? 0 : change.changed.size();
+  nlohmann::json report{{"rows", list.rows},
+                        {"created", created},
+                        {"changed", changed},
+                        {"unchanged", refused ? 0 : list.terms.size() - created - changed},
+                        {"dry_run", dry_run},
+                        {"sequence", refused || dry_run ? 0 : change.sequence},
+                        {"left_out", list.left_out},
+                        {"problems", std::move(problems)}};
   if (!refused && !dry_run) report["table"] = to_json(change.table);
   return report;
 }
@@ -62,11 +70,13 @@ Result<Response> refusal(const TermList& list, const TableChange& change) {
   const nlohmann::json report = report_of(list, change, false);
   const auto& first = report.at("problems").front();
   const int line = first.at("line").get<int>();
-  const std::string where = line > 0                 ? "Line " + std::to_string(line) + ": "
-                            : first.contains("code") ? "\"" + first.at("code").get<std::string>() + "\": "
-                                                     : std::string();
+  const std::string where = line > 0 ? "Line " + std::to_string(line) + ": "
+                            : first.contains("code")
+                                ? "\"" + first.at("code").get<std::string>() + "\": "
+                                : std::string();
   Response response = problem_response(
-      {422, "Terms refused", "Nothing was written. " + where + first.at("detail").get<std::string>(), "body"});
+      {422, "Terms refused",
+       "Nothing was written. " + where + first.at("detail").get<std::string>(), "body"});
   auto body = nlohmann::json::parse(response.body);
   body["rows"] = report;
   response.body = body.dump();
@@ -79,7 +89,8 @@ Result<Response> create_terms(const RouteContext& context, const Request& reques
   store::Store::NewTable wished;
   wished.table.name = request.query_or("name", {});
   if (wished.table.name.empty() || wished.table.name.size() > kLongestListName)
-    return fail(422, "Name missing", "`name` tells what the list is called, in 1 to 200 bytes.", "name");
+    return fail(422, "Name missing", "`name` tells what the list is called, in 1 to 200 bytes.",
+                "name");
   auto slug = slug_of({}, wished.table.name);
   if (!slug) return tl::unexpected(slug.error());
   wished.table.slug = *slug;
@@ -101,8 +112,9 @@ Result<Response> create_terms(const RouteContext& context, const Request& reques
     return json_response(report_of(*list, changes.front(), false), 201)
         .with("Location", "/api/v1/tables/" + changes.front().table.slug);
   };
-  auto changes = context.store.create_tables({wished}, *dry_run, request.user(), "import",
-                                             first_answer<std::vector<TableChange>>(request, answer));
+  auto changes =
+      context.store.create_tables({wished}, *dry_run, request.user(), "import",
+                                  first_answer<std::vector<TableChange>>(request, answer));
   if (!changes) return tl::unexpected(changes.error());
   if (*dry_run) return json_response(report_of(*list, changes->front(), true));
   if (!changes->front().problems.empty()) return refusal(*list, changes->front());
@@ -121,7 +133,9 @@ Result<Response> import_terms(const RouteContext& context, const Request& reques
     if (*dry_run) return json_response(report_of(*list, {}, true));
     return refusal(*list, {});
   }
-  const auto answer = [&list](const TableChange& change) { return json_response(report_of(*list, change, false)); };
+  const auto answer = [&list](const TableChange& change) {
+    return json_response(report_of(*list, change, false));
+  };
   auto change = context.store.import_terms(table->id, *list, *dry_run, request.user(),
                                            first_answer<TableChange>(request, answer));
   if (!change) return tl::unexpected(change.error());
@@ -141,18 +155,20 @@ std::string hex_of(const Rgba& color) {
 }
 
 // Which of the terms are told: those that have the words, and those above them.
-std::vector<bool> with_those_above(const std::vector<ListedTerm>& terms, const std::vector<bool>& match) {
+std::vector<bool> with_those_above(const std::vector<ListedTerm>& terms,
+                                   const std::vector<bool>& match) {
   std::map<std::int64_t, std::size_t> places;
   for (std::size_t i = 0; i < terms.size(); ++i) places[terms[i].key] = i;
   std::vector<bool> told = match;
-  // Those below come later, so that from the end on each tells of itself before the one above it is asked.
+  // Those below come later, so that from the end on each tells of itself before the one above it is
+  // asked.
   for (std::size_t i = terms.size(); i-- > 0;)
     if (told[i] && terms[i].depth > 0) told[places.at(*terms[i].parent)] = true;
   return told;
 }
 
-Response tree_response(const Request& request, const std::string& language, const std::vector<ListedTerm>& terms,
-                       const Page& page) {
+Response tree_response(const Request& request, const std::string& language,
+                       const std::vector<ListedTerm>& terms, const Page& page) {
   const Palette palette = terms_palette(terms);
   std::map<std::int64_t, int> below;
   for (const ListedTerm& listed : terms)
@@ -199,7 +215,8 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
   auto table = context.store.table(request.param("table"), request.role());
   if (!table) return tl::unexpected(table.error());
   if (!term_columns(*table))
-    return fail(409, "No list of terms", table->name + " is a table of records. Read `/records` of it.");
+    return fail(409, "No list of terms",
+                table->name + " is a table of records. Read `/records` of it.");
   store::Store::RecordQuery all;
   all.limit = store::kMostRecords;
   auto page = context.store.records(table->id, request.role(), all);
@@ -229,11 +246,14 @@ Result<Response> list_terms_of(const RouteContext& context, const Request& reque
 }  // namespace
 
 void add_term_routes(Router& router, const RouteContext& context) {
-  const auto write = [&](const std::string& pattern, Result<Response> (*answer)(const RouteContext&, const Request&),
+  const auto write = [&](const std::string& pattern,
+                         Result<Response> (*answer)(const RouteContext&, const Request&),
                          std::vector<std::string> query) {
     router.add({.method = Method::post,
                 .pattern = pattern,
-                .handler = answering([&context, answer](const Request& request) { return answer(context, request); }),
+                .handler = answering([&context, answer](const Request& request) {
+                  return answer(context, request);
+                }),
                 .role = Role::curator,
                 .query = std::move(query),
                 .body = BodyKind::memory,
@@ -244,7 +264,8 @@ void add_term_routes(Router& router, const RouteContext& context) {
   write("/api/v1/tables/{table}/terms", import_terms, {"dry_run"});
   router.add({.method = Method::get,
               .pattern = "/api/v1/tables/{table}/terms",
-              .handler = answering([&context](const Request& request) { return list_terms_of(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_terms_of(context, request); }),
               .query = {"limit", "offset", "q", "lang", "f", "separator"},
               .state = state_of_records(context)});
 }

@@ -14,8 +14,10 @@
 namespace strata::net {
 namespace {
 
-constexpr std::uint64_t kTexelBytes = 9;  // of files that are imported: a double and whether it is valid
-constexpr std::uint64_t kMaxRasterBytes = (16384ull * 16384 * kTexelBytes) + (1u << 20);  // of the largest layer
+// of files that are imported: a double and whether it is valid
+constexpr std::uint64_t kTexelBytes = 9;
+// of the largest layer
+constexpr std::uint64_t kMaxRasterBytes = (16384ull * 16384 * kTexelBytes) + (1u << 20);
 
 struct Format {
   const char* extension;
@@ -30,17 +32,19 @@ constexpr Format kFormats[] = {{"tif", "image/tiff", query::encode_tiff, query::
 Result<const Format*> format_of(const Request& request) {
   for (const Format& format : kFormats)
     if (request.param("format") == format.extension) return &format;
-  return fail(404, "Unknown raster format", "Texels are there as texels.tif, texels.png, texels.npy and texels.csv.",
-              "format");
+  return fail(404, "Unknown raster format",
+              "Texels are there as texels.tif, texels.png, texels.npy and texels.csv.", "format");
 }
 
 // Uncompressed, with the valid plane; TIFF keeps that in the value's type, too.
 std::uint64_t raster_bytes(const Layer& layer) {
-  return std::uint64_t(layer.resolution) * layer.resolution * 2 * std::uint64_t(bytes_per_texel(layer.type)) +
+  return std::uint64_t(layer.resolution) * layer.resolution * 2 *
+             std::uint64_t(bytes_per_texel(layer.type)) +
          (1u << 20);
 }
 
-Result<Response> read_texels(const RouteContext& context, ByteBudget& budget, const Request& request) {
+Result<Response> read_texels(const RouteContext& context, ByteBudget& budget,
+                             const Request& request) {
   auto format = format_of(request);
   if (!format) return tl::unexpected(format.error());
   const auto asked = LayerQuery::from(context, request);
@@ -59,10 +63,11 @@ Result<Response> read_texels(const RouteContext& context, ByteBudget& budget, co
 }
 
 Result<void> check_size(const Layer& layer, std::uint64_t bytes) {
-  const std::uint64_t most = std::uint64_t(layer.resolution) * layer.resolution * kTexelBytes + (1u << 20);
+  const std::uint64_t most =
+      std::uint64_t(layer.resolution) * layer.resolution * kTexelBytes + (1u << 20);
   if (bytes <= most) return {};
-  return fail(413, "Raster too large", "A raster of this layer has at most " + std::to_string(most) + " bytes.",
-              "body");
+  return fail(413, "Raster too large",
+              "A raster of this layer has at most " + std::to_string(most) + " bytes.", "body");
 }
 
 // Before the body, where its length is told.
@@ -78,7 +83,8 @@ Result<void> check_raster(const RouteContext& context, const Request& request) {
   return check_size(*layer, static_cast<std::uint64_t>(*bytes));
 }
 
-void write_texels(const RouteContext& context, ByteBudget& budget, const Request& request, const Respond& respond) {
+void write_texels(const RouteContext& context, ByteBudget& budget, const Request& request,
+                  const Respond& respond) {
   auto format = format_of(request);
   if (!format) return respond(format.error());
   auto room = context.rooms.open(request.param("model"), request.role());
@@ -118,11 +124,13 @@ std::vector<std::int64_t> keys_of(const query::SurfaceTexels& texels) {
 }
 
 // Columns of the records behind the keys, with what they were at `at`.
-Result<void> add_columns(const RouteContext& context, Role seen_by, const std::vector<std::string>& wanted,
-                         const query::SurfaceTexels& texels, std::optional<std::int64_t> at, TexelCsv& csv) {
+Result<void> add_columns(const RouteContext& context, Role seen_by,
+                         const std::vector<std::string>& wanted, const query::SurfaceTexels& texels,
+                         std::optional<std::int64_t> at, TexelCsv& csv) {
   const Layer& layer = texels.view.layer;
   if (!layer.table)
-    return fail(422, "Numeric layer", layer.name + " holds numbers; only database layers have records with columns.",
+    return fail(422, "Numeric layer",
+                layer.name + " holds numbers; only database layers have records with columns.",
                 "columns");
   store::Store::RecordQuery query;
   query.keys = keys_of(texels);
@@ -137,7 +145,8 @@ Result<void> add_columns(const RouteContext& context, Role seen_by, const std::v
   for (const std::string& ref : wanted) {
     const Column* column = find_column(page->table.columns, ref);
     if (!column)
-      return fail(422, "No such column", page->table.name + " has no column `" + ref.substr(0, 100) + "`.", "columns");
+      return fail(422, "No such column",
+                  page->table.name + " has no column `" + ref.substr(0, 100) + "`.", "columns");
     columns.push_back(*column);
   }
   csv.add_records(page->records, columns);
@@ -178,29 +187,30 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
   Response response;
   response.with("Content-Type", kCsvType);
   name_download(response, asked->layer.slug + ".csv");
-  add_sequences(response, asked->at.value_or(texels->view.snapshot.sequence), asked->room->durable_sequence());
-  response.stream =
-      Response::Stream{{}, [texels, csv, cells](const Response::Sink& sink) {
-                         std::string text = csv->head();
-                         const auto send = [&] {
-                           const bool sent = sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-                           text.clear();
-                           return sent;
-                         };
-                         bool goes_on = true;
-                         const auto put = [&](const query::TexelSample& sample) {
-                           csv->append(text, sample, cells != nullptr);
-                           if (text.size() >= kPieceBytes) goes_on = send();
-                           return goes_on;
-                         };
-                         if (cells) {
-                           for (const query::TexelSample& sample : *cells)
-                             if (!put(sample)) break;
-                         } else {
-                           query::for_each_sample(*texels, put);
-                         }
-                         return goes_on && send();
-                       }};
+  add_sequences(response, asked->at.value_or(texels->view.snapshot.sequence),
+                asked->room->durable_sequence());
+  response.stream = Response::Stream{
+      {}, [texels, csv, cells](const Response::Sink& sink) {
+        std::string text = csv->head();
+        const auto send = [&] {
+          const bool sent = sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+          text.clear();
+          return sent;
+        };
+        bool goes_on = true;
+        const auto put = [&](const query::TexelSample& sample) {
+          csv->append(text, sample, cells != nullptr);
+          if (text.size() >= kPieceBytes) goes_on = send();
+          return goes_on;
+        };
+        if (cells) {
+          for (const query::TexelSample& sample : *cells)
+            if (!put(sample)) break;
+        } else {
+          query::for_each_sample(*texels, put);
+        }
+        return goes_on && send();
+      }};
   return response;
 }
 
@@ -212,22 +222,26 @@ void add_texel_routes(Router& router, const RouteContext& context) {
   // Before the pattern that takes any ending.
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/layers/{layer}/texels.csv",
-              .handler = answering([&context](const Request& request) { return read_texel_lines(context, request); }),
+              .handler = answering([&context](const Request& request) {
+                return read_texel_lines(context, request);
+              }),
               .query = {"where", "cell", "columns", "separator", "at"},
               .is_question = true,
               .state = state_of_model(context)});
   router.add({.method = Method::get,
               .pattern = pattern,
-              .handler = answering(
-                  [&context, budget](const Request& request) { return read_texels(context, *budget, request); }),
+              .handler = answering([&context, budget](const Request& request) {
+                return read_texels(context, *budget, request);
+              }),
               .query = {"at"},
               .is_question = true,
               .state = state_of_model(context)});
   router.add(
       {.method = Method::put,
        .pattern = pattern,
-       .handler = [&context, budget](const Request& request,
-                                     const Respond& respond) { write_texels(context, *budget, request, respond); },
+       .handler = [&context, budget](
+                      const Request& request,
+                      const Respond& respond) { write_texels(context, *budget, request, respond); },
        .role = Role::annotator,
        .check = [&context](const Request& request) { return check_raster(context, request); },
        .body = BodyKind::file,

@@ -62,7 +62,8 @@ Result<Response> create_tool(const RouteContext& context, const Request& request
   if (!part) return tl::unexpected(part.error());
   const auto body = MappedFile::open(request.body_file);
   if (!body || body->bytes().empty())
-    return fail(400, "Empty body", "Send a picture as the body: PNG, JPEG, TIFF, WebP, BMP or TGA.", "body");
+    return fail(400, "Empty body", "Send a picture as the body: PNG, JPEG, TIFF, WebP, BMP or TGA.",
+                "body");
   const auto picture = decode_picture(body->bytes(), kLargestPictureSide_px);
   if (!picture) return tl::unexpected(picture.error());
   const auto shape = shape_of(*picture, *part);
@@ -82,9 +83,11 @@ Result<Response> create_tool(const RouteContext& context, const Request& request
 Result<Tool> present_tool(const RouteContext& context, const Request& request) {
   auto tool = context.store.tool(request.param("tool"));
   if (tool && tool->deleted)
-    return fail(404, "Tool deleted", "The tool `" + tool->name + "` was deleted: it can be read, but not changed.");
+    return fail(404, "Tool deleted",
+                "The tool `" + tool->name + "` was deleted: it can be read, but not changed.");
   if (!tool) return tool;
-  if (auto fresh = check_if_match(request, tool->version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, tool->version); !fresh)
+    return tl::unexpected(fresh.error());
   return tool;
 }
 
@@ -94,7 +97,9 @@ Result<Response> rename_tool(const RouteContext& context, const Request& request
   auto tool = present_tool(context, request);
   if (!tool) return tl::unexpected(tool.error());
   tool->name = asked->name;
-  const auto answer = [](const Tool& now) { return json_response(to_json(now)).with("ETag", etag_of(now.version)); };
+  const auto answer = [](const Tool& now) {
+    return json_response(to_json(now)).with("ETag", etag_of(now.version));
+  };
   auto changed = context.store.update_tool(*tool, first_answer<Tool>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   tell_everyone(context, Event::changed, *changed);
@@ -104,7 +109,8 @@ Result<Response> rename_tool(const RouteContext& context, const Request& request
 Result<Response> delete_tool(const RouteContext& context, const Request& request) {
   auto tool = present_tool(context, request);
   if (!tool) return tl::unexpected(tool.error());
-  auto gone = context.store.delete_tool(tool->id, first_answer<>(request, [] { return empty_response(204); }));
+  auto gone = context.store.delete_tool(
+      tool->id, first_answer<>(request, [] { return empty_response(204); }));
   if (!gone) return tl::unexpected(gone.error());
   tell_everyone(context, Event::deleted, *tool);
   return empty_response(204);
@@ -116,9 +122,11 @@ Result<Response> tool_picture(const RouteContext& context, const Request& reques
   auto shape = context.store.tool_shape(tool->id);
   if (!shape) return tl::unexpected(shape.error());
   const Picture picture = picture_of(*shape);
-  Response response = bytes_response(encode_png(picture.rgba, picture.width, picture.height), "image/png");
+  Response response =
+      bytes_response(encode_png(picture.rgba, picture.width, picture.height), "image/png");
   // An id stands for one shape for ever; a slug may be given to another.
-  if (is_all_digits(request.param("tool"))) response.with("Cache-Control", "private, max-age=31536000, immutable");
+  if (is_all_digits(request.param("tool")))
+    response.with("Cache-Control", "private, max-age=31536000, immutable");
   return response;
 }
 
@@ -128,12 +136,14 @@ void add_tool_routes(Router& router, const RouteContext& context) {
   const std::string tools = "/api/v1/tools";
   router.add({.method = Method::get,
               .pattern = tools,
-              .handler = answering([&context](const Request& request) { return list_tools(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return list_tools(context, request); }),
               .role = Role::guest,
               .query = {"limit", "offset", "after"}});
   router.add({.method = Method::post,
               .pattern = tools,
-              .handler = answering([&context](const Request& request) { return create_tool(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return create_tool(context, request); }),
               .role = Role::annotator,
               .query = {"name", "part"},
               .check = [](const Request& request) -> Result<void> {
@@ -154,19 +164,22 @@ void add_tool_routes(Router& router, const RouteContext& context) {
               .role = Role::guest});
   router.add({.method = Method::patch,
               .pattern = tools + "/{tool}",
-              .handler = answering([&context](const Request& request) { return rename_tool(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return rename_tool(context, request); }),
               .role = Role::curator,
               .body = BodyKind::memory,
               .max_body = context.options.max_json_bytes,
               .keeps_answer = true});
   router.add({.method = Method::remove,
               .pattern = tools + "/{tool}",
-              .handler = answering([&context](const Request& request) { return delete_tool(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return delete_tool(context, request); }),
               .role = Role::curator,
               .keeps_answer = true});
   router.add({.method = Method::get,
               .pattern = tools + "/{tool}/picture",
-              .handler = answering([&context](const Request& request) { return tool_picture(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return tool_picture(context, request); }),
               .role = Role::guest});
 }
 

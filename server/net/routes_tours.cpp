@@ -24,13 +24,16 @@ Result<Found> find_tour(const RouteContext& context, const Request& request) {
 Result<Found> find_to_change(const RouteContext& context, const Request& request) {
   auto found = find_tour(context, request);
   if (!found) return found;
-  if (auto fresh = check_if_match(request, found->tour.version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, found->tour.version); !fresh)
+    return tl::unexpected(fresh.error());
   return found;
 }
 
-// An answer is made within the transaction of what it tells, so that what its tour names is read before.
+// An answer is made within the transaction of what it tells, so that what its tour names is read
+// before.
 Response answer_of(nlohmann::json told, const NamedPart& now, int status) {
-  told.update({{"id", now.id}, {"slug", now.slug}, {"time", utc_text(now.time)}, {"version", now.version}});
+  told.update(
+      {{"id", now.id}, {"slug", now.slug}, {"time", utc_text(now.time)}, {"version", now.version}});
   return json_response(told, status).with("ETag", etag_of(now.version));
 }
 
@@ -43,7 +46,8 @@ Result<Response> list_tours(const RouteContext& context, const Request& request)
   if (!after) return tl::unexpected(after.error());
   auto found = context.store.tours().of_model(model->id, page->limit + 1, page->offset, *after);
   if (!found) return tl::unexpected(found.error());
-  const auto last = end_page(found->parts, *page, [](const NamedPart& tour) { return ListPlace::array({tour.id}); });
+  const auto last = end_page(found->parts, *page,
+                             [](const NamedPart& tour) { return ListPlace::array({tour.id}); });
   nlohmann::json tours = nlohmann::json::array();
   for (const NamedPart& tour : found->parts) tours.push_back(tour_entry(tour, tour.user));
   Response response = json_response({{"tours", std::move(tours)}, {"total", found->total}});
@@ -54,7 +58,8 @@ Result<Response> list_tours(const RouteContext& context, const Request& request)
 Result<Response> get_tour(const RouteContext& context, const Request& request) {
   const auto found = find_tour(context, request);
   if (!found) return tl::unexpected(found.error());
-  const auto told = to_json(context, found->tour, request.role(), told_name(request, found->tour.user));
+  const auto told =
+      to_json(context, found->tour, request.role(), told_name(request, found->tour.user));
   if (!told) return tl::unexpected(told.error());
   return with_etag(json_response(*told), request, found->tour.version);
 }
@@ -70,13 +75,15 @@ Result<Response> create_tour(const RouteContext& context, const Request& request
   tour.model_id = model->id;
   tour.name = asked->name;
   tour.text = asked->text.value_or("");
-  tour.content = {{"languages", asked->languages}, {"idle_s", asked->idle_s}, {"stops", std::move(*stops)}};
+  tour.content = {
+      {"languages", asked->languages}, {"idle_s", asked->idle_s}, {"stops", std::move(*stops)}};
   tour.user = request.user();
   if (auto good = check_languages(tour.content, true); !good) return tl::unexpected(good.error());
   const auto told = to_json(context, tour, request.role(), tour.user);
   if (!told) return tl::unexpected(told.error());
   const auto answer = [&](const NamedPart& made) {
-    return answer_of(*told, made, 201).with("Location", "/api/v1/models/" + model->slug + "/tours/" + made.slug);
+    return answer_of(*told, made, 201)
+        .with("Location", "/api/v1/models/" + model->slug + "/tours/" + made.slug);
   };
   const auto made = context.store.tours().create(tour, first_answer<NamedPart>(request, answer));
   if (!made) return tl::unexpected(made.error());
@@ -98,7 +105,8 @@ Result<Response> change_tour(const RouteContext& context, const Request& request
     if (!stops) return tl::unexpected(stops.error());
     tour.content["stops"] = std::move(*stops);
   }
-  if (auto good = check_languages(tour.content, asked->stops.has_value()); !good) return tl::unexpected(good.error());
+  if (auto good = check_languages(tour.content, asked->stops.has_value()); !good)
+    return tl::unexpected(good.error());
   const auto told = to_json(context, tour, request.role(), tour.user);
   if (!told) return tl::unexpected(told.error());
   const auto answer = [&](const NamedPart& now) { return answer_of(*told, now, 200); };

@@ -14,7 +14,8 @@ struct VertexFile {
 };
 
 // The layers that the query names, as it names them; all by their order where it names none.
-Result<std::vector<query::LayerView>> layer_views(const Request& request, room::Room& room, room::Room::At at) {
+Result<std::vector<query::LayerView>> layer_views(const Request& request, room::Room& room,
+                                                  room::Room::At at) {
   std::vector<Layer> layers = room.layers();
   if (const auto named = request.query.find("layers"); named != request.query.end()) {
     auto found = find_layers(room, split_list(named->second), "layers");
@@ -24,7 +25,8 @@ Result<std::vector<query::LayerView>> layer_views(const Request& request, room::
   std::vector<query::LayerView> views;
   for (const Layer& layer : layers) {
     for (const query::LayerView& other : views)
-      if (other.layer.id == layer.id) return fail(422, "Layer named twice", "Name each layer once.", "layers");
+      if (other.layer.id == layer.id)
+        return fail(422, "Layer named twice", "Name each layer once.", "layers");
     auto tiles = room.tiles(layer.slug, at);
     if (!tiles) return tl::unexpected(tiles.error());
     views.push_back({layer, std::move(*tiles)});
@@ -32,19 +34,22 @@ Result<std::vector<query::LayerView>> layer_views(const Request& request, room::
   return views;
 }
 
-// Whether the vertices have the colours that the layers give them. The default leaves the scan's as they are: who reads the mesh back as a
-// scan does not get layers as its colours.
+// Whether the vertices have the colours that the layers give them. The default leaves the scan's as
+// they are: who reads the mesh back as a scan does not get layers as its colours.
 Result<bool> wants_layer_colors(const Request& request) {
   const std::string colors = request.query_or("colors", "scan");
   if (colors != "scan" && colors != "layers")
-    return fail(422, "Colours not understood",
-                "`colors` is `scan` (the colours of the file, the default) or `layers` (as the layers are drawn).",
-                "colors");
+    return fail(
+        422, "Colours not understood",
+        "`colors` is `scan` (the colours of the file, the default) or `layers` (as the layers are drawn).",
+        "colors");
   return colors == "layers";
 }
 
-// As pictures show them: those that are named in the order in which they are, otherwise those that are visible in theirs.
-std::vector<query::LayerView> shown_layers(const Request& request, std::vector<query::LayerView> views) {
+// As pictures show them: those that are named in the order in which they are, otherwise those that
+// are visible in theirs.
+std::vector<query::LayerView> shown_layers(const Request& request,
+                                           std::vector<query::LayerView> views) {
   if (request.query.contains("layers")) return views;
   std::erase_if(views, [](const query::LayerView& view) { return !view.layer.visible; });
   room::sort_as_shown(views, room::ViewSettings{});
@@ -54,7 +59,8 @@ std::vector<query::LayerView> shown_layers(const Request& request, std::vector<q
 Result<Response> read_vertices(const RouteContext& context, const Request& request) {
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  if (auto may = check_source_download(request, (*room)->model()); !may) return tl::unexpected(may.error());
+  if (auto may = check_source_download(request, (*room)->model()); !may)
+    return tl::unexpected(may.error());
   const auto by_layers = wants_layer_colors(request);
   if (!by_layers) return tl::unexpected(by_layers.error());
   const auto at = find_sequence(context, **room, as_of(request));
@@ -65,19 +71,21 @@ Result<Response> read_vertices(const RouteContext& context, const Request& reque
   MemoryLedger::Share memory;
   std::optional<query::VertexColors> colors;
   if (*by_layers) {
-    auto composed = compose_vertices(context, **room, request.role(), shown_layers(request, *views));
+    auto composed =
+        compose_vertices(context, **room, request.role(), shown_layers(request, *views));
     if (!composed) return tl::unexpected(composed.error());
     memory = std::move(composed->memory);
     colors = std::move(composed->colors);
   }
   query::VertexPly ply((*room)->geometry(), std::move(*views), std::move(colors));
-  const auto file = std::make_shared<const VertexFile>(VertexFile{std::move(memory), std::move(ply)});
+  const auto file =
+      std::make_shared<const VertexFile>(VertexFile{std::move(memory), std::move(ply)});
   Response response;
   response.with("Content-Type", "model/ply");
   name_download(response, (*room)->model().slug + ".ply");
   add_sequences(response, sequence, (*room)->durable_sequence());
-  response.stream =
-      Response::Stream{file->ply.bytes(), [file](const Response::Sink& sink) { return file->ply.write(sink); }};
+  response.stream = Response::Stream{
+      file->ply.bytes(), [file](const Response::Sink& sink) { return file->ply.write(sink); }};
   return response;
 }
 
@@ -86,7 +94,8 @@ Result<Response> read_vertices(const RouteContext& context, const Request& reque
 void add_vertex_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}/vertices.ply",
-              .handler = answering([&context](const Request& request) { return read_vertices(context, request); }),
+              .handler = answering(
+                  [&context](const Request& request) { return read_vertices(context, request); }),
               .query = {"layers", "colors", "at"},
               .is_question = true,
               .state = state_of_model(context)});

@@ -1,4 +1,5 @@
-// Named views of a model. Everybody reads them, annotators make them; what one made one changes oneself, and curators may.
+// Named views of a model. Everybody reads them, annotators make them; what one made one changes
+// oneself, and curators may.
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +18,8 @@ using store::NamedPart;
 
 // What the body says is shown, as it is kept: with ids, since slugs change.
 template <class Asked>
-Result<nlohmann::json> content_of(const room::Room& room, const Asked& asked, const Camera& camera) {
+Result<nlohmann::json> content_of(const room::Room& room, const Asked& asked,
+                                  const Camera& camera) {
   if (auto good = validate(camera); !good) return tl::unexpected(good.error());
   const auto shown = asked.layers.value_or(std::vector<protocol::LayerOverride>{});
   const auto settings = shown_settings(room, asked);
@@ -49,15 +51,17 @@ Result<Found> find_view(const RouteContext& context, const Request& request) {
 Result<Found> find_own_view(const RouteContext& context, const Request& request) {
   auto found = find_view(context, request);
   if (!found) return found;
-  if (auto fresh = check_if_match(request, found->view.version); !fresh) return tl::unexpected(fresh.error());
+  if (auto fresh = check_if_match(request, found->view.version); !fresh)
+    return tl::unexpected(fresh.error());
   if (found->view.user != request.user() && request.role() < Role::curator)
-    return fail(
-        403, "Not yours",
-        "Only " + found->view.user + " and curators change this view. Keep one of your own under another name.");
+    return fail(403, "Not yours",
+                "Only " + found->view.user +
+                    " and curators change this view. Keep one of your own under another name.");
   return found;
 }
 
-void tell(const RouteContext& context, ViewEventEvent event, const NamedPart& view, const std::string& user) {
+void tell(const RouteContext& context, ViewEventEvent event, const NamedPart& view,
+          const std::string& user) {
   protocol::ViewEvent message;
   message.event = event;
   message.view = view.id;
@@ -72,11 +76,14 @@ Result<Response> list_views(const RouteContext& context, const Request& request)
   if (!room) return tl::unexpected(room.error());
   const auto after = number_after(*page);
   if (!after) return tl::unexpected(after.error());
-  auto found = context.store.views().of_model((*room)->model().id, page->limit + 1, page->offset, *after);
+  auto found =
+      context.store.views().of_model((*room)->model().id, page->limit + 1, page->offset, *after);
   if (!found) return tl::unexpected(found.error());
-  const auto last = end_page(found->parts, *page, [](const NamedPart& view) { return ListPlace::array({view.id}); });
+  const auto last = end_page(found->parts, *page,
+                             [](const NamedPart& view) { return ListPlace::array({view.id}); });
   nlohmann::json views = nlohmann::json::array();
-  for (const NamedPart& view : found->parts) views.push_back(to_json(context, request, view, **room));
+  for (const NamedPart& view : found->parts)
+    views.push_back(to_json(context, request, view, **room));
   Response response = json_response({{"views", std::move(views)}, {"total", found->total}});
   add_page_links(response, request, *page, last);
   return response;
@@ -85,7 +92,8 @@ Result<Response> list_views(const RouteContext& context, const Request& request)
 Result<Response> get_view(const RouteContext& context, const Request& request) {
   const auto found = find_view(context, request);
   if (!found) return tl::unexpected(found.error());
-  return with_etag(json_response(to_json(context, request, found->view, *found->room)), request, found->view.version);
+  return with_etag(json_response(to_json(context, request, found->view, *found->room)), request,
+                   found->view.version);
 }
 
 // What the view shows today, to who asks.
@@ -158,7 +166,8 @@ Result<Response> change_view(const RouteContext& context, const Request& request
     view.content = std::move(*content);
   }
   const auto answer = [&](const NamedPart& now) {
-    return json_response(to_json(context, request, now, *found->room)).with("ETag", etag_of(now.version));
+    return json_response(to_json(context, request, now, *found->room))
+        .with("ETag", etag_of(now.version));
   };
   const auto changed = context.store.views().update(view, first_answer<NamedPart>(request, answer));
   if (!changed) return tl::unexpected(changed.error());

@@ -34,7 +34,8 @@ constexpr seconds kAnswers{5};  // for requests at work
 template <class Done>
 void wait_until(Done done, milliseconds limit) {
   const auto deadline = std::chrono::steady_clock::now() + limit;
-  while (!done() && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(milliseconds(5));
+  while (!done() && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(milliseconds(5));
 }
 
 // Uploads of a server that was killed are of no use to anybody.
@@ -47,7 +48,8 @@ Result<void> prepare_upload_dir(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string extension = entry.path().extension().string();
     std::error_code ignored;
-    if (extension == ".body" || extension == ".part" || extension == ".upload" || extension == ".figure")
+    if (extension == ".body" || extension == ".part" || extension == ".upload" ||
+        extension == ".figure")
       fs::remove(entry.path(), ignored);
   }
   return {};
@@ -77,8 +79,9 @@ Result<tcp::acceptor> listen(asio::io_context& io, const std::string& host, std:
 }  // namespace
 
 struct Server::Impl {
-  Impl(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs, render::Renderer& renderer,
-       TemplateShelf templates, std::optional<Certificate> own_certificate)
+  Impl(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
+       render::Renderer& renderer, TemplateShelf templates,
+       std::optional<Certificate> own_certificate)
       : app(std::move(options), store, rooms, jobs, renderer, std::move(templates)),
         io(std::make_shared<asio::io_context>(app.options().http_threads)),
         connections(new Connections{io, app, 0, 0, false}),
@@ -99,7 +102,8 @@ struct Server::Impl {
       }
       const auto open = app.metrics().open_connections.load() + app.metrics().open_sockets.load();
       if (open >= static_cast<std::int64_t>(app.options().max_connections)) continue;  // closes it
-      start_http_session(std::move(socket), connections, certificate ? certificate->context() : nullptr);
+      start_http_session(std::move(socket), connections,
+                         certificate ? certificate->context() : nullptr);
     }
   }
 
@@ -118,13 +122,16 @@ Server::~Server() { stop(); }
 
 std::uint16_t Server::port() const { return impl_->port; }
 
-Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Store& store, room::Rooms& rooms,
-                                              jobs::JobQueue& jobs, render::Renderer& renderer) {
+Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Store& store,
+                                              room::Rooms& rooms, jobs::JobQueue& jobs,
+                                              render::Renderer& renderer) {
   if (!options.owner_token.empty() && options.owner_token.size() < kMinOwnerTokenLength)
-    return fail(422, "Owner token too short",
-                "STRATA_OWNER_TOKEN has at least 32 characters; make one with `openssl rand -hex 32`.",
-                "STRATA_OWNER_TOKEN");
-  if (auto ready = prepare_upload_dir(options.upload_dir); !ready) return tl::unexpected(ready.error());
+    return fail(
+        422, "Owner token too short",
+        "STRATA_OWNER_TOKEN has at least 32 characters; make one with `openssl rand -hex 32`.",
+        "STRATA_OWNER_TOKEN");
+  if (auto ready = prepare_upload_dir(options.upload_dir); !ready)
+    return tl::unexpected(ready.error());
   auto templates = TemplateShelf::load(options.templates_dir);
   if (!templates) return tl::unexpected(templates.error());
   std::optional<Certificate> certificate;
@@ -136,8 +143,8 @@ Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Stor
   const std::string host = options.host;
   const std::uint16_t port = options.port;
   std::unique_ptr<Server> server(new Server);
-  server->impl_ = std::make_unique<Impl>(std::move(options), store, rooms, jobs, renderer, std::move(*templates),
-                                         std::move(certificate));
+  server->impl_ = std::make_unique<Impl>(std::move(options), store, rooms, jobs, renderer,
+                                         std::move(*templates), std::move(certificate));
   Impl& impl = *server->impl_;
   auto acceptor = listen(*impl.io, host, port);
   if (!acceptor) {
@@ -148,7 +155,8 @@ Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Stor
   impl.port = impl.acceptor.local_endpoint().port();
   asio::co_spawn(*impl.io, impl.accept(), asio::detached);
   for (int i = 0; i < impl.app.options().http_threads; ++i)
-    impl.threads.emplace_back([io = impl.io, work = asio::make_work_guard(*impl.io)] { io->run(); });
+    impl.threads.emplace_back(
+        [io = impl.io, work = asio::make_work_guard(*impl.io)] { io->run(); });
   return server;
 }
 
@@ -160,7 +168,8 @@ void Server::stop() {
     boost::system::error_code ignored;
     impl.acceptor.close(ignored);
   });
-  impl.app.questions().end_all({503, "Server stops", "The server is shutting down; ask again when it is back.", {}});
+  impl.app.questions().end_all(
+      {503, "Server stops", "The server is shutting down; ask again when it is back.", {}});
   impl.app.live_sockets().close_all(kCloseGoingAway, "the server stops");
   wait_until([&] { return impl.app.metrics().open_sockets.load() == 0; }, kGoodbye);
   wait_until([&] { return impl.connections->requests_at_work.load() == 0; }, kAnswers);

@@ -12,7 +12,8 @@ Result<SheetFormat> sheet_format(const Request& request) {
   if (asked == request.query.end()) {
     const std::string_view accepted = request.header("accept");
     if (accepted.find("text/csv") != std::string_view::npos) return SheetFormat::csv;
-    return accepted.find(kXlsxType) != std::string_view::npos ? SheetFormat::xlsx : SheetFormat::json;
+    return accepted.find(kXlsxType) != std::string_view::npos ? SheetFormat::xlsx
+                                                              : SheetFormat::json;
   }
   if (asked->second == "json") return SheetFormat::json;
   if (asked->second == "csv") return SheetFormat::csv;
@@ -56,7 +57,8 @@ constexpr std::string_view kArea = "area_m2";
 double largest_of(const Sheet& sheet, std::size_t column) {
   double largest = 0;
   for (const auto& row : sheet.rows)
-    if (const auto* number = std::get_if<double>(&row[column])) largest = std::max(largest, *number);
+    if (const auto* number = std::get_if<double>(&row[column]))
+      largest = std::max(largest, *number);
   return largest;
 }
 
@@ -86,12 +88,14 @@ Result<Response> sheet_response(const Sheet& sheet, SheetFormat format, char sep
   if (format == SheetFormat::csv) return csv_response(sheet, separator);
   std::vector<BookColumn> columns;
   for (const std::string& head : sheet.heads) columns.push_back({head, {}});
-  for (std::size_t i = 0; i < sheet.number_formats.size(); ++i) columns[i].number_format = sheet.number_formats[i];
+  for (std::size_t i = 0; i < sheet.number_formats.size(); ++i)
+    columns[i].number_format = sheet.number_formats[i];
   Workbook book(folder, sheet.name, columns);
   std::vector<BookCell> cells;
   for (const auto& row : sheet.rows) {
     cells.clear();
-    for (const SheetCell& cell : row) std::visit([&](const auto& value) { cells.emplace_back(value); }, cell);
+    for (const SheetCell& cell : row)
+      std::visit([&](const auto& value) { cells.emplace_back(value); }, cell);
     if (&row == &sheet.rows.back()) book.end_filter();
     book.add_row(cells);
   }

@@ -18,48 +18,58 @@ tl::unexpected<Problem> shows_through(const Layer& layer) {
 }
 
 // Whether the expression reads the column of the record behind the keys of one of these layers.
-bool reads_column(const Expression& e, const std::set<std::string>& layers, const std::string& column) {
-  if (e.is_column() && layers.contains(e.name) && !e.path.empty() && e.path.front() == column) return true;
-  return std::ranges::any_of(e.parts, [&](const Expression& part) { return reads_column(part, layers, column); });
+bool reads_column(const Expression& e, const std::set<std::string>& layers,
+                  const std::string& column) {
+  if (e.is_column() && layers.contains(e.name) && !e.path.empty() && e.path.front() == column)
+    return true;
+  return std::ranges::any_of(
+      e.parts, [&](const Expression& part) { return reads_column(part, layers, column); });
 }
 
 bool names_unseen_column(const Expression& e, const std::map<std::string, Table>& seen,
                          const std::map<std::string, Table>& all) {
   if (e.is_column() && !e.path.empty())
     if (const auto table = all.find(e.name); table != all.end())
-      if (find_column(table->second.columns, e.path.front()) && !find_column(seen.at(e.name).columns, e.path.front()))
+      if (find_column(table->second.columns, e.path.front()) &&
+          !find_column(seen.at(e.name).columns, e.path.front()))
         return true;
-  return std::ranges::any_of(e.parts, [&](const Expression& part) { return names_unseen_column(part, seen, all); });
+  return std::ranges::any_of(
+      e.parts, [&](const Expression& part) { return names_unseen_column(part, seen, all); });
 }
 
 }  // namespace
 
-Result<void> check_shows_nothing(const RouteContext& context, const Layer& layer, const std::vector<Layer>& others) {
+Result<void> check_shows_nothing(const RouteContext& context, const Layer& layer,
+                                 const std::vector<Layer>& others) {
   if (layer.table && !layer.palette.column.empty()) {
     const auto table = context.store.table(std::to_string(*layer.table), Role::owner);
     if (!table) return tl::unexpected(table.error());
     const Column* column = find_column(table->columns, layer.palette.column);
     if (column && column->visibility > layer.visibility)
-      return fail(422, "Would show through",
-                  "The palette colours by " + column->name + ", which is " + std::string(name(column->visibility)) +
-                      ": more people would see the layer. Let fewer see it, or colour it by something else.",
-                  "palette.column");
+      return fail(
+          422, "Would show through",
+          "The palette colours by " + column->name + ", which is " +
+              std::string(name(column->visibility)) +
+              ": more people would see the layer. Let fewer see it, or colour it by something else.",
+          "palette.column");
   }
   for (const Layer& other : others)
     if (other.formula && other.visibility < layer.visibility &&
-        std::ranges::any_of(other.formula->inputs, [&](const auto& input) { return input.layer == layer.id; }))
+        std::ranges::any_of(other.formula->inputs,
+                            [&](const auto& input) { return input.layer == layer.id; }))
       return shows_through(other);
   return {};
 }
 
-Result<void> check_shows_nothing(const RouteContext& context, const Table& table, const Column& column,
-                                 Visibility visibility) {
+Result<void> check_shows_nothing(const RouteContext& context, const Table& table,
+                                 const Column& column, Visibility visibility) {
   const auto layers = context.store.layers_of_table(table.id, Role::owner);
   if (!layers) return tl::unexpected(layers.error());
   std::map<std::int64_t, std::set<std::string>> by_model;  // slugs
   for (const Layer& layer : *layers) {
     by_model[layer.model_id].insert(layer.slug);
-    if (layer.visibility < visibility && find_column(table.columns, layer.palette.column) == &column)
+    if (layer.visibility < visibility &&
+        find_column(table.columns, layer.palette.column) == &column)
       return shows_through(layer);
   }
   for (const auto& [model, slugs] : by_model) {
@@ -74,7 +84,8 @@ Result<void> check_shows_nothing(const RouteContext& context, const Table& table
   return {};
 }
 
-Result<bool> sees_all_of(const RouteContext& context, Role role, std::int64_t model_id, const std::string& text) {
+Result<bool> sees_all_of(const RouteContext& context, Role role, std::int64_t model_id,
+                         const std::string& text) {
   if (sees(role, Visibility::curators)) return true;
   const auto expression = parse_formula(text);
   if (!expression) return false;

@@ -7,11 +7,14 @@ namespace {
 
 constexpr std::size_t kMostKeys = 100'000;
 
-std::string both(const std::string& address, const std::string& name) { return to_lower(name) + " " + address; }
+std::string both(const std::string& address, const std::string& name) {
+  return to_lower(name) + " " + address;
+}
 
 }  // namespace
 
-TokenBucket& SignInGate::bucket(Buckets& buckets, const std::string& key, Rate rate, Clock::time_point now) {
+TokenBucket& SignInGate::bucket(Buckets& buckets, const std::string& key, Rate rate,
+                                Clock::time_point now) {
   if (buckets.size() >= kMostKeys && !buckets.contains(key)) {
     for (auto at = buckets.begin(); at != buckets.end();)
       at = at->second.is_full(now) ? buckets.erase(at) : std::next(at);
@@ -20,9 +23,11 @@ TokenBucket& SignInGate::bucket(Buckets& buckets, const std::string& key, Rate r
   return buckets.try_emplace(key, rate.per_second, rate.burst, now).first->second;
 }
 
-Result<void> SignInGate::pass(const std::string& address, const std::string& name, Clock::time_point now) {
+Result<void> SignInGate::pass(const std::string& address, const std::string& name,
+                              Clock::time_point now) {
   const auto refused = [] {
-    return fail(429, "Too many sign-ins", "There were too many tries. Wait ten seconds and try again.");
+    return fail(429, "Too many sign-ins",
+                "There were too many tries. Wait ten seconds and try again.");
   };
   std::lock_guard lock(mutex_);
   TokenBucket& of_address = bucket(by_address_, address, {2, 60}, now);
@@ -43,9 +48,11 @@ void SignInGate::was_right(const std::string& address, const std::string& name) 
   if (name.empty()) return;
   std::lock_guard lock(mutex_);
   const std::string key = both(address, name);
-  // The address keeps what it cost: signing in again and again costs the server as much as guessing.
+  // The address keeps what it cost: signing in again and again costs the server as much as
+  // guessing.
   if (const auto found = by_both_.find(key); found != by_both_.end()) found->second.give_back();
-  if (const auto found = by_name_.find(to_lower(name)); found != by_name_.end()) found->second.give_back();
+  if (const auto found = by_name_.find(to_lower(name)); found != by_name_.end())
+    found->second.give_back();
   if (known_.size() >= kMostKeys) known_.erase(known_.begin());
   known_.insert(key);
 }
@@ -57,12 +64,14 @@ std::string address_of(const Request& request) {
   if (bad) return request.peer;
   const auto plain = [](const boost::asio::ip::address& given) {
     return given.is_v6() && given.to_v6().is_v4_mapped()
-               ? boost::asio::ip::address(boost::asio::ip::make_address_v4(boost::asio::ip::v4_mapped, given.to_v6()))
+               ? boost::asio::ip::address(
+                     boost::asio::ip::make_address_v4(boost::asio::ip::v4_mapped, given.to_v6()))
                : given;
   };
   address = plain(address);
   if (address.is_loopback()) {
-    // The last of the last header is what the proxy itself saw; what stands before it anybody may have written.
+    // The last of the last header is what the proxy itself saw; what stands before it anybody may
+    // have written.
     std::string_view speaks_for;
     for (const auto& [key, value] : request.headers)
       if (key == "x-forwarded-for") speaks_for = value;

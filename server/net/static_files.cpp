@@ -35,7 +35,9 @@ std::string etag_of(const fs::path& file) {
   return "\"" + std::to_string(size) + "-" + std::to_string(time) + "\"";
 }
 
-fs::path coded(const fs::path& file, Coding coding) { return file.string() + (coding == Coding::gzip ? ".gz" : ".br"); }
+fs::path coded(const fs::path& file, Coding coding) {
+  return file.string() + (coding == Coding::gzip ? ".gz" : ".br");
+}
 
 }  // namespace
 

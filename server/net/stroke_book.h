@@ -20,12 +20,15 @@ struct StrokeTool {
   std::int64_t layer_id = 0;
   StrokeBatch batch;      // without a path
   nlohmann::json record;  // the edit for the journal, without a path
-  bool operator==(const StrokeTool& other) const { return layer_id == other.layer_id && record == other.record; }
+  bool operator==(const StrokeTool& other) const {
+    return layer_id == other.layer_id && record == other.record;
+  }
 };
 
-// Remembers the strokes of people across connections: each `stroke.extend` is an edit of its own whose path starts where the
-// batch before ended, also when a batch is sent again after a reconnect. Forgets strokes that nobody touched for ten minutes,
-// and the oldest when a person has very many. Thread-safe.
+// Remembers the strokes of people across connections: each `stroke.extend` is an edit of its own
+// whose path starts where the batch before ended, also when a batch is sent again after a
+// reconnect. Forgets strokes that nobody touched for ten minutes, and the oldest when a person has
+// very many. Thread-safe.
 class StrokeBook {
  public:
   using Clock = std::chrono::steady_clock;
@@ -40,11 +43,14 @@ class StrokeBook {
     auto operator<=>(const Owner&) const = default;
   };
 
-  // The same `begin` again is harmless and takes the stroke up anew; a different one for a known stroke is refused (409).
-  Result<void> begin(const Owner& owner, const Uuid& stroke, StrokeTool tool, Clock::time_point now = Clock::now());
+  // The same `begin` again is harmless and takes the stroke up anew; a different one for a known
+  // stroke is refused (409).
+  Result<void> begin(const Owner& owner, const Uuid& stroke, StrokeTool tool,
+                     Clock::time_point now = Clock::now());
 
-  // True when the batch follows one that this book has not seen (the server was restarted in between): tell the
-  // point where batch n-1 ended by `continue_from`, if it can be found, before `extend`.
+  // True when the batch follows one that this book has not seen (the server was restarted in
+  // between): tell the point where batch n-1 ended by `continue_from`, if it can be found, before
+  // `extend`.
   bool lacks_start(const Owner& owner, const Uuid& stroke, int n) const;
   struct End {  // of a batch
     glm::dvec2 point{0};
@@ -58,8 +64,9 @@ class StrokeBook {
     std::vector<glm::dvec2> path;  // joined to the batch before
     std::vector<double> widths{};  // of its points; none: all are 1
   };
-  // Refused: an unknown stroke (404), a batch out of order, a number already taken by another id, an ended stroke (409),
-  // a path that is too long with the joining point, widths that do not fit it (422). A repeated id gives the same batch again and advances nothing.
+  // Refused: an unknown stroke (404), a batch out of order, a number already taken by another id,
+  // an ended stroke (409), a path that is too long with the joining point, widths that do not fit
+  // it (422). A repeated id gives the same batch again and advances nothing.
   Result<Batch> extend(const Owner& owner, const Uuid& stroke, const Uuid& id, int n,
                        const std::vector<glm::dvec2>& path, const std::vector<double>& widths = {},
                        Clock::time_point now = Clock::now());
@@ -86,8 +93,8 @@ class StrokeBook {
     std::optional<End> last;  // where the newest batch ended
     bool ended = false;
     Clock::time_point touched;
-    int saved_through()
-        const;  // a later batch can be saved while an earlier one was refused and waits to be sent again
+    // a later batch can be saved while an earlier one was refused and waits to be sent again
+    int saved_through() const;
   };
   using Strokes = std::unordered_map<Uuid, Stroke>;
   Stroke* find(const Owner& owner, const Uuid& stroke);

@@ -17,12 +17,14 @@ void tell_table(const RouteContext& context, protocol::TableEventEvent event, co
   message.table_id = table.id;
   message.user = user;
   for (const Visibility sight : kSights) {
-    if (event != protocol::TableEventEvent::deleted) message.table = to_json(seen_by(table, least_role(sight)));
+    if (event != protocol::TableEventEvent::deleted)
+      message.table = to_json(seen_by(table, least_role(sight)));
     context.live_sockets.tell_project(table.project_id, sight, message);
   }
 }
 
-void tell_change(const RouteContext& context, const store::TableChange& change, const std::string& user) {
+void tell_change(const RouteContext& context, const store::TableChange& change,
+                 const std::string& user) {
   if (change.sequence == 0) return;
   context.rooms.admit_keys(change.table.id, change.created);
   context.rooms.records_changed(change.table.id);
@@ -32,8 +34,10 @@ void tell_change(const RouteContext& context, const store::TableChange& change, 
   message.table = change.table.id;
   message.user = user;
   for (const Record& record : change.records) {
-    const bool is_new = std::find(change.created.begin(), change.created.end(), record.key) != change.created.end();
-    message.event = is_new ? protocol::RecordEventEvent::created : protocol::RecordEventEvent::changed;
+    const bool is_new =
+        std::find(change.created.begin(), change.created.end(), record.key) != change.created.end();
+    message.event =
+        is_new ? protocol::RecordEventEvent::created : protocol::RecordEventEvent::changed;
     message.key = record.key;
     for (const Visibility sight : kSights) {
       message.record = to_json(record, seen_by(change.table, least_role(sight)).columns);

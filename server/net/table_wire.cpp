@@ -7,8 +7,8 @@
 #include "net/wire.h"
 
 namespace strata::net {
-Result<Table> table_of_project(store::Store& store, std::int64_t project_id, const protocol::TableRef& ref,
-                               const std::string& field) {
+Result<Table> table_of_project(store::Store& store, std::int64_t project_id,
+                               const protocol::TableRef& ref, const std::string& field) {
   const std::string name = protocol::to_ref(ref);
   auto table = store.table(name, Role::curator);
   if (!table && table.error().status != 404) return table;
@@ -17,8 +17,8 @@ Result<Table> table_of_project(store::Store& store, std::int64_t project_id, con
   return table;
 }
 
-Result<Column> new_column(store::Store& store, std::int64_t project_id, const protocol::ColumnCreate& asked,
-                          const std::string& target_field) {
+Result<Column> new_column(store::Store& store, std::int64_t project_id,
+                          const protocol::ColumnCreate& asked, const std::string& target_field) {
   Column column;
   column.name = asked.name;
   if (asked.slug) column.slug = make_slug(*asked.slug);
@@ -45,23 +45,27 @@ Result<std::vector<Column>> new_columns(store::Store& store, std::int64_t projec
                                         const std::vector<protocol::ColumnCreate>& asked) {
   std::vector<Column> columns;
   for (std::size_t i = 0; i < asked.size(); ++i) {
-    auto column = new_column(store, project_id, asked[i], "columns[" + std::to_string(i) + "].target");
+    auto column =
+        new_column(store, project_id, asked[i], "columns[" + std::to_string(i) + "].target");
     if (!column) return tl::unexpected(column.error());
     columns.push_back(std::move(*column));
   }
   return columns;
 }
 
-Result<std::map<std::int64_t, nlohmann::json>> values_by_column(const Table& table, const nlohmann::json& values,
+Result<std::map<std::int64_t, nlohmann::json>> values_by_column(const Table& table,
+                                                                const nlohmann::json& values,
                                                                 const std::string& field) {
   std::map<std::int64_t, nlohmann::json> by_column;
   for (const auto& [ref, value] : values.items()) {
     const Column* column = find_column(table.columns, ref);
     const std::string shown = mended_utf8(ref.substr(0, 100));
     if (!column)
-      return fail(422, "No such column", table.name + " has no column `" + shown + "`.", field + "." + shown);
+      return fail(422, "No such column", table.name + " has no column `" + shown + "`.",
+                  field + "." + shown);
     if (!by_column.emplace(column->id, value).second)
-      return fail(422, "Column named twice", "`" + column->slug + "` stands here by its slug and by its id.",
+      return fail(422, "Column named twice",
+                  "`" + column->slug + "` stands here by its slug and by its id.",
                   field + "." + ref);
   }
   return by_column;
@@ -98,10 +102,12 @@ Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const 
   if (is_all_digits(text)) return parse_integer(text, 0, table.sequence, "at");
   // A plus sign in a query is a space.
   std::string plain = text;
-  if (const auto blank = plain.rfind(' '); blank != std::string::npos && blank > 11) plain[blank] = '+';
+  if (const auto blank = plain.rfind(' '); blank != std::string::npos && blank > 11)
+    plain[blank] = '+';
   const auto utc = utc_timestamp(plain);
   if (!utc)
-    return fail(422, "Not a moment", "`at` is a sequence of the table, or a time such as 2024-02-29T12:00:00Z.", "at");
+    return fail(422, "Not a moment",
+                "`at` is a sequence of the table, or a time such as 2024-02-29T12:00:00Z.", "at");
   return store.table_sequence_at(table.id, *utc);
 }
 

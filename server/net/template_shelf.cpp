@@ -15,13 +15,15 @@ namespace {
 constexpr const char* kEnglish = "en";
 
 std::string in_lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
   return text;
 }
 
 // The label of a language, or of the one that it is a kind of; null: there is none.
-const std::string* label_of(const std::optional<protocol::Labels>& labels, const std::optional<std::string>& language) {
+const std::string* label_of(const std::optional<protocol::Labels>& labels,
+                            const std::optional<std::string>& language) {
   if (!labels || !language) return nullptr;
   for (std::string tag = in_lower_case(*language); !tag.empty();
        tag.resize(tag.find('-') == std::string::npos ? 0 : tag.rfind('-')))
@@ -54,7 +56,8 @@ Result<TermList> terms_of(const std::vector<protocol::TemplateTerm>& terms,
       return fail(422, "Code twice", "The code " + term.code + " stands there twice.");
     // Those below come later, so that there can be no circle.
     if (!term.parent.empty() && !codes.contains(term.parent))
-      return fail(422, "No such parent", term.code + " is below " + term.parent + ", which does not stand before it.");
+      return fail(422, "No such parent",
+                  term.code + " is below " + term.parent + ", which does not stand before it.");
     list.terms.push_back(std::move(term));
   }
   return list;
@@ -64,7 +67,8 @@ std::string slug_of_column(const protocol::ColumnCreate& column) {
   return column.slug.value_or(make_slug(column.name));
 }
 
-Result<Column> column_of(const protocol::ColumnCreate& told, const std::optional<std::string>& language) {
+Result<Column> column_of(const protocol::ColumnCreate& told,
+                         const std::optional<std::string>& language) {
   Column column;
   column.name = name_in(told.name, told.labels, language);
   column.slug = slug_of_column(told);
@@ -95,7 +99,8 @@ Result<protocol::Template> read_template(const std::filesystem::path& file) {
   for (const protocol::TemplateLayer& layer : read->layers)
     if (std::none_of(read->tables.begin(), read->tables.end(),
                      [&](const auto& table) { return table.slug == layer.table; }))
-      return fail(422, "No such table", "The layer " + layer.name + " is of a table that is not there.");
+      return fail(422, "No such table",
+                  "The layer " + layer.name + " is of a table that is not there.");
   return read;
 }
 
@@ -110,15 +115,17 @@ Result<TemplateShelf> TemplateShelf::load(const std::filesystem::path& folder) {
     auto read = read_template(entry.path());
     if (!read)
       return fail(500, "Template not usable",
-                  entry.path().string() + ": " + (read.error().field.empty() ? "" : read.error().field + ": ") +
+                  entry.path().string() + ": " +
+                      (read.error().field.empty() ? "" : read.error().field + ": ") +
                       read.error().detail);
     shelf.templates_.push_back(std::move(*read));
   }
   if (error)
     return fail(500, "Templates not found",
                 "The folder " + folder.string() + " cannot be read: " + error.message() + ".");
-  std::sort(shelf.templates_.begin(), shelf.templates_.end(),
-            [](const auto& a, const auto& b) { return std::tie(a.name, a.slug) < std::tie(b.name, b.slug); });
+  std::sort(shelf.templates_.begin(), shelf.templates_.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.name, a.slug) < std::tie(b.name, b.slug);
+  });
   return shelf;
 }
 
@@ -140,7 +147,8 @@ Labels labels_with(const std::string& name, const std::optional<protocol::Labels
   return all;
 }
 
-Result<std::vector<store::Store::NewTable>> new_tables(const protocol::Template& of, std::int64_t project_id,
+Result<std::vector<store::Store::NewTable>> new_tables(const protocol::Template& of,
+                                                       std::int64_t project_id,
                                                        const std::optional<std::string>& language) {
   std::vector<store::Store::NewTable> tables;
   for (const protocol::TemplateTable& told : of.tables) {
@@ -148,7 +156,8 @@ Result<std::vector<store::Store::NewTable>> new_tables(const protocol::Template&
       return fail(problem.status, problem.title, told.slug + ": " + problem.detail, problem.field);
     };
     if (told.terms.has_value() == told.columns.has_value())
-      return refuse({422, "Terms or columns", "A table has either `terms` or `columns`.", "tables"});
+      return refuse(
+          {422, "Terms or columns", "A table has either `terms` or `columns`.", "tables"});
     store::Store::NewTable made;
     made.table.project_id = project_id;
     made.table.name = name_in(told.name, told.labels, language);
@@ -171,13 +180,16 @@ Result<std::vector<store::Store::NewTable>> new_tables(const protocol::Template&
         if (!slugs.insert(fits->slug).second)
           return refuse({422, "Slug twice", "Two columns are " + fits->slug + ".", {}});
         if (column.target && protocol::to_ref(*column.target) != told.slug) {
-          const auto place =
-              std::find_if(of.tables.begin(), of.tables.begin() + static_cast<std::ptrdiff_t>(tables.size()),
-                           [&](const auto& other) { return other.slug == protocol::to_ref(*column.target); });
+          const auto place = std::find_if(
+              of.tables.begin(), of.tables.begin() + static_cast<std::ptrdiff_t>(tables.size()),
+              [&](const auto& other) { return other.slug == protocol::to_ref(*column.target); });
           if (place == of.tables.begin() + static_cast<std::ptrdiff_t>(tables.size()))
-            return refuse(
-                {422, "No such table", column.name + " names records of a table that does not stand before it.", {}});
-          made.targets[made.table.columns.size()] = static_cast<std::size_t>(place - of.tables.begin());
+            return refuse({422,
+                           "No such table",
+                           column.name + " names records of a table that does not stand before it.",
+                           {}});
+          made.targets[made.table.columns.size()] =
+              static_cast<std::size_t>(place - of.tables.begin());
         }
         made.table.columns.push_back(std::move(*fits));
       }

@@ -43,14 +43,16 @@ void TexelCsv::append(std::string& text, const query::TexelSample& sample, bool 
 
 void TexelCsv::append_number(std::string& text, double value, bool is_single) const {
   char digits[40];
-  const auto end = is_single ? std::to_chars(digits, digits + sizeof digits, static_cast<float>(value)).ptr
-                             : std::to_chars(digits, digits + sizeof digits, value).ptr;
+  const auto end =
+      is_single ? std::to_chars(digits, digits + sizeof digits, static_cast<float>(value)).ptr
+                : std::to_chars(digits, digits + sizeof digits, value).ptr;
   for (const char* c = digits; c != end; ++c) text += separator_ == ';' && *c == '.' ? ',' : *c;
 }
 
 void TexelCsv::append_place(std::string& text, double value) const {
   char digits[400];  // the widest double has 309 digits before its point
-  char* end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, decimals_).ptr;
+  char* end =
+      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, decimals_).ptr;
   while (end[-1] == '0') --end;
   if (end[-1] == '.') --end;
   const std::string_view number(digits, static_cast<std::size_t>(end - digits));

@@ -11,8 +11,9 @@
 
 namespace strata::net {
 
-// Texels as lines of CSV: `x,y,z,area_m2,value` and columns of the record behind the key. Places are rounded to a tenth of a
-// micrometre; areas and values read back as the single-precision numbers that they are, of cells as double ones.
+// Texels as lines of CSV: `x,y,z,area_m2,value` and columns of the record behind the key. Places
+// are rounded to a tenth of a micrometre; areas and values read back as the single-precision
+// numbers that they are, of cells as double ones.
 class TexelCsv {
  public:
   TexelCsv(Unit unit, char separator)

@@ -8,8 +8,8 @@
 
 namespace strata::net {
 
-// The tools of the site as strokes ask for them. Their shapes are kept ready once they were asked for: they never change. Blocks,
-// thread-safe.
+// The tools of the site as strokes ask for them. Their shapes are kept ready once they were asked
+// for: they never change. Blocks, thread-safe.
 class ToolShelf {
  public:
   explicit ToolShelf(store::Store& store) : store_(store) {}

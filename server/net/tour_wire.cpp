@@ -10,22 +10,29 @@
 namespace strata::net {
 namespace {
 
-std::string at(const std::string& list, std::size_t place) { return list + "[" + std::to_string(place) + "]"; }
+std::string at(const std::string& list, std::size_t place) {
+  return list + "[" + std::to_string(place) + "]";
+}
 
-Result<void> once(std::set<std::int64_t>& known, std::int64_t id, const char* what, const std::string& field) {
+Result<void> once(std::set<std::int64_t>& known, std::int64_t id, const char* what,
+                  const std::string& field) {
   if (known.insert(id).second) return {};
   return fail(422, "Named twice", "This " + std::string(what) + " is named before already.", field);
 }
 
-Result<nlohmann::json> kept_columns(const Table& table, const std::vector<protocol::TourColumn>& columns,
+Result<nlohmann::json> kept_columns(const Table& table,
+                                    const std::vector<protocol::TourColumn>& columns,
                                     const std::string& field) {
   nlohmann::json kept = nlohmann::json::array();
   std::set<std::int64_t> known;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const std::string here = at(field, i) + ".column";
     const Column* column = find_column(table.columns, columns[i].column);
-    if (!column) return fail(422, "No such column", table.name + " has no column `" + columns[i].column + "`.", here);
-    if (auto fresh = once(known, column->id, "column", here); !fresh) return tl::unexpected(fresh.error());
+    if (!column)
+      return fail(422, "No such column", table.name + " has no column `" + columns[i].column + "`.",
+                  here);
+    if (auto fresh = once(known, column->id, "column", here); !fresh)
+      return tl::unexpected(fresh.error());
     kept.push_back({{"column", column->id}});
     if (columns[i].labels) kept.back()["labels"] = *columns[i].labels;
   }
@@ -33,7 +40,8 @@ Result<nlohmann::json> kept_columns(const Table& table, const std::vector<protoc
 }
 
 Result<nlohmann::json> kept_records(const RouteContext& context, const Model& model, Role role,
-                                    const std::vector<protocol::TourRecords>& all, const std::string& field) {
+                                    const std::vector<protocol::TourRecords>& all,
+                                    const std::string& field) {
   nlohmann::json kept = nlohmann::json::array();
   std::set<std::int64_t> known;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -42,13 +50,16 @@ Result<nlohmann::json> kept_records(const RouteContext& context, const Model& mo
     auto table = context.store.table(asked.table, role);
     if (!table && table.error().status != 404) return tl::unexpected(table.error());
     if (!table || table->project_id != model.project_id)
-      return fail(422, "No such table", "The model's project has no table `" + asked.table + "`.", here + ".table");
-    if (auto fresh = once(known, table->id, "table", here + ".table"); !fresh) return tl::unexpected(fresh.error());
+      return fail(422, "No such table", "The model's project has no table `" + asked.table + "`.",
+                  here + ".table");
+    if (auto fresh = once(known, table->id, "table", here + ".table"); !fresh)
+      return tl::unexpected(fresh.error());
     const auto missing = context.store.missing_records(table->id, asked.keys);
     if (!missing) return tl::unexpected(missing.error());
     for (std::size_t k = 0; k < asked.keys.size(); ++k)
       if (std::ranges::find(*missing, asked.keys[k]) != missing->end())
-        return fail(422, "No such record", table->name + " has no record " + std::to_string(asked.keys[k]) + ".",
+        return fail(422, "No such record",
+                    table->name + " has no record " + std::to_string(asked.keys[k]) + ".",
                     at(here + ".keys", k));
     auto columns = kept_columns(*table, asked.columns, here + ".columns");
     if (!columns) return columns;
@@ -64,29 +75,35 @@ Result<nlohmann::json> kept_layers(const RouteContext& context, const Model& mod
   for (std::size_t i = 0; i < refs.size(); ++i) {
     const auto layer = context.store.layer(model.id, refs[i], role);
     if (!layer) return at_field(layer.error(), at(field, i));
-    if (auto fresh = once(known, layer->id, "layer", at(field, i)); !fresh) return tl::unexpected(fresh.error());
+    if (auto fresh = once(known, layer->id, "layer", at(field, i)); !fresh)
+      return tl::unexpected(fresh.error());
     kept.push_back(layer->id);
   }
   return kept;
 }
 
 // That `words` (by language) are in languages of the tour.
-Result<void> check_words(const nlohmann::json& words, const nlohmann::json& languages, const std::string& field) {
+Result<void> check_words(const nlohmann::json& words, const nlohmann::json& languages,
+                         const std::string& field) {
   for (const auto& [language, text] : words.items())
     if (std::ranges::find(languages, nlohmann::json(language)) == languages.end())
       return fail(422, "Not a language of the tour",
-                  "The tour has no `" + language + "` among its languages: add it there, or leave these words out.",
+                  "The tour has no `" + language +
+                      "` among its languages: add it there, or leave these words out.",
                   field + "." + language);
   return {};
 }
 
-Result<void> check_stop(const nlohmann::json& stop, const nlohmann::json& languages, const std::string& field) {
+Result<void> check_stop(const nlohmann::json& stop, const nlohmann::json& languages,
+                        const std::string& field) {
   const auto first = languages.front().get<std::string>();
   if (!stop.at("title").contains(first))
-    return fail(422, "No title", "Each stop has a title in the tour's first language, `" + first + "`.",
+    return fail(422, "No title",
+                "Each stop has a title in the tour's first language, `" + first + "`.",
                 field + ".title");
   for (const char* member : {"title", "text"})
-    if (auto good = check_words(stop.at(member), languages, field + "." + member); !good) return good;
+    if (auto good = check_words(stop.at(member), languages, field + "." + member); !good)
+      return good;
   for (std::size_t i = 0; i < stop.at("records").size(); ++i) {
     const auto& columns = stop.at("records")[i].at("columns");
     for (std::size_t k = 0; k < columns.size(); ++k)
@@ -135,7 +152,8 @@ class Seen {
   Seen(const RouteContext& context, Role role) : context_(&context), role_(role) {}
 
   static nlohmann::json records(const nlohmann::json& kept, const Table& table) {
-    nlohmann::json told{{"table", table.slug}, {"keys", kept.at("keys")}, {"columns", nlohmann::json::array()}};
+    nlohmann::json told{
+        {"table", table.slug}, {"keys", kept.at("keys")}, {"columns", nlohmann::json::array()}};
     for (const nlohmann::json& each : kept.at("columns")) {
       const auto id = each.at("column").get<std::int64_t>();
       const auto column = std::ranges::find(table.columns, id, &Column::id);
@@ -171,19 +189,22 @@ Result<nlohmann::json> kept_stops(const RouteContext& context, const Model& mode
     const std::string here = at("stops", i);
     const auto view = context.store.views().find(model.id, stop.view);
     if (!view) return at_field(view.error(), here + ".view");
-    auto layers = kept_layers(context, model, role, stop.layers.value_or(std::vector<std::string>{}), here + ".layers");
+    auto layers = kept_layers(context, model, role,
+                              stop.layers.value_or(std::vector<std::string>{}), here + ".layers");
     if (!layers) return layers;
-    auto records = kept_records(context, model, role, stop.records.value_or(std::vector<protocol::TourRecords>{}),
+    auto records = kept_records(context, model, role,
+                                stop.records.value_or(std::vector<protocol::TourRecords>{}),
                                 here + ".records");
     if (!records) return records;
-    all.push_back({{"view", view->id},
-                   {"title", stop.title},
-                   {"text", stop.text.value_or(protocol::TourText{})},
-                   {"attract_s", stop.attract_s},
-                   {"transition", protocol::name(stop.transition.value_or(protocol::TourTransition::move))},
-                   {"transition_s", stop.transition_s},
-                   {"layers", std::move(*layers)},
-                   {"records", std::move(*records)}});
+    all.push_back(
+        {{"view", view->id},
+         {"title", stop.title},
+         {"text", stop.text.value_or(protocol::TourText{})},
+         {"attract_s", stop.attract_s},
+         {"transition", protocol::name(stop.transition.value_or(protocol::TourTransition::move))},
+         {"transition_s", stop.transition_s},
+         {"layers", std::move(*layers)},
+         {"records", std::move(*records)}});
   }
   return all;
 }
@@ -191,16 +212,17 @@ Result<nlohmann::json> kept_stops(const RouteContext& context, const Model& mode
 Result<void> check_languages(const nlohmann::json& content, bool stops_are_new) {
   const nlohmann::json& languages = content.at("languages");
   for (std::size_t i = 0; i < languages.size(); ++i)
-    if (std::find(languages.begin(), languages.begin() + static_cast<std::ptrdiff_t>(i), languages[i]) !=
-        languages.begin() + static_cast<std::ptrdiff_t>(i))
+    if (std::find(languages.begin(), languages.begin() + static_cast<std::ptrdiff_t>(i),
+                  languages[i]) != languages.begin() + static_cast<std::ptrdiff_t>(i))
       return fail(422, "Named twice", "This language is named before already.", at("languages", i));
   const nlohmann::json& stops = content.at("stops");
   for (std::size_t i = 0; i < stops.size(); ++i)
     if (auto good = check_stop(stops[i], languages, at("stops", i)); !good) {
       if (stops_are_new) return good;
-      return fail(422, "Stops in other languages",
-                  "Stop " + std::to_string(i + 1) + " does not fit these languages: " + good.error().detail,
-                  "languages");
+      return fail(
+          422, "Stops in other languages",
+          "Stop " + std::to_string(i + 1) + " does not fit these languages: " + good.error().detail,
+          "languages");
     }
   return {};
 }

@@ -7,13 +7,15 @@
 namespace strata::net {
 namespace {
 
-Result<void> add_photo(const RouteContext& context, const room::LookView& look, query::VertexColors& colors) {
+Result<void> add_photo(const RouteContext& context, const room::LookView& look,
+                       query::VertexColors& colors) {
   const auto encoded = context.store.look_picture(look.look_id);
   if (!encoded) return tl::unexpected(encoded.error());
   const auto info = inspect_picture(*encoded);
   if (!info) return tl::unexpected(info.error());
   // Reading takes at most twice the memory of its pixels.
-  const auto bytes = static_cast<std::uint64_t>(info->width) * static_cast<std::uint64_t>(info->height) * 8;
+  const auto bytes =
+      static_cast<std::uint64_t>(info->width) * static_cast<std::uint64_t>(info->height) * 8;
   const auto share = context.rooms.memory().reserve(bytes, "a photo of the surface");
   if (!share) return tl::unexpected(share.error());
   const auto photo = decode_picture(*encoded);
@@ -22,15 +24,17 @@ Result<void> add_photo(const RouteContext& context, const room::LookView& look, 
   return {};
 }
 
-Result<query::DrawnLayer> drawn(const RouteContext& context, Role role, const query::LayerView& view) {
+Result<query::DrawnLayer> drawn(const RouteContext& context, Role role,
+                                const query::LayerView& view) {
   auto palette = std::make_shared<const Palette>(view.layer.palette);
   if (view.layer.table && room::RecordColors::needs_records(*palette, nullptr)) {
-    auto by_key = room::RecordColors::make(context.store, {*view.layer.table, sight_of(role), palette, nullptr});
+    auto by_key = room::RecordColors::make(context.store,
+                                           {*view.layer.table, sight_of(role), palette, nullptr});
     if (!by_key) return tl::unexpected(by_key.error());
     palette = std::move(*by_key);
   }
-  return query::DrawnLayer{view.snapshot.tiles, view.layer.resolution, view.layer.type, std::move(palette),
-                           view.layer.opacity};
+  return query::DrawnLayer{view.snapshot.tiles, view.layer.resolution, view.layer.type,
+                           std::move(palette), view.layer.opacity};
 }
 
 }  // namespace
@@ -44,7 +48,8 @@ Result<ComposedVertices> compose_vertices(const RouteContext& context, room::Roo
   if (!memory) return tl::unexpected(memory.error());
   ComposedVertices composed{query::VertexColors(geometry), std::move(*memory)};
   for (const room::LookView& look : looks)
-    if (auto added = add_photo(context, look, composed.colors); !added) return tl::unexpected(added.error());
+    if (auto added = add_photo(context, look, composed.colors); !added)
+      return tl::unexpected(added.error());
   for (const query::LayerView& view : bottom_to_top) {
     auto layer = drawn(context, role, view);
     if (!layer) return tl::unexpected(layer.error());

@@ -5,8 +5,9 @@
 
 namespace strata::net {
 
-// The colours of a model's vertices with these layers over them, bottom to top, and `tiles` of each. Of the photos lie below those that are visible.
-// `memory` holds what the colours take, for as long as they live. Refused: a palette by a column that the role does not see (422), a photo
+// The colours of a model's vertices with these layers over them, bottom to top, and `tiles` of
+// each. Of the photos lie below those that are visible. `memory` holds what the colours take, for
+// as long as they live. Refused: a palette by a column that the role does not see (422), a photo
 // that there is no memory for (503). Blocks.
 struct ComposedVertices {
   query::VertexColors colors;

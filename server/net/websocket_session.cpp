@@ -28,15 +28,18 @@ constexpr seconds kIdle{60};     // with pings in between
 constexpr seconds kStalled{60};  // one message that cannot be sent: the client does not read
 constexpr seconds kClosing{5};
 constexpr seconds kRecheck{30};  // whether the person is still signed in
-// Beyond the protocol's limit a message is refused with a problem; beyond this one the connection ends.
+// Beyond the protocol's limit a message is refused with a problem; beyond this one the connection
+// ends.
 constexpr std::size_t kMaxMessage = 4u << 20;
 constexpr std::size_t kMaxQueuedTexts = 4096;
 constexpr std::size_t kMaxQueuedBytes = 16u << 20;
-// Of pictures, as credit allows them: 3 frames of 16 rectangles for each of 4 views, or whole ones of the largest size.
+// Of pictures, as credit allows them: 3 frames of 16 rectangles for each of 4 views, or whole ones
+// of the largest size.
 constexpr std::size_t kMaxQueuedFrames = 256;
 constexpr std::size_t kMaxQueuedFrameBytes = 64u << 20;
 
-class WebSocketSession final : public LiveSocket, public std::enable_shared_from_this<WebSocketSession> {
+class WebSocketSession final : public LiveSocket,
+                               public std::enable_shared_from_this<WebSocketSession> {
  public:
   WebSocketSession(ConnectionStream stream, std::shared_ptr<Connections> connections)
       : ws_(std::move(stream)),
@@ -53,7 +56,9 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
     auto [accept_error] = co_await ws_.async_accept(request, kUseResult);
     if (!accept_error) {
       const auto watch = [self, secret = entry.secret, project_id = entry.room->model().project_id,
-                          role = entry.principal.role] { return self->watch_sign_in(secret, project_id, role); };
+                          role = entry.principal.role] {
+        return self->watch_sign_in(secret, project_id, role);
+      };
       live_ = connections_->app.make_session(std::move(entry), weak_from_this());
       asio::co_spawn(ws_.get_executor(), watch, asio::detached);
       co_await read();
@@ -68,8 +73,9 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
 
   // --- LiveSocket, from any thread
   void send_text(std::string text) override {
-    asio::post(ws_.get_executor(),
-               [self = shared_from_this(), text = std::move(text)]() mutable { self->queue_text(std::move(text)); });
+    asio::post(ws_.get_executor(), [self = shared_from_this(), text = std::move(text)]() mutable {
+      self->queue_text(std::move(text));
+    });
   }
   void send_frame(stream::FrameBytes frame) override {
     asio::post(ws_.get_executor(), [self = shared_from_this(), frame = std::move(frame)]() mutable {
@@ -77,14 +83,16 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
     });
   }
   void close(int code, std::string reason) override {
-    asio::post(ws_.get_executor(),
-               [self = shared_from_this(), code, reason = std::move(reason)] { self->start_close(code, reason); });
+    asio::post(ws_.get_executor(), [self = shared_from_this(), code, reason = std::move(reason)] {
+      self->start_close(code, reason);
+    });
   }
   void run_after(std::chrono::milliseconds delay, std::function<void()> work) override {
     auto timer = std::make_shared<asio::steady_timer>(ws_.get_executor(), delay);
-    timer->async_wait([self = shared_from_this(), timer, work = std::move(work)](beast::error_code error) {
-      if (!error && !self->over_) work();
-    });
+    timer->async_wait(
+        [self = shared_from_this(), timer, work = std::move(work)](beast::error_code error) {
+          if (!error && !self->over_) work();
+        });
   }
 
  private:
@@ -129,7 +137,8 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
     auto self = shared_from_this();
     // First at once: accounts may have changed while the model was opened.
     while (!over_ && !closing_) {
-      const Work ask = [&app = connections_->app, secret, project_id, role](const Respond& respond) {
+      const Work ask = [&app = connections_->app, secret, project_id,
+                        role](const Respond& respond) {
         respond(empty_response(app.is_still_welcome(secret, project_id, role) ? 200 : 401));
       };
       const Response answer = co_await on_worker(connections_, ws_.get_executor(), ask);
@@ -196,7 +205,8 @@ class WebSocketSession final : public LiveSocket, public std::enable_shared_from
   void start_close(int code, const std::string& reason) {
     if (closing_ || over_) return;
     closing_ = true;
-    reason_ = websocket::close_reason(static_cast<websocket::close_code>(code), beast::string_view(reason));
+    reason_ = websocket::close_reason(static_cast<websocket::close_code>(code),
+                                      beast::string_view(reason));
     texts_.clear();
     frames_.clear();
     close_timer_.expires_after(kClosing);

@@ -10,7 +10,8 @@
 namespace strata::net {
 
 // Takes over a connection whose upgrade request was admitted, until it closes.
-void start_websocket(ConnectionStream stream, boost::beast::http::request<boost::beast::http::empty_body> request,
+void start_websocket(ConnectionStream stream,
+                     boost::beast::http::request<boost::beast::http::empty_body> request,
                      std::shared_ptr<Connections> connections, App::LiveEntry entry);
 
 }  // namespace strata::net

@@ -42,15 +42,16 @@ Result<FoundTool> tool_of(const protocol::ToolShape& shape, const FindTool& find
   const std::string ref = protocol::to_ref(shape);
   Result<FoundTool> found = find_tool ? find_tool(ref) : fail(404, {}, {});
   if (found || found.error().status != 404) return found;
-  return fail(
-      422, "Unknown tool",
-      "There is no tool `" + ref.substr(0, 100) + "`. `shape` is disc, square, or a tool listed at /api/v1/tools.",
-      "shape");
+  return fail(422, "Unknown tool",
+              "There is no tool `" + ref.substr(0, 100) +
+                  "`. `shape` is disc, square, or a tool listed at /api/v1/tools.",
+              "shape");
 }
 
 // The brush members that EditStroke and StrokeBegin share.
 template <class Stroke>
-Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Model& model, const FoundTool& tool) {
+Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Model& model,
+                             const FoundTool& tool) {
   auto bits = value_bits(layer, stroke.value, stroke.erase);
   if (!bits) return tl::unexpected(bits.error());
   StrokeBatch batch;
@@ -79,14 +80,16 @@ Result<room::FillEdit> fill_of(const protocol::EditFill& asked, const Layer& lay
   fill.erase = asked.erase;
   fill.value_bits = *bits;
   if (asked.mode == Mode::where) {
-    if (!asked.where) return fail(422, "Member missing", "Mode `where` needs a condition, not a place.", "where");
+    if (!asked.where)
+      return fail(422, "Member missing", "Mode `where` needs a condition, not a place.", "where");
     auto condition = query::parse_condition(*asked.where, "where");
     if (!condition) return tl::unexpected(condition.error());
     if (condition->op != Expression::Op::truth || condition->number == 0)
       fill.region = room::FillEdit::Where{std::move(*condition)};
     return fill;
   }
-  if (!asked.at) return fail(422, "Member missing", "This mode needs a place where it begins.", "at");
+  if (!asked.at)
+    return fail(422, "Member missing", "This mode needs a place where it begins.", "at");
   room::Place place = place_of(*asked.at);
   if (asked.mode == Mode::island)
     fill.region = room::FillEdit::Island{std::move(place)};
@@ -115,11 +118,14 @@ bool names_tool(const protocol::Edit& edit) {
 }
 bool names_tool(const protocol::StrokeBegin& begin) { return is_tool(begin.shape); }
 
-double in_model_units(double millimetres, Unit unit) { return millimetres * 0.001 / metres_per(unit); }
+double in_model_units(double millimetres, Unit unit) {
+  return millimetres * 0.001 / metres_per(unit);
+}
 double in_millimetres(double length, Unit unit) { return length * metres_per(unit) * 1000; }
 
-Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer, const Model& model,
-                                       const Uuid& id, Author author, const FindTool& find_tool) {
+Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer,
+                                       const Model& model, const Uuid& id, Author author,
+                                       const FindTool& find_tool) {
   room::EditRequest request{id, std::move(author), layer.id};
   request.record = protocol::to_json(edit);
   if (const auto* stroke = std::get_if<protocol::EditStroke>(&edit)) {
@@ -136,7 +142,8 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
   if (const auto* polygon = std::get_if<protocol::EditPolygon>(&edit)) {
     auto bits = value_bits(layer, polygon->value, polygon->erase);
     if (!bits) return tl::unexpected(bits.error());
-    request.edit = room::PolygonEdit{polygon->erase, *bits, {polygon->camera, polygon->path, polygon->through}};
+    request.edit = room::PolygonEdit{
+        polygon->erase, *bits, {polygon->camera, polygon->path, polygon->through}};
     return request;
   }
   auto fill = fill_of(std::get<protocol::EditFill>(edit), layer);
@@ -145,8 +152,8 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
   return request;
 }
 
-Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer, const Model& model,
-                               const FindTool& find_tool) {
+Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer,
+                               const Model& model, const FindTool& find_tool) {
   auto found = tool_of(begin.shape, find_tool);
   if (!found) return tl::unexpected(found.error());
   auto batch = brush_of(begin, layer, model, *found);
@@ -161,7 +168,8 @@ Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& 
   return tool;
 }
 
-room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n, Author author) {
+room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n,
+                                Author author) {
   room::EditRequest request{id, std::move(author), batch.tool.layer_id};
   request.record = std::move(batch.tool.record);
   request.record["n"] = n;
@@ -175,15 +183,18 @@ room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, con
   return request;
 }
 
-Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Layer& layer, const std::string& field) {
+Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Layer& layer,
+                                     const std::string& field) {
   if (!layer.table)
-    return fail(422, "Layer has no records",
-                "'" + layer.name + "' holds numbers: only records of database layers can be highlighted.", field);
+    return fail(
+        422, "Layer has no records",
+        "'" + layer.name + "' holds numbers: only records of database layers can be highlighted.",
+        field);
   room::Highlight highlight;
   highlight.isolate = asked.isolate;
   if (asked.filter) {
-    auto filter =
-        query::parse_condition(*asked.filter, field.empty() ? "filter" : field + ".filter", query::Names::columns);
+    auto filter = query::parse_condition(
+        *asked.filter, field.empty() ? "filter" : field + ".filter", query::Names::columns);
     if (!filter) return tl::unexpected(filter.error());
     highlight.records = std::move(*filter);
   } else {
@@ -195,7 +206,8 @@ Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Lay
   return highlight;
 }
 
-Result<std::vector<room::LookView>> look_views(const room::Room& room, const std::vector<protocol::LookShown>& asked) {
+Result<std::vector<room::LookView>> look_views(const room::Room& room,
+                                               const std::vector<protocol::LookShown>& asked) {
   std::vector<room::LookView> views;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     const std::string field = "looks[" + std::to_string(i) + "].look";
@@ -206,7 +218,8 @@ Result<std::vector<room::LookView>> look_views(const room::Room& room, const std
       return tl::unexpected(std::move(problem));
     }
     for (const room::LookView& other : views)
-      if (other.look_id == look->id) return fail(422, "Look given twice", "A view shows each look once.", field);
+      if (other.look_id == look->id)
+        return fail(422, "Look given twice", "A view shows each look once.", field);
     views.push_back({look->id, asked[i].opacity});
   }
   return views;
@@ -214,15 +227,17 @@ Result<std::vector<room::LookView>> look_views(const room::Room& room, const std
 
 Result<Background> background_of(const std::optional<protocol::Background>& asked) {
   if (!asked) return Background{};
-  const auto top = parse_color(asked->top, "background.top"), bottom = parse_color(asked->bottom, "background.bottom");
+  const auto top = parse_color(asked->top, "background.top"),
+             bottom = parse_color(asked->bottom, "background.bottom");
   if (!top) return tl::unexpected(top.error());
   if (!bottom) return tl::unexpected(bottom.error());
   return Background{*top, *bottom};
 }
 
-Result<room::ViewSettings> view_settings(const room::Room& room, const std::vector<protocol::LayerOverride>& layers,
-                                         const std::optional<std::vector<protocol::LookShown>>& looks,
-                                         const std::optional<Light>& light) {
+Result<room::ViewSettings> view_settings(
+    const room::Room& room, const std::vector<protocol::LayerOverride>& layers,
+    const std::optional<std::vector<protocol::LookShown>>& looks,
+    const std::optional<Light>& light) {
   room::ViewSettings settings;
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const protocol::LayerOverride& asked = layers[i];
@@ -262,10 +277,12 @@ std::optional<StrokeBook::End> end_of_path(const nlohmann::json& record) {
   const auto path = record.find("path");
   if (path == record.end() || !path->is_array() || path->empty()) return std::nullopt;
   const auto& point = path->back();
-  if (!point.is_array() || point.size() != 2 || !point[0].is_number() || !point[1].is_number()) return std::nullopt;
+  if (!point.is_array() || point.size() != 2 || !point[0].is_number() || !point[1].is_number())
+    return std::nullopt;
   StrokeBook::End end{{point[0].get<double>(), point[1].get<double>()}};
   const auto widths = record.find("widths");
-  if (widths != record.end() && widths->is_array() && !widths->empty() && widths->back().is_number())
+  if (widths != record.end() && widths->is_array() && !widths->empty() &&
+      widths->back().is_number())
     end.width = widths->back().get<double>();
   return end;
 }
@@ -277,12 +294,14 @@ protocol::SurfacePoint to_protocol(const query::SurfacePoint& point) {
   out.position = point.position;
   out.normal = glm::dvec3(point.normal);
   out.uv = glm::dvec2(point.uv);
-  out.distance = std::clamp(point.distance, 0.0, 1e15);  // as far as the contract goes: a camera may be farther away
+  // as far as the contract goes: a camera may be farther away
+  out.distance = std::clamp(point.distance, 0.0, 1e15);
   out.values.emplace();
   for (const auto& value : point.values) {
     protocol::SurfaceValue& entry = (*out.values)[value.layer];
     entry.valid = value.valid;
-    // A float layer may hold what JSON cannot carry only if a raster brought it in; such a texel reads as valid, unnamed.
+    // A float layer may hold what JSON cannot carry only if a raster brought it in; such a texel
+    // reads as valid, unnamed.
     if (value.valid && std::isfinite(value.value)) entry.value = value.value;
   }
   return out;
@@ -311,7 +330,8 @@ nlohmann::json to_json(const query::Statistics& statistics) {
   }
   nlohmann::json bins = nlohmann::json::array();
   for (const auto& bin : statistics.histogram)
-    bins.push_back({{"from", bin.from}, {"to", bin.to}, {"texels", bin.texels}, {"area_m2", bin.area_m2}});
+    bins.push_back(
+        {{"from", bin.from}, {"to", bin.to}, {"texels", bin.texels}, {"area_m2", bin.area_m2}});
   json["histogram"] = std::move(bins);
   nlohmann::json keys = nlohmann::json::array();
   for (const auto& [key, entry] : statistics.keys) {
@@ -330,7 +350,8 @@ nlohmann::json to_json(const query::Statistics& statistics) {
   if (statistics.quantiles) {
     static constexpr std::array kNames = {"p5", "p25", "p50", "p75", "p95"};
     static_assert(kNames.size() == query::kQuantiles.size());
-    for (std::size_t i = 0; i < kNames.size(); ++i) json["quantiles"][kNames[i]] = (*statistics.quantiles)[i];
+    for (std::size_t i = 0; i < kNames.size(); ++i)
+      json["quantiles"][kNames[i]] = (*statistics.quantiles)[i];
   }
   return json;
 }
@@ -359,8 +380,11 @@ nlohmann::json to_json(const query::CrossTable& table) {
           {"texels", table.texels}};
 }
 
-std::string cross_table_csv(const query::CrossTable& table, const std::string& rows, const std::string& columns) {
-  const auto key_text = [](const query::CrossTable::Key& key) { return key ? number(*key) : std::string("-"); };
+std::string cross_table_csv(const query::CrossTable& table, const std::string& rows,
+                            const std::string& columns) {
+  const auto key_text = [](const query::CrossTable::Key& key) {
+    return key ? number(*key) : std::string("-");
+  };
   std::vector<std::string> cells{rows + " / " + columns};
   for (const auto& column : table.columns) cells.push_back(key_text(column));
   std::string text = csv_line(cells, ',');
@@ -390,9 +414,10 @@ nlohmann::json to_json(const jobs::JobStatus& job) {
 }
 
 std::string utc_text(std::chrono::system_clock::time_point time) {
-  const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count();
-  const std::time_t seconds =
-      static_cast<std::time_t>(milliseconds >= 0 ? milliseconds / 1000 : (milliseconds - 999) / 1000);
+  const auto milliseconds =
+      std::chrono::duration_cast<std::chrono::milliseconds>(time.time_since_epoch()).count();
+  const std::time_t seconds = static_cast<std::time_t>(
+      milliseconds >= 0 ? milliseconds / 1000 : (milliseconds - 999) / 1000);
   std::tm utc{};
   gmtime_r(&seconds, &utc);
   char text[40];
@@ -435,21 +460,25 @@ nlohmann::json to_json(const store::ReviewQueue& queue) {
                        {"time", utc_text(stroke.time)},
                        {"texels_changed", stroke.texels},
                        {"area_m2", stroke.area_m2}});
-    if (auto camera = stroke.record.find("camera"); camera != stroke.record.end()) strokes.back()["camera"] = *camera;
+    if (auto camera = stroke.record.find("camera"); camera != stroke.record.end())
+      strokes.back()["camera"] = *camera;
   }
-  for (const auto& person : queue.people) people.push_back({{"user", person.user}, {"strokes", person.strokes}});
+  for (const auto& person : queue.people)
+    people.push_back({{"user", person.user}, {"strokes", person.strokes}});
   return {{"strokes", std::move(strokes)}, {"total", queue.total}, {"people", std::move(people)}};
 }
 
 namespace {
 
 std::string point_header(const std::vector<std::string>& layers) {
-  std::vector<std::string> cells{"hit", "x", "y", "z", "normal_x", "normal_y", "normal_z", "distance", "u", "v"};
+  std::vector<std::string> cells{"hit",      "x",        "y",        "z", "normal_x",
+                                 "normal_y", "normal_z", "distance", "u", "v"};
   cells.insert(cells.end(), layers.begin(), layers.end());
   return csv_line(cells, ',');
 }
 
-// A row is written beside the text and then put there: hundreds of thousands of rows have ten numbers each.
+// A row is written beside the text and then put there: hundreds of thousands of rows have ten
+// numbers each.
 class RowWriter {
  public:
   // Of a float no more digits than it has.
@@ -469,7 +498,8 @@ class RowWriter {
   char* end_ = digits_.data();
 };
 
-void append_point(const query::SurfacePoint& point, const std::vector<std::string>& layers, std::string& text) {
+void append_point(const query::SurfacePoint& point, const std::vector<std::string>& layers,
+                  std::string& text) {
   if (!point.hit) {
     text += "false" + std::string(9 + layers.size(), ',') + "\r\n";
     return;
@@ -497,12 +527,14 @@ void append_point(const query::SurfacePoint& point, const std::vector<std::strin
 
 }  // namespace
 
-std::string points_csv(const std::vector<query::SurfacePoint>& points, const std::vector<std::string>& layers) {
+std::string points_csv(const std::vector<query::SurfacePoint>& points,
+                       const std::vector<std::string>& layers) {
   constexpr std::size_t kPointsAtOnce = 4096;
   std::vector<std::string> parts((points.size() + kPointsAtOnce - 1) / kPointsAtOnce);
   mesh::parallel_for(mesh::background_threads(), static_cast<int>(parts.size()), [&](int number) {
     const auto part = static_cast<std::size_t>(number);
-    for (std::size_t i = part * kPointsAtOnce; i < std::min(points.size(), (part + 1) * kPointsAtOnce); ++i)
+    for (std::size_t i = part * kPointsAtOnce;
+         i < std::min(points.size(), (part + 1) * kPointsAtOnce); ++i)
       append_point(points[i], layers, parts[part]);
   });
   std::string text = point_header(layers);
@@ -513,7 +545,8 @@ std::string points_csv(const std::vector<query::SurfacePoint>& points, const std
   return text;
 }
 
-std::string profile_csv(const query::Profile& profile, Unit unit, const std::vector<std::string>& layers) {
+std::string profile_csv(const query::Profile& profile, Unit unit,
+                        const std::vector<std::string>& layers) {
   std::string text = "along_mm," + point_header(layers);
   for (const auto& sample : profile.samples) {
     text += number(in_millimetres(sample.along, unit)) + ",";
@@ -525,32 +558,39 @@ std::string profile_csv(const query::Profile& profile, Unit unit, const std::vec
 nlohmann::json to_json(const query::Profile& profile, Unit unit) {
   nlohmann::json samples = nlohmann::json::array();
   for (const auto& sample : profile.samples)
-    samples.push_back(
-        {{"along_mm", in_millimetres(sample.along, unit)}, {"point", protocol::to_json(to_protocol(sample.point))}});
+    samples.push_back({{"along_mm", in_millimetres(sample.along, unit)},
+                       {"point", protocol::to_json(to_protocol(sample.point))}});
   return {{"length_mm", in_millimetres(profile.length, unit)}, {"samples", std::move(samples)}};
 }
 
-nlohmann::json point_coverage(const query::SurfacePoint& point, const std::vector<Layer>& layers, const Model& model) {
+nlohmann::json point_coverage(const query::SurfacePoint& point, const std::vector<Layer>& layers,
+                              const Model& model) {
   nlohmann::json parameters = nlohmann::json::object(), ranges = nlohmann::json::object();
   for (const auto& layer : layers) {
-    nlohmann::json parameter{{"type", "Parameter"}, {"observedProperty", {{"label", {{"en", layer.name}}}}}};
+    nlohmann::json parameter{{"type", "Parameter"},
+                             {"observedProperty", {{"label", {{"en", layer.name}}}}}};
     if (!layer.description.empty()) parameter["description"] = {{"en", layer.description}};
     if (!layer.unit.empty()) parameter["unit"] = {{"symbol", layer.unit}};
     parameters[layer.slug] = std::move(parameter);
     nlohmann::json value;
     for (const auto& entry : point.values)
       if (entry.layer == layer.slug && entry.valid) value = entry.value;
-    ranges[layer.slug] = {
-        {"type", "NdArray"}, {"dataType", is_float(layer.type) ? "float" : "integer"}, {"values", {value}}};
+    ranges[layer.slug] = {{"type", "NdArray"},
+                          {"dataType", is_float(layer.type) ? "float" : "integer"},
+                          {"values", {value}}};
   }
   nlohmann::json system{{"type", "GeographicCRS"}};
-  if (model.crs.starts_with("EPSG:")) system["id"] = "http://www.opengis.net/def/crs/EPSG/0/" + model.crs.substr(5);
+  if (model.crs.starts_with("EPSG:"))
+    system["id"] = "http://www.opengis.net/def/crs/EPSG/0/" + model.crs.substr(5);
   auto axis = [&](double value) { return nlohmann::json{{"values", {value}}}; };
   return {{"type", "Coverage"},
           {"domain",
            {{"type", "Domain"},
             {"domainType", "Point"},
-            {"axes", {{"x", axis(point.position.x)}, {"y", axis(point.position.y)}, {"z", axis(point.position.z)}}},
+            {"axes",
+             {{"x", axis(point.position.x)},
+              {"y", axis(point.position.y)},
+              {"z", axis(point.position.z)}}},
             {"referencing", {{{"coordinates", {"x", "y", "z"}}, {"system", system}}}}}},
           {"parameters", parameters},
           {"ranges", ranges}};

@@ -25,20 +25,25 @@ std::size_t character_bytes(std::string_view text) {
   return first < 0x80 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
 }
 
-// Whether the first character of a text stands in the file as an escape: those that XML cannot hold, and CR.
+// Whether the first character of a text stands in the file as an escape: those that XML cannot
+// hold, and CR.
 bool is_escaped(std::string_view text) {
   const auto first = static_cast<unsigned char>(text.front());
-  return (first < 0x20 && first != '\t' && first != '\n') || text.starts_with("\ufffe") || text.starts_with("\uffff");
+  return (first < 0x20 && first != '\t' && first != '\n') || text.starts_with("\ufffe") ||
+         text.starts_with("\uffff");
 }
 
-// Whether the text begins with what Excel takes for an escape, `_x` with four hexadecimal digits and `_`, in the file.
+// Whether the text begins with what Excel takes for an escape, `_x` with four hexadecimal digits
+// and `_`, in the file.
 bool begins_escape(std::string_view text) {
-  return text.size() >= 7 && text.starts_with("_x") && (text[6] == '_' || is_escaped(text.substr(6))) &&
-         std::ranges::all_of(text.substr(2, 4), [](unsigned char c) { return std::isxdigit(c) != 0; });
+  return text.size() >= 7 && text.starts_with("_x") &&
+         (text[6] == '_' || is_escaped(text.substr(6))) &&
+         std::ranges::all_of(text.substr(2, 4),
+                             [](unsigned char c) { return std::isxdigit(c) != 0; });
 }
 
-// The first character of a text as a cell holds it (ECMA-376 Part 1, 22.9.2.19, ST_Xstring). The library itself escapes control
-// characters.
+// The first character of a text as a cell holds it (ECMA-376 Part 1, 22.9.2.19, ST_Xstring). The
+// library itself escapes control characters.
 std::string escaped(std::string_view text, std::string_view character) {
   if (begins_escape(text)) return "_x005F_";
   if (character == "\ufffe") return "_xFFFE_";
@@ -69,7 +74,8 @@ std::string cell_text(std::string_view text) {
 std::optional<BookDate> parse_date(std::string_view text, bool has_time) {
   const auto number = [&](std::size_t at, std::size_t digits) {
     int value = -1;
-    if (text.size() >= at + digits) std::from_chars(text.data() + at, text.data() + at + digits, value);
+    if (text.size() >= at + digits)
+      std::from_chars(text.data() + at, text.data() + at + digits, value);
     return value;
   };
   BookDate date{number(0, 4), number(5, 2), number(8, 2), has_time};
@@ -116,7 +122,8 @@ struct Workbook::Impl {
   }
 };
 
-Workbook::Workbook(const fs::path& folder, const std::string& sheet_name, const std::vector<BookColumn>& columns)
+Workbook::Workbook(const fs::path& folder, const std::string& sheet_name,
+                   const std::vector<BookColumn>& columns)
     : impl_(std::make_unique<Impl>()) {
   Impl& book = *impl_;
   book.file = folder / (to_string(random_uuid()) + ".xlsx");
@@ -125,7 +132,8 @@ Workbook::Workbook(const fs::path& folder, const std::string& sheet_name, const 
   options.constant_memory = LXW_TRUE;
   options.tmpdir = temporary.data();  // copied
   book.book = workbook_new_opt(book.file.c_str(), &options);
-  if (book.book) book.sheet = workbook_add_worksheet(book.book, sheet_name.substr(0, kLongestSheetName).c_str());
+  if (book.book)
+    book.sheet = workbook_add_worksheet(book.book, sheet_name.substr(0, kLongestSheetName).c_str());
   if (!book.sheet) {
     book.error = LXW_ERROR_CREATING_TMPFILE;
     return;
@@ -161,12 +169,15 @@ void Workbook::add_row(const std::vector<BookCell>& cells) {
     if (const auto* is_true = std::get_if<bool>(&cell)) {
       book.note(worksheet_write_boolean(book.sheet, book.rows, column, *is_true, nullptr));
     } else if (const auto* number = std::get_if<double>(&cell)) {
-      book.note(worksheet_write_number(book.sheet, book.rows, column, *number, book.numbers.at(column)));
+      book.note(
+          worksheet_write_number(book.sheet, book.rows, column, *number, book.numbers.at(column)));
     } else if (const auto* date = std::get_if<BookDate>(&cell)) {
       lxw_datetime when{date->year, date->month, date->day, date->hour, date->minute, date->second};
-      book.note(worksheet_write_datetime(book.sheet, book.rows, column, &when, date->has_time ? book.time : book.date));
+      book.note(worksheet_write_datetime(book.sheet, book.rows, column, &when,
+                                         date->has_time ? book.time : book.date));
     } else if (const auto* text = std::get_if<std::string>(&cell); text && !text->empty()) {
-      book.note(worksheet_write_string(book.sheet, book.rows, column, cell_text(*text).c_str(), nullptr));
+      book.note(
+          worksheet_write_string(book.sheet, book.rows, column, cell_text(*text).c_str(), nullptr));
     }
     ++column;
   }
@@ -178,7 +189,8 @@ void Workbook::end_filter() {
   Impl& book = *impl_;
   if (book.is_filtered || !book.sheet || book.numbers.empty()) return;
   book.is_filtered = true;
-  book.note(worksheet_autofilter(book.sheet, 0, 0, book.rows - 1, static_cast<lxw_col_t>(book.numbers.size() - 1)));
+  book.note(worksheet_autofilter(book.sheet, 0, 0, book.rows - 1,
+                                 static_cast<lxw_col_t>(book.numbers.size() - 1)));
 }
 
 Result<Response> Workbook::finish(const std::string& filename) {
@@ -189,8 +201,10 @@ Result<Response> Workbook::finish(const std::string& filename) {
   if (book.error != LXW_NO_ERROR) {
     book.remove_file();
     log::error(std::string("a workbook could not be written: ") + lxw_strerror(book.error));
-    return fail(507, "Workbook not written",
-                "The server could not write the file, as when its disk is full. Ask for CSV, which needs none.", "f");
+    return fail(
+        507, "Workbook not written",
+        "The server could not write the file, as when its disk is full. Ask for CSV, which needs none.",
+        "f");
   }
   Response response;
   response.with("Content-Type", kXlsxType);

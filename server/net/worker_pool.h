@@ -8,7 +8,8 @@
 
 namespace strata::net {
 
-// Threads for what may block (database, queries, encoding of pictures), so that the sockets' threads never do.
+// Threads for what may block (database, queries, encoding of pictures), so that the sockets'
+// threads never do.
 class WorkerPool {
  public:
   WorkerPool(int threads, std::size_t max_waiting) : queue_(max_waiting) {

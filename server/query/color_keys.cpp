@@ -24,7 +24,8 @@ Lab lab_of(const std::uint8_t* rgb) {
     std::array<float, 256> light{};
     for (std::size_t i = 0; i < light.size(); ++i) {
       const double srgb = static_cast<double>(i) / 255;
-      light[i] = static_cast<float>(srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4));
+      light[i] = static_cast<float>(srgb <= 0.04045 ? srgb / 12.92
+                                                    : std::pow((srgb + 0.055) / 1.055, 2.4));
     }
     return light;
   }();
@@ -48,7 +49,8 @@ struct Bin {
   }
   Rgba mean() const {
     Rgba color{0, 0, 0, 255};
-    for (std::size_t c = 0; c < 3; ++c) color[c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+    for (std::size_t c = 0; c < 3; ++c)
+      color[c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
     return color;
   }
 };
@@ -61,26 +63,31 @@ std::vector<Bin> bins_of(const Picture& picture) {
     for (int x = 0; x < picture.width; ++x, rgba += 4) {
       if (rgba[3] < 128) continue;
       std::size_t at = 0;
-      for (int c = 0; c < 3; ++c) at = at << kBinBits | static_cast<std::size_t>(rgba[c] >> (8 - kBinBits));
+      for (int c = 0; c < 3; ++c)
+        at = at << kBinBits | static_cast<std::size_t>(rgba[c] >> (8 - kBinBits));
       Bin& bin = bins[at];
       for (std::size_t c = 0; c < 3; ++c) bin.sum[c] += rgba[c];
       ++bin.count;
       bin.at_border += x == 0 || y == 0 || x == picture.width - 1 || y == picture.height - 1;
     }
   std::erase_if(bins, [](const Bin& bin) { return bin.count == 0; });
-  std::stable_sort(bins.begin(), bins.end(), [](const Bin& a, const Bin& b) { return a.count > b.count; });
+  std::stable_sort(bins.begin(), bins.end(),
+                   [](const Bin& a, const Bin& b) { return a.count > b.count; });
   return bins;
 }
 
-// Puts each bin to its nearest centre within the tolerance; without one it becomes a centre where `may_grow`.
-std::vector<Bin> gathered(const std::vector<Bin>& bins, std::vector<Lab> centres, float tolerance, bool may_grow) {
+// Puts each bin to its nearest centre within the tolerance; without one it becomes a centre where
+// `may_grow`.
+std::vector<Bin> gathered(const std::vector<Bin>& bins, std::vector<Lab> centres, float tolerance,
+                          bool may_grow) {
   std::vector<Bin> groups(centres.size());
   for (const Bin& bin : bins) {
     const Lab place = lab_of(bin.mean().data());
     std::size_t nearest = centres.size();
     float least = tolerance * tolerance;
     for (std::size_t i = 0; i < centres.size(); ++i)
-      if (const float squared = squared_distance(place, centres[i]); squared <= least) nearest = i, least = squared;
+      if (const float squared = squared_distance(place, centres[i]); squared <= least)
+        nearest = i, least = squared;
     if (nearest == centres.size()) {
       if (!may_grow) continue;
       centres.push_back(place);
@@ -94,18 +101,22 @@ std::vector<Bin> gathered(const std::vector<Bin>& bins, std::vector<Lab> centres
 }  // namespace
 
 Result<std::vector<ColorKey>> parse_color_keys(std::string_view text, const std::string& field) {
-  const auto refuse = [&](const std::string& what) { return fail(422, "Colours not understood", what, field); };
+  const auto refuse = [&](const std::string& what) {
+    return fail(422, "Colours not understood", what, field);
+  };
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || json.empty() || json.size() > kMostColorKeys)
     return refuse("Give an object of 1 to " + std::to_string(kMostColorKeys) +
                   " colours with their values, such as {\"#c02020\": 1}.");
   std::vector<ColorKey> keys;
   for (const auto& [color, value] : json.items()) {
-    if (!value.is_number()) return refuse("The colour " + color.substr(0, 20) + " has no number as its value.");
+    if (!value.is_number())
+      return refuse("The colour " + color.substr(0, 20) + " has no number as its value.");
     // A legend of one point: colours are written the same there.
-    const auto legend =
-        palette_from_json({{"mode", "categorical"}, {"points", {{{"at", value}, {"color", color}}}}}, field);
-    if (!legend) return refuse("\"" + color.substr(0, 20) + "\" is no colour; write it as \"#rrggbb\".");
+    const auto legend = palette_from_json(
+        {{"mode", "categorical"}, {"points", {{{"at", value}, {"color", color}}}}}, field);
+    if (!legend)
+      return refuse("\"" + color.substr(0, 20) + "\" is no colour; write it as \"#rrggbb\".");
     keys.push_back({legend->points[0].color, value.get<double>()});
   }
   return keys;
@@ -124,7 +135,8 @@ std::optional<double> ColorKeys::value_of(const std::uint8_t* rgb) const {
   std::optional<double> value;
   float least = squared_tolerance_;
   for (const Place& place : places_)
-    if (const float squared = squared_distance(lab, {place.l, place.a, place.b}); squared <= least) {
+    if (const float squared = squared_distance(lab, {place.l, place.a, place.b});
+        squared <= least) {
       value = place.value;
       least = squared;
     }
@@ -136,15 +148,18 @@ std::vector<FoundColor> find_colors(const Picture& picture, double tolerance) {
   std::uint64_t pixels = 0;
   for (const Bin& bin : bins) pixels += bin.count;
   const auto large = [&](std::vector<Bin> groups) {
-    std::stable_sort(groups.begin(), groups.end(), [](const Bin& a, const Bin& b) { return a.count > b.count; });
+    std::stable_sort(groups.begin(), groups.end(),
+                     [](const Bin& a, const Bin& b) { return a.count > b.count; });
     std::erase_if(groups, [&](const Bin& bin) {
-      return bin.count == 0 || static_cast<double>(bin.count) < kLeastShare * static_cast<double>(pixels);
+      return bin.count == 0 ||
+             static_cast<double>(bin.count) < kLeastShare * static_cast<double>(pixels);
     });
     if (groups.size() > kMostFoundColors) groups.resize(kMostFoundColors);
     return groups;
   };
   auto groups = large(gathered(bins, {}, static_cast<float>(tolerance), true));
-  // Once more around the middles of what was found: the first centre of a group is only its fullest bin.
+  // Once more around the middles of what was found: the first centre of a group is only its fullest
+  // bin.
   std::vector<Lab> centres;
   for (const Bin& group : groups) centres.push_back(lab_of(group.mean().data()));
   groups = large(gathered(bins, centres, static_cast<float>(tolerance), false));
@@ -153,7 +168,8 @@ std::vector<FoundColor> find_colors(const Picture& picture, double tolerance) {
   std::uint64_t most = 0;
   for (const Bin& group : groups) {
     most = std::max(most, group.at_border);
-    found.push_back({group.mean(), static_cast<double>(group.count) / static_cast<double>(pixels), false});
+    found.push_back(
+        {group.mean(), static_cast<double>(group.count) / static_cast<double>(pixels), false});
   }
   for (std::size_t i = 0; i < groups.size() && most > 0; ++i)
     if (groups[i].at_border == most) {

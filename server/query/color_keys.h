@@ -9,8 +9,8 @@
 
 namespace strata::query {
 
-// Scanned maps whose colours stand for something. Colours are compared as CIELAB distances (ΔE of 1976, D65): 2 is hardly
-// seen, 100 is black to white.
+// Scanned maps whose colours stand for something. Colours are compared as CIELAB distances (ΔE of
+// 1976, D65): 2 is hardly seen, 100 is black to white.
 
 constexpr double kUsualTolerance = 12;
 constexpr std::size_t kMostColorKeys = 256;
@@ -20,7 +20,8 @@ struct ColorKey {
   double value = 0;
 };
 
-// {"#c02020": 1, "#2040c0": 2}. Refused (422 at `field`): no such object, no colours, more than kMostColorKeys.
+// {"#c02020": 1, "#2040c0": 2}. Refused (422 at `field`): no such object, no colours, more than
+// kMostColorKeys.
 Result<std::vector<ColorKey>> parse_color_keys(std::string_view json, const std::string& field);
 
 class ColorKeys {
@@ -38,8 +39,8 @@ class ColorKeys {
   float squared_tolerance_;
 };
 
-// The colours that cover a picture, by their share: what is within the tolerance of one counts to it. Those of less than half a
-// percent, edges and noise, are left out.
+// The colours that cover a picture, by their share: what is within the tolerance of one counts to
+// it. Those of less than half a percent, edges and noise, are left out.
 struct FoundColor {
   Rgba color{};
   double share = 0;            // of the pixels that are at least half opaque

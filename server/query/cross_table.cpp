@@ -50,12 +50,15 @@ class Side {
   std::size_t place(std::uint64_t bits) const { return place_.at(bits); }
   std::vector<CrossTable::Key> keys() const {
     std::vector<CrossTable::Key> keys;
-    for (const auto bits : bits_) keys.push_back(bits == kNone ? CrossTable::Key() : CrossTable::Key(value(bits)));
+    for (const auto bits : bits_)
+      keys.push_back(bits == kNone ? CrossTable::Key() : CrossTable::Key(value(bits)));
     return keys;
   }
 
  private:
-  double value(std::uint64_t bits) const { return decode_value(type_, static_cast<std::uint32_t>(bits)); }
+  double value(std::uint64_t bits) const {
+    return decode_value(type_, static_cast<std::uint32_t>(bits));
+  }
   const ValueType type_;
   std::vector<std::uint64_t> bits_;
   std::unordered_map<std::uint64_t, std::size_t> place_;
@@ -69,12 +72,15 @@ struct PairHash {
 
 }  // namespace
 
-Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& columns, const mesh::SurfaceMap& map,
-                                  const TexelSelection* within, double metres_per_unit) {
+Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& columns,
+                                  const mesh::SurfaceMap& map, const TexelSelection* within,
+                                  double metres_per_unit) {
   for (const auto& [view, field] : {std::pair{&rows, "rows"}, std::pair{&columns, "columns"}})
     if (is_float(view->layer.type))
       return fail(422, "Not a layer of keys",
-                  "'" + view->layer.slug + "' holds fractions; a cross-tabulation needs whole numbers or keys.", field);
+                  "'" + view->layer.slug +
+                      "' holds fractions; a cross-tabulation needs whole numbers or keys.",
+                  field);
   const auto too_many = [](const LayerView& view, const char* field) {
     return fail(422, "Too many values",
                 "'" + view.layer.slug + "' has more than " + std::to_string(kMaxCrossTableSide) +
@@ -90,7 +96,8 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
   for (std::uint32_t slot = 0; slot < map.block_of_slot.size(); ++slot) {
     if (slot % 256 == 0) turn.check(256 * kBlockSize * kBlockSize);
     const auto block = static_cast<int>(map.block_of_slot[slot]);
-    const int x0 = block % map.blocks_per_side * kBlockSize, y0 = block / map.blocks_per_side * kBlockSize;
+    const int x0 = block % map.blocks_per_side * kBlockSize,
+              y0 = block / map.blocks_per_side * kBlockSize;
     std::uint64_t rest = map.surface_mask[slot];
     if (within) rest &= (*within)[slot];
     for (; rest != 0; rest &= rest - 1) {
@@ -115,7 +122,8 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
     for (const auto& [key, unused] : bits) keys.push_back(key);
     return keys;
   };
-  const Side row_side(rows.layer.type, keys_of(row_bits)), column_side(columns.layer.type, keys_of(column_bits));
+  const Side row_side(rows.layer.type, keys_of(row_bits)),
+      column_side(columns.layer.type, keys_of(column_bits));
   CrossTable table;
   table.rows = row_side.keys();
   table.columns = column_side.keys();

@@ -21,10 +21,11 @@ struct CrossTable {
   std::vector<std::vector<std::uint64_t>> texels;
 };
 
-// Counts surface texels of `map`, of those in `within` (null: all), where at least one of the layers has a value; a layer of another
-// resolution counts by the texel that holds the centre of the map's. Refused (422): a layer of fractions, or of more than
-// kMaxCrossTableSide values.
-Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& columns, const mesh::SurfaceMap& map,
-                                  const TexelSelection* within, double metres_per_unit);
+// Counts surface texels of `map`, of those in `within` (null: all), where at least one of the
+// layers has a value; a layer of another resolution counts by the texel that holds the centre of
+// the map's. Refused (422): a layer of fractions, or of more than kMaxCrossTableSide values.
+Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& columns,
+                                  const mesh::SurfaceMap& map, const TexelSelection* within,
+                                  double metres_per_unit);
 
 }  // namespace strata::query

@@ -28,17 +28,21 @@ glm::ivec2 corner_of(const mesh::SurfaceMap& map, std::uint32_t slot) {
   return {block % map.blocks_per_side * kBlockSize, block / map.blocks_per_side * kBlockSize};
 }
 
-void write(std::map<TileAddress, TileData>& tiles, ValueType type, int x, int y, std::uint32_t bits) {
-  const TileAddress address{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)};
-  tiles.try_emplace(address, type).first->second.write(y % kTileSize * kTileSize + x % kTileSize, bits);
+void write(std::map<TileAddress, TileData>& tiles, ValueType type, int x, int y,
+           std::uint32_t bits) {
+  const TileAddress address{static_cast<std::uint16_t>(x / kTileSize),
+                            static_cast<std::uint16_t>(y / kTileSize)};
+  tiles.try_emplace(address, type)
+      .first->second.write(y % kTileSize * kTileSize + x % kTileSize, bits);
 }
 
 // Gutter texels of the slot follow their owners.
-void write_gutter(const mesh::SurfaceMap& map, const NearestOfSlot& nearest, std::uint32_t slot, ValueType type,
-                  std::map<TileAddress, TileData>& tiles) {
+void write_gutter(const mesh::SurfaceMap& map, const NearestOfSlot& nearest, std::uint32_t slot,
+                  ValueType type, std::map<TileAddress, TileData>& tiles) {
   const glm::ivec2 corner = corner_of(map, slot);
   for (std::uint64_t rest = ~map.surface_mask[slot]; rest != 0; rest &= rest - 1) {
-    const int i = std::countr_zero(rest), x = corner.x + i % kBlockSize, y = corner.y + i / kBlockSize;
+    const int i = std::countr_zero(rest), x = corner.x + i % kBlockSize,
+              y = corner.y + i / kBlockSize;
     if (map.packed_position[std::size_t{slot} * kTexels + i] == mesh::kNoPosition) continue;
     for (const mesh::TexelOffset o : mesh::kGutterRingOffsets) {
       const int ox = x + o.x, oy = y + o.y;
@@ -56,8 +60,10 @@ void write_gutter(const mesh::SurfaceMap& map, const NearestOfSlot& nearest, std
 
 }  // namespace
 
-Result<std::map<TileAddress, TileData>> paint_dabs(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-                                                   std::span<const Dab> dabs, float radius, ValueType type) {
+Result<std::map<TileAddress, TileData>> paint_dabs(const mesh::SurfaceMap& map,
+                                                   const mesh::TexelGraph& graph,
+                                                   std::span<const Dab> dabs, float radius,
+                                                   ValueType type) {
   NearestOfSlot nearest;
   std::uint64_t reached_in_all = 0;
   std::unordered_set<std::uint32_t> seen;
@@ -84,7 +90,8 @@ Result<std::map<TileAddress, TileData>> paint_dabs(const mesh::SurfaceMap& map, 
     }
     reached_in_all += seen.size();
     if (reached_in_all > kMaxDabTexels)
-      return fail(422, "Too much to paint", "So many places of this radius cover too much; take a smaller radius.",
+      return fail(422, "Too much to paint",
+                  "So many places of this radius cover too much; take a smaller radius.",
                   "radius_mm");
   }
 
@@ -98,7 +105,8 @@ Result<std::map<TileAddress, TileData>> paint_dabs(const mesh::SurfaceMap& map, 
     }
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx)
-        if (const auto near = mesh::slot_at(map, corner.x / kBlockSize + dx, corner.y / kBlockSize + dy);
+        if (const auto near =
+                mesh::slot_at(map, corner.x / kBlockSize + dx, corner.y / kBlockSize + dy);
             near != mesh::kNoSlot)
           with_gutter.insert(near);
   }

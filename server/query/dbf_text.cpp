@@ -11,7 +11,8 @@ namespace {
 // Closes what iconv_open gives, which is no pointer to something.
 class Converter {
  public:
-  explicit Converter(const std::string& encoding) : handle_(iconv_open("UTF-8", encoding.c_str())) {}
+  explicit Converter(const std::string& encoding)
+      : handle_(iconv_open("UTF-8", encoding.c_str())) {}
   Converter(const Converter&) = delete;
   Converter& operator=(const Converter&) = delete;
   ~Converter() {
@@ -55,11 +56,13 @@ std::string iconv_name(std::string_view named) {
     const std::string part = name.substr(name.find("8859") + 4);
     return "ISO-8859-" + (part.empty() ? "1" : part);
   }
-  const bool is_number = std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+  const bool is_number =
+      std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
   if (is_number) return "CP" + name;
   if (name.starts_with("ANSI") || name.starts_with("WINDOWS")) {
-    const std::string page = name.substr(
-        name.find_first_of("0123456789") == std::string::npos ? name.size() : name.find_first_of("0123456789"));
+    const std::string page = name.substr(name.find_first_of("0123456789") == std::string::npos
+                                             ? name.size()
+                                             : name.find_first_of("0123456789"));
     return page.empty() ? std::string("CP1252") : "CP" + page;
   }
   return name;
@@ -78,8 +81,8 @@ DbfText::DbfText(std::string_view cpg, const char* code_page) {
 
 std::string DbfText::utf8(std::string_view text) const {
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  const bool is_ascii =
-      std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 128; });
+  const bool is_ascii = std::all_of(text.begin(), text.end(),
+                                    [](char c) { return static_cast<unsigned char>(c) < 128; });
   if (is_ascii) return std::string(text);
   for (const char* encoding : {encoding_.c_str(), "UTF-8", "CP1252", "ISO-8859-1"}) {
     if (*encoding == '\0') continue;

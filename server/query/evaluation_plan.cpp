@@ -29,7 +29,9 @@ struct Compared {
 };
 Compared compared_with_number(const Expression& e, Op op) {
   if (e.op != op || e.parts.size() != 2) return {};
-  const auto is_number = [](const Expression& part) { return part.op == Op::number && std::isfinite(part.number); };
+  const auto is_number = [](const Expression& part) {
+    return part.op == Op::number && std::isfinite(part.number);
+  };
   if (is_number(e.parts[1])) return {&e.parts[0], e.parts[1].number};
   if (is_number(e.parts[0])) return {&e.parts[1], e.parts[0].number};
   return {};
@@ -45,7 +47,8 @@ class Planner {
     node.op = e.op;
     node.number = e.number;
     node.index = e.index;
-    if (!e.name.empty()) node.source = static_cast<int>(std::ranges::find(slugs_, e.name) - slugs_.begin());
+    if (!e.name.empty())
+      node.source = static_cast<int>(std::ranges::find(slugs_, e.name) - slugs_.begin());
     for (const Expression& part : e.parts) node.parts.push_back(plan(part));
     return node;
   }
@@ -61,12 +64,14 @@ class Planner {
     flatten(e, e.op, parts);
     std::vector<Group> groups;
     for (const Expression* part : parts) {
-      const Compared compared = compared_with_number(*part, e.op == Op::any ? Op::equal : Op::not_equal);
+      const Compared compared =
+          compared_with_number(*part, e.op == Op::any ? Op::equal : Op::not_equal);
       if (compared.value == nullptr) {
         others.push_back(part);
         continue;
       }
-      auto group = std::ranges::find_if(groups, [&](const Group& g) { return *g.value == *compared.value; });
+      auto group =
+          std::ranges::find_if(groups, [&](const Group& g) { return *g.value == *compared.value; });
       if (group == groups.end()) group = groups.insert(groups.end(), {compared.value, {}, {}});
       group->members.push_back(part);
       group->numbers.push_back(compared.number);
@@ -111,7 +116,8 @@ int source_read(const PlanNode& node) {
   int found = node.source;
   for (const PlanNode& part : node.parts) {
     const int source = source_read(part);
-    if (source == kNoOneSource || (source >= 0 && found >= 0 && source != found)) return kNoOneSource;
+    if (source == kNoOneSource || (source >= 0 && found >= 0 && source != found))
+      return kNoOneSource;
     if (source >= 0) found = source;
   }
   return found;
@@ -119,19 +125,22 @@ int source_read(const PlanNode& node) {
 
 }  // namespace
 
-Result<EvaluationPlan> plan_evaluation(const Expression& expression, const std::vector<LayerView>& layers,
+Result<EvaluationPlan> plan_evaluation(const Expression& expression,
+                                       const std::vector<LayerView>& layers,
                                        const std::string& field) {
   const std::vector<std::string> slugs = layers_of(expression);
   EvaluationPlan plan;
   for (const std::string& slug : slugs) {
-    const auto found = std::find_if(layers.begin(), layers.end(), [&](const auto& v) { return v.layer.slug == slug; });
+    const auto found = std::find_if(layers.begin(), layers.end(),
+                                    [&](const auto& v) { return v.layer.slug == slug; });
     if (found == layers.end())
-      return fail(
-          422, "Expression not understood",
-          "This model has no layer '" + slug + "'. Layers are named by their slugs; a subtraction needs spaces.",
-          field);
+      return fail(422, "Expression not understood",
+                  "This model has no layer '" + slug +
+                      "'. Layers are named by their slugs; a subtraction needs spaces.",
+                  field);
     const Layer& layer = found->layer;
-    plan.sources.push_back({TileTable(found->snapshot.tiles, layer.resolution), layer.type, layer.resolution});
+    plan.sources.push_back(
+        {TileTable(found->snapshot.tiles, layer.resolution), layer.type, layer.resolution});
   }
   plan.root = Planner(slugs).plan(expression);
   return plan;

@@ -20,7 +20,8 @@ struct PlanSource {
   int resolution;
 };
 
-// What a condition is for each bit pattern of a layer of one or two bytes: bit 0 it holds, bit 1 it is known.
+// What a condition is for each bit pattern of a layer of one or two bytes: bit 0 it holds, bit 1 it
+// is known.
 struct TruthTable {
   std::vector<std::uint8_t> of_bits;
   std::uint8_t of_nothing = 0;  // where the layer has no value
@@ -28,9 +29,11 @@ struct TruthTable {
 
 // A formula as it is evaluated: the meaning of its Expression, in fewer steps.
 //
-// 1. Alternatives of one value, `a = 1 or a = 2 …` and so `a in (1, 2, …)`, become one look-up in a set; `a <> 1 and a <> 2 …` becomes its
+// 1. Alternatives of one value, `a = 1 or a = 2 …` and so `a in (1, 2, …)`, become one look-up in a
+// set; `a <> 1 and a <> 2 …` becomes its
 //    negation. Chains of `or` and of `and` are flat, however they are nested.
-// 2. A condition over nothing but one layer of one or two bytes may be worked out once for each bit pattern (`table`).
+// 2. A condition over nothing but one layer of one or two bytes may be worked out once for each bit
+// pattern (`table`).
 struct PlanNode {
   Expression::Op op = Expression::Op::number;
   double number = 0;
@@ -49,10 +52,12 @@ struct EvaluationPlan {
 };
 
 // Refused (422 at `field`): a layer that is not among `layers`.
-Result<EvaluationPlan> plan_evaluation(const Expression& expression, const std::vector<LayerView>& layers,
+Result<EvaluationPlan> plan_evaluation(const Expression& expression,
+                                       const std::vector<LayerView>& layers,
                                        const std::string& field);
 
-// The one source that it reads, if it reads that one's values and nothing of the texel's place; -1 otherwise.
+// The one source that it reads, if it reads that one's values and nothing of the texel's place; -1
+// otherwise.
 int only_source(const PlanNode& node);
 
 // Steps that a texel takes.

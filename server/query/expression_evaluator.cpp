@@ -85,7 +85,13 @@ class Block {
   }
   // Of no place: the one source has 64 bit patterns from `first` on, or no value.
   Block(const Inputs& inputs, std::optional<std::uint32_t> first, Decoded& decoded)
-      : inputs_(inputs), decoded_(decoded), slot_(0), bx_(0), by_(0), is_pattern_(true), first_pattern_(first) {
+      : inputs_(inputs),
+        decoded_(decoded),
+        slot_(0),
+        bx_(0),
+        by_(0),
+        is_pattern_(true),
+        first_pattern_(first) {
     decoded_.clear();
   }
 
@@ -98,7 +104,8 @@ class Block {
       case Op::known: return {numbers(e.parts[0]).known, kAll};
       case Op::record_truth: {
         const Numbers answer = of_records(e);
-        return {bits_where([&](int i) { return answer.value[i] != 0; }) & answer.known, answer.known};
+        return {bits_where([&](int i) { return answer.value[i] != 0; }) & answer.known,
+                answer.known};
       }
       case Op::negation: {
         const Truths inside = part(0);
@@ -157,7 +164,8 @@ class Block {
       case Op::divide: return folded(e, [](double x, double y) { return x / y; });
       case Op::power: return folded(e, [](double x, double y) { return std::pow(x, y); });
       case Op::remainder: return folded(e, [](double x, double y) { return std::fmod(x, y); });
-      case Op::whole_division: return folded(e, [](double x, double y) { return std::trunc(x / y); });
+      case Op::whole_division:
+        return folded(e, [](double x, double y) { return std::trunc(x / y); });
       case Op::square_root: return mapped(e, [](double x) { return std::sqrt(x); });
       case Op::exponential: return mapped(e, [](double x) { return std::exp(x); });
       case Op::natural_log: return mapped(e, [](double x) { return std::log(x); });
@@ -188,7 +196,9 @@ class Block {
     const Numbers a = numbers(e.parts[0]);
     const PlanNode& right = e.parts[1];
     if (right.op == Op::number && std::isfinite(right.number))
-      return {compare(e.op, a, [constant = right.number](std::size_t) { return constant; }) & a.known, a.known};
+      return {
+          compare(e.op, a, [constant = right.number](std::size_t) { return constant; }) & a.known,
+          a.known};
     const Numbers b = numbers(right);
     const Bits known = a.known & b.known;
     return {compare(e.op, a, [&b](std::size_t i) { return b.value[i]; }) & known, known};
@@ -196,7 +206,9 @@ class Block {
 
   template <class Right>
   static Bits compare(Op op, const Numbers& a, Right right) {
-    const auto where = [&](auto test) { return bits_where([&](std::size_t i) { return test(a.value[i], right(i)); }); };
+    const auto where = [&](auto test) {
+      return bits_where([&](std::size_t i) { return test(a.value[i], right(i)); });
+    };
     switch (op) {
       case Op::less: return where([](double x, double y) { return x < y; });
       case Op::less_equal: return where([](double x, double y) { return x <= y; });
@@ -250,7 +262,8 @@ class Block {
     const auto take = [&]<class TexelBits>(TexelBits) {
       for (int row = 0; row < kBlockSize; ++row) {
         const std::size_t first =
-            (static_cast<std::size_t>(by) * kBlockSize + static_cast<std::size_t>(row)) * kTileSize +
+            (static_cast<std::size_t>(by) * kBlockSize + static_cast<std::size_t>(row)) *
+                kTileSize +
             static_cast<std::size_t>(bx) * kBlockSize;
         std::array<TexelBits, kBlockSize> bits;
         std::memcpy(bits.data(), tile->values.data() + first * sizeof(TexelBits), sizeof bits);
@@ -276,7 +289,8 @@ class Block {
     const Truths when = truths(e.parts[0]);
     const Numbers then = numbers(e.parts[1]), otherwise = numbers(e.parts[2]);
     Numbers result;
-    for (int i = 0; i < kTexels; ++i) result.value[i] = (when.holds >> i) & 1u ? then.value[i] : otherwise.value[i];
+    for (int i = 0; i < kTexels; ++i)
+      result.value[i] = (when.holds >> i) & 1u ? then.value[i] : otherwise.value[i];
     result.known = when.known & ((when.holds & then.known) | (~when.holds & otherwise.known));
     return result;
   }
@@ -323,7 +337,8 @@ class Block {
   Numbers texel_area() const {
     Numbers result;
     const double m2 = inputs_.frame.metres * inputs_.frame.metres;
-    for (std::size_t i = 0; i < kTexels; ++i) result.value[i] = m2 * inputs_.map.area[std::size_t{slot_} * kTexels + i];
+    for (std::size_t i = 0; i < kTexels; ++i)
+      result.value[i] = m2 * inputs_.map.area[std::size_t{slot_} * kTexels + i];
     result.known = inputs_.map.surface_mask[slot_];
     return result;
   }
@@ -332,7 +347,8 @@ class Block {
   Numbers of_records(const PlanNode& e) const {
     const RecordNumbers& records = inputs_.records[e.index];
     Numbers result = layer(e.source);
-    double last = -1, found = std::numeric_limits<double>::quiet_NaN();  // neighbours mostly hold one key
+    // neighbours mostly hold one key
+    double last = -1, found = std::numeric_limits<double>::quiet_NaN();
     for (int i = 0; i < kTexels; ++i) {
       if (((result.known >> i) & 1u) == 0) continue;
       if (result.value[i] != last) {
@@ -347,10 +363,13 @@ class Block {
   }
 
   const Numbers& layer(int number) const {
-    return decoded_.get(number, [&] { return decode(inputs_.sources[static_cast<std::size_t>(number)], true); });
+    return decoded_.get(
+        number, [&] { return decode(inputs_.sources[static_cast<std::size_t>(number)], true); });
   }
   // Costs no decoding.
-  Bits validity(int number) const { return decode(inputs_.sources[static_cast<std::size_t>(number)], false).known; }
+  Bits validity(int number) const {
+    return decode(inputs_.sources[static_cast<std::size_t>(number)], false).known;
+  }
 
   Numbers decode(const PlanSource& source, bool decoded) const {
     if (is_pattern_) return pattern(source, decoded);
@@ -366,12 +385,15 @@ class Block {
     return decoded ? only_finite(std::move(result)) : result;
   }
 
-  // visit(texel of the block, tile or null, texel in the tile): what of a layer of another resolution lies under it.
+  // visit(texel of the block, tile or null, texel in the tile): what of a layer of another
+  // resolution lies under it.
   template <class Visit>
   void for_each_under(const PlanSource& source, Visit visit) const {
     for (int i = 0; i < kTexels; ++i) {
-      const int x = source.tiles.texel_under(bx_ * kBlockSize + i % kBlockSize, inputs_.map.resolution),
-                y = source.tiles.texel_under(by_ * kBlockSize + i / kBlockSize, inputs_.map.resolution);
+      const int x = source.tiles.texel_under(bx_ * kBlockSize + i % kBlockSize,
+                                             inputs_.map.resolution),
+                y = source.tiles.texel_under(by_ * kBlockSize + i / kBlockSize,
+                                             inputs_.map.resolution);
       visit(i, source.tiles.of_texel(x, y), (y % kTileSize) * kTileSize + x % kTileSize);
     }
   }
@@ -397,7 +419,8 @@ class Block {
     const auto take = [&]<class TexelBits>(TexelBits, auto value_of) {
       for (int row = 0; row < kBlockSize; ++row) {
         const std::size_t first =
-            (static_cast<std::size_t>(by) * kBlockSize + static_cast<std::size_t>(row)) * kTileSize +
+            (static_cast<std::size_t>(by) * kBlockSize + static_cast<std::size_t>(row)) *
+                kTileSize +
             static_cast<std::size_t>(bx) * kBlockSize;
         std::array<TexelBits, kBlockSize> bits;
         std::memcpy(bits.data(), tile->values.data() + first * sizeof(TexelBits), sizeof bits);
@@ -409,10 +432,16 @@ class Block {
     const double* values = values_of_bits(source.type);
     switch (source.type) {
       case ValueType::f32: take(float{}, [](float value) { return double{value}; }); break;
-      case ValueType::u32: take(std::uint32_t{}, [](std::uint32_t value) { return static_cast<double>(value); }); break;
-      case ValueType::i32: take(std::int32_t{}, [](std::int32_t value) { return static_cast<double>(value); }); break;
+      case ValueType::u32:
+        take(std::uint32_t{}, [](std::uint32_t value) { return static_cast<double>(value); });
+        break;
+      case ValueType::i32:
+        take(std::int32_t{}, [](std::int32_t value) { return static_cast<double>(value); });
+        break;
       case ValueType::u8:
-      case ValueType::i8: take(std::uint8_t{}, [values](std::uint8_t bits) { return values[bits]; }); break;
+      case ValueType::i8:
+        take(std::uint8_t{}, [values](std::uint8_t bits) { return values[bits]; });
+        break;
       default: take(std::uint16_t{}, [values](std::uint16_t bits) { return values[bits]; }); break;
     }
     return only_finite(std::move(result));
@@ -446,17 +475,21 @@ TruthTable table_of(const PlanNode& condition, const Inputs& inputs) {
   table.of_bits.resize(std::size_t{1} << (8 * bytes_per_texel(type)));
   for (std::uint32_t first = 0; first < table.of_bits.size(); first += kTexels) {
     const Truths truths = Block(inputs, std::optional(first), decoded).truths(condition);
-    for (int i = 0; i < kTexels; ++i) table.of_bits[first + static_cast<std::uint32_t>(i)] = truth_of(truths, i);
+    for (int i = 0; i < kTexels; ++i)
+      table.of_bits[first + static_cast<std::uint32_t>(i)] = truth_of(truths, i);
   }
-  table.of_nothing = truth_of(Block(inputs, std::optional<std::uint32_t>(), decoded).truths(condition), 0);
+  table.of_nothing =
+      truth_of(Block(inputs, std::optional<std::uint32_t>(), decoded).truths(condition), 0);
   return table;
 }
 
-// Makes tables of the largest conditions that have one, where there are texels enough to look them up.
+// Makes tables of the largest conditions that have one, where there are texels enough to look them
+// up.
 void make_tables(PlanNode& node, const Inputs& inputs) {
   if (node.is_condition() && steps_of(node) >= kFewestSteps) {
     const int source = only_source(node);
-    const int bytes = source < 0 ? 4 : bytes_per_texel(inputs.sources[static_cast<std::size_t>(source)].type);
+    const int bytes =
+        source < 0 ? 4 : bytes_per_texel(inputs.sources[static_cast<std::size_t>(source)].type);
     const std::size_t blocks = (std::size_t{1} << (8 * bytes)) / kTexels;
     if (bytes <= 2 && inputs.map.block_of_slot.size() >= 2 * blocks) {
       PlanNode looked_up;
@@ -472,7 +505,8 @@ void make_tables(PlanNode& node, const Inputs& inputs) {
 }
 
 // Numbers of one block become texels of its tile. The bits where a number does not fit the type.
-Bits write_block(const Numbers& numbers, Bits wanted, ValueType type, int block_x, int block_y, TileData& tile) {
+Bits write_block(const Numbers& numbers, Bits wanted, ValueType type, int block_x, int block_y,
+                 TileData& tile) {
   Bits unfit = 0;
   for (Bits rest = numbers.known & wanted; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
@@ -490,9 +524,10 @@ Bits write_block(const Numbers& numbers, Bits wanted, ValueType type, int block_
 
 }  // namespace
 
-Result<TexelSelection> select_where(const BoundExpression& condition, const std::vector<LayerView>& layers,
-                                    const mesh::SurfaceMap& map, const std::string& field, int threads,
-                                    const Frame& frame, const TexelSelection* within) {
+Result<TexelSelection> select_where(const BoundExpression& condition,
+                                    const std::vector<LayerView>& layers,
+                                    const mesh::SurfaceMap& map, const std::string& field,
+                                    int threads, const Frame& frame, const TexelSelection* within) {
   auto plan = plan_evaluation(condition.expression, layers, field);
   if (!plan) return tl::unexpected(plan.error());
   const Inputs inputs{plan->sources, condition.records, map, frame};
@@ -507,23 +542,25 @@ Result<TexelSelection> select_where(const BoundExpression& condition, const std:
   spend(steps * blocks);
   TexelSelection selection(slots, 0);
   constexpr std::size_t kSlotsAtOnce = 1024;
-  mesh::parallel_for(threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int part) {
-    Decoded decoded(plan->sources.size());
-    const std::size_t first = static_cast<std::size_t>(part) * kSlotsAtOnce;
-    const QuestionTurn turn;
-    std::size_t done = 0;
-    for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot) {
-      if (wanted(slot) == 0) continue;
-      if (++done % kBlocksBetweenChecks == 0) turn.check(steps * kBlocksBetweenChecks);
-      const Block block(inputs, static_cast<std::uint32_t>(slot), decoded);
-      selection[slot] = block.truths(plan->root).holds & wanted(slot);
-    }
-  });
+  mesh::parallel_for(
+      threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int part) {
+        Decoded decoded(plan->sources.size());
+        const std::size_t first = static_cast<std::size_t>(part) * kSlotsAtOnce;
+        const QuestionTurn turn;
+        std::size_t done = 0;
+        for (std::size_t slot = first; slot < std::min(slots, first + kSlotsAtOnce); ++slot) {
+          if (wanted(slot) == 0) continue;
+          if (++done % kBlocksBetweenChecks == 0) turn.check(steps * kBlocksBetweenChecks);
+          const Block block(inputs, static_cast<std::uint32_t>(slot), decoded);
+          selection[slot] = block.truths(plan->root).holds & wanted(slot);
+        }
+      });
   return selection;
 }
 
-Result<TileMap> compute_tiles(const BoundExpression& expression, const std::vector<LayerView>& layers,
-                              const mesh::SurfaceMap& map, const Frame& frame, ValueType type, const std::string& field,
+Result<TileMap> compute_tiles(const BoundExpression& expression,
+                              const std::vector<LayerView>& layers, const mesh::SurfaceMap& map,
+                              const Frame& frame, ValueType type, const std::string& field,
                               int threads) {
   auto plan = plan_evaluation(expression.expression, layers, field);
   if (!plan) return tl::unexpected(plan.error());
@@ -562,13 +599,16 @@ Result<TileMap> compute_tiles(const BoundExpression& expression, const std::vect
   }
   const auto tile_of = [&](std::uint32_t slot) -> std::shared_ptr<TileData>& {
     const int block = static_cast<int>(map.block_of_slot[slot]);
-    return tiles[static_cast<std::size_t>(block / map.blocks_per_side / kBlocksPerTile * tiles_per_side +
+    return tiles[static_cast<std::size_t>(block / map.blocks_per_side / kBlocksPerTile *
+                                              tiles_per_side +
                                           block % map.blocks_per_side / kBlocksPerTile)];
   };
   const auto texel_of = [&](mesh::SlotTexel place) {
     const int block = static_cast<int>(map.block_of_slot[place.slot]);
-    const int x = block % map.blocks_per_side % kBlocksPerTile * kBlockSize + place.texel % kBlockSize,
-              y = block / map.blocks_per_side % kBlocksPerTile * kBlockSize + place.texel / kBlockSize;
+    const int x = block % map.blocks_per_side % kBlocksPerTile * kBlockSize +
+                  place.texel % kBlockSize,
+              y = block / map.blocks_per_side % kBlocksPerTile * kBlockSize +
+                  place.texel / kBlockSize;
     return y * kTileSize + x;
   };
   mesh::for_each_gutter_texel(map, [&](mesh::SlotTexel gutter, mesh::SlotTexel owner) {
@@ -583,7 +623,8 @@ Result<TileMap> compute_tiles(const BoundExpression& expression, const std::vect
   for (std::size_t i = 0; i < tiles.size(); ++i)
     if (tiles[i])
       content[{static_cast<std::uint16_t>(i % static_cast<std::size_t>(tiles_per_side)),
-               static_cast<std::uint16_t>(i / static_cast<std::size_t>(tiles_per_side))}] = std::move(tiles[i]);
+               static_cast<std::uint16_t>(i / static_cast<std::size_t>(tiles_per_side))}] =
+          std::move(tiles[i]);
   return content;
 }
 

@@ -32,41 +32,51 @@ struct Token {
 constexpr std::array kKeywords{"and",  "or",  "not", "true",    "false", "case", "when", "then",
                                "else", "end", "is",  "between", "in",    "null", "like", "div"};
 
-// Of numbers; `least` and `greatest` take two or more. A word is the name of a function where a bracket follows it.
+// Of numbers; `least` and `greatest` take two or more. A word is the name of a function where a
+// bracket follows it.
 struct Function {
   std::string_view name;
   Op op;
 };
 constexpr std::array kFunctions{
-    Function{"min", Op::least},         Function{"max", Op::greatest},    Function{"abs", Op::absolute},
-    Function{"sqrt", Op::square_root},  Function{"exp", Op::exponential}, Function{"ln", Op::natural_log},
-    Function{"log10", Op::decimal_log}, Function{"floor", Op::floor},     Function{"ceil", Op::ceiling},
-    Function{"round", Op::round},       Function{"sin", Op::sine},        Function{"cos", Op::cosine},
-    Function{"tan", Op::tangent},       Function{"asin", Op::arc_sine},   Function{"acos", Op::arc_cosine},
-    Function{"atan", Op::arc_tangent},  Function{"radians", Op::radians}, Function{"degrees", Op::degrees}};
+    Function{"min", Op::least},         Function{"max", Op::greatest},
+    Function{"abs", Op::absolute},      Function{"sqrt", Op::square_root},
+    Function{"exp", Op::exponential},   Function{"ln", Op::natural_log},
+    Function{"log10", Op::decimal_log}, Function{"floor", Op::floor},
+    Function{"ceil", Op::ceiling},      Function{"round", Op::round},
+    Function{"sin", Op::sine},          Function{"cos", Op::cosine},
+    Function{"tan", Op::tangent},       Function{"asin", Op::arc_sine},
+    Function{"acos", Op::arc_cosine},   Function{"atan", Op::arc_tangent},
+    Function{"radians", Op::radians},   Function{"degrees", Op::degrees}};
 
 // Of a text; of two times; of a relation and keys.
-constexpr std::array kTextFunctions{Function{"casei", Op::fold_case}, Function{"accenti", Op::fold_accents}};
-constexpr std::array kTimeFunctions{Function{"t_before", Op::before},         Function{"t_after", Op::after},
-                                    Function{"t_during", Op::during},         Function{"t_contains", Op::contains},
-                                    Function{"t_intersects", Op::intersects}, Function{"t_disjoint", Op::disjoint},
-                                    Function{"t_equals", Op::coincides}};
-constexpr std::array kKeyFunctions{Function{"a_contains", Op::has_all}, Function{"a_overlaps", Op::has_any},
-                                   Function{"a_containedby", Op::has_only}, Function{"a_equals", Op::has_exactly}};
+constexpr std::array kTextFunctions{Function{"casei", Op::fold_case},
+                                    Function{"accenti", Op::fold_accents}};
+constexpr std::array kTimeFunctions{
+    Function{"t_before", Op::before},         Function{"t_after", Op::after},
+    Function{"t_during", Op::during},         Function{"t_contains", Op::contains},
+    Function{"t_intersects", Op::intersects}, Function{"t_disjoint", Op::disjoint},
+    Function{"t_equals", Op::coincides}};
+constexpr std::array kKeyFunctions{
+    Function{"a_contains", Op::has_all}, Function{"a_overlaps", Op::has_any},
+    Function{"a_containedby", Op::has_only}, Function{"a_equals", Op::has_exactly}};
 
 struct Comparison {
   std::string_view symbol;
   Op op;
 };
-constexpr std::array kComparisons{Comparison{"=", Op::equal},      Comparison{"==", Op::equal},
-                                  Comparison{"<>", Op::not_equal}, Comparison{"!=", Op::not_equal},
-                                  Comparison{"<", Op::less},       Comparison{"<=", Op::less_equal},
-                                  Comparison{">", Op::greater},    Comparison{">=", Op::greater_equal}};
+constexpr std::array kComparisons{
+    Comparison{"=", Op::equal},      Comparison{"==", Op::equal},
+    Comparison{"<>", Op::not_equal}, Comparison{"!=", Op::not_equal},
+    Comparison{"<", Op::less},       Comparison{"<=", Op::less_equal},
+    Comparison{">", Op::greater},    Comparison{">=", Op::greater_equal}};
 
-// Recursive descent. The first refusal is kept and ends the text, so that every level returns, whatever it holds by then.
+// Recursive descent. The first refusal is kept and ends the text, so that every level returns,
+// whatever it holds by then.
 class Parser {
  public:
-  Parser(std::string_view text, const std::string& field, Names names) : text_(text), field_(field), names_(names) {
+  Parser(std::string_view text, const std::string& field, Names names)
+      : text_(text), field_(field), names_(names) {
     advance();
   }
 
@@ -88,15 +98,17 @@ class Parser {
 
  private:
   Expression refuse(const std::string& what, std::optional<std::size_t> at = {}) {
-    if (!problem_) problem_ = expression_problem(what, characters_before(at.value_or(token_.at)), field_);
+    if (!problem_)
+      problem_ = expression_problem(what, characters_before(at.value_or(token_.at)), field_);
     at_ = text_.size();
     token_ = Token{};
     return {};
   }
 
   std::size_t characters_before(std::size_t byte) const {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        text_.substr(0, byte), [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u; }));
+    return static_cast<std::size_t>(std::ranges::count_if(text_.substr(0, byte), [](char c) {
+      return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u;
+    }));
   }
 
   // --- tokens
@@ -110,7 +122,8 @@ class Parser {
       return;
     }
     const char c = text_[at_];
-    if (is_digit(c) || (c == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1]))) return take_number();
+    if (is_digit(c) || (c == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1])))
+      return take_number();
     if (is_letter(c)) return take_word();
     if (c == '"') return take_quoted();
     if (c == '\'') return take_text();
@@ -128,14 +141,16 @@ class Parser {
     token_.text = std::string(begin, end);
     at_ += static_cast<std::size_t>(end - begin);
     if (at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '.'))
-      refuse("A number ends here; a layer whose name begins with a digit stands in double quotes", at_);
+      refuse("A number ends here; a layer whose name begins with a digit stands in double quotes",
+             at_);
   }
 
   void take_word() {
     token_.kind = Token::Kind::word;
     for (; at_ < text_.size(); ++at_) {
       const char c = text_[at_];
-      const bool hyphen = c == '-' && at_ + 1 < text_.size() && (is_letter(text_[at_ + 1]) || is_digit(text_[at_ + 1]));
+      const bool hyphen = c == '-' && at_ + 1 < text_.size() &&
+                          (is_letter(text_[at_ + 1]) || is_digit(text_[at_ + 1]));
       if (!is_letter(c) && !is_digit(c) && !hyphen) break;
       token_.text += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     }
@@ -145,7 +160,8 @@ class Parser {
     token_.kind = Token::Kind::quoted;
     const auto end = text_.find('"', at_ + 1);
     if (end == std::string_view::npos || end == at_ + 1) {
-      refuse(end == at_ + 1 ? "A name is missing between the quotes" : "The double quote is never closed");
+      refuse(end == at_ + 1 ? "A name is missing between the quotes"
+                            : "The double quote is never closed");
       return;
     }
     token_.text = std::string(text_.substr(at_ + 1, end - at_ - 1));
@@ -181,12 +197,14 @@ class Parser {
       if (comparison.symbol.size() == 2 && text_.substr(at_, 2) == comparison.symbol) length = 2;
     token_.text = std::string(text_.substr(at_, length));
     at_ += length;
-    if (length == 1 && std::string_view("()+-*/%^,<>=.").find(token_.text) == std::string_view::npos)
+    if (length == 1 &&
+        std::string_view("()+-*/%^,<>=.").find(token_.text) == std::string_view::npos)
       refuse("This character has no meaning in an expression");
   }
 
   bool is(std::string_view text) const {
-    return (token_.kind == Token::Kind::word || token_.kind == Token::Kind::symbol) && token_.text == text;
+    return (token_.kind == Token::Kind::word || token_.kind == Token::Kind::symbol) &&
+           token_.text == text;
   }
   bool take(std::string_view text) {
     if (!is(text)) return false;
@@ -200,7 +218,8 @@ class Parser {
     return next < text_.size() && text_[next] == '(';
   }
   void expect(std::string_view text) {
-    if (!take(text)) refuse("Expected '" + std::string(text) + "' instead of '" + token_.text + "'");
+    if (!take(text))
+      refuse("Expected '" + std::string(text) + "' instead of '" + token_.text + "'");
   }
 
   // --- grammar; each level reads what binds more tightly
@@ -236,7 +255,8 @@ class Parser {
       const auto right_at = token_.at;
       Expression right = sum();
       for (const Comparison& next : kComparisons)
-        if (is(next.symbol)) refuse("Only two values are compared at a time; join comparisons with 'and'");
+        if (is(next.symbol))
+          refuse("Only two values are compared at a time; join comparisons with 'and'");
       return compare(each.op, std::move(left), at, std::move(right), right_at);
     }
     if (is("is")) return null_test(value(std::move(left), at), at);
@@ -244,24 +264,29 @@ class Parser {
     if (!negated && !is("between") && !is("in") && !is("like")) return left;
     left = value(std::move(left), at);
     if (negated) advance();
-    Expression test = is("between") ? between(std::move(left), at)
-                      : is("in")    ? membership(std::move(left), at)
-                      : is("like")  ? likeness(std::move(left), at)
-                                    : refuse("Expected 'between', 'in' or 'like' instead of '" + token_.text + "'");
+    Expression test =
+        is("between") ? between(std::move(left), at)
+        : is("in")    ? membership(std::move(left), at)
+        : is("like")
+            ? likeness(std::move(left), at)
+            : refuse("Expected 'between', 'in' or 'like' instead of '" + token_.text + "'");
     return negated ? make(Op::negation, at, std::move(test)) : test;
   }
 
   // Of two numbers, two texts, two times; of a column of truths and a truth.
-  Expression compare(Op op, Expression left, std::size_t at, Expression right, std::size_t right_at) {
+  Expression compare(Op op, Expression left, std::size_t at, Expression right,
+                     std::size_t right_at) {
     if (left.is_column() && right.op == Op::truth && (op == Op::equal || op == Op::not_equal)) {
       Expression holds = make(Op::holds, at, std::move(left));
-      return (right.number == 1) == (op == Op::equal) ? holds : make(Op::negation, at, std::move(holds));
+      return (right.number == 1) == (op == Op::equal) ? holds
+                                                      : make(Op::negation, at, std::move(holds));
     }
     left = value(std::move(left), at);
     right = value(std::move(right), right_at);
     const auto takes_text = [](const Expression& e) { return e.is_text() || e.is_column(); };
     if ((left.is_text() && !takes_text(right)) || (right.is_text() && !takes_text(left)))
-      refuse("A text is compared with a column of texts, not with a number", left.is_text() ? at : right_at);
+      refuse("A text is compared with a column of texts, not with a number",
+             left.is_text() ? at : right_at);
     return make(op, at, std::move(left), std::move(right));
   }
 
@@ -271,7 +296,8 @@ class Parser {
     advance();
     const auto pattern_at = token_.at;
     Expression pattern = primary();
-    if (!pattern.is_text()) return refuse("A pattern stands in single quotes, as in like 'crack%'", pattern_at);
+    if (!pattern.is_text())
+      return refuse("A pattern stands in single quotes, as in like 'crack%'", pattern_at);
     const auto end = pattern.text.find_last_not_of('\\');
     if ((pattern.text.size() - (end == std::string::npos ? 0 : end + 1)) % 2 == 1)
       return refuse("The \\ at the end of this pattern has nothing behind it", pattern_at);
@@ -323,7 +349,10 @@ class Parser {
     const auto at = token_.at;
     Expression left = power();
     for (;;) {
-      const Op op = is("*") ? Op::multiply : is("/") ? Op::divide : is("%") ? Op::remainder : Op::whole_division;
+      const Op op = is("*")   ? Op::multiply
+                    : is("/") ? Op::divide
+                    : is("%") ? Op::remainder
+                              : Op::whole_division;
       if (op == Op::whole_division && !is("div")) return left;
       left = arithmetic(op, std::move(left), at, &Parser::power);
     }
@@ -373,8 +402,8 @@ class Parser {
           expect(")");
           return inside;
         }
-        return refuse("Expected a number, " + std::string(what_names_are()) + " or '(' instead of '" + token.text +
-                      "'");
+        return refuse("Expected a number, " + std::string(what_names_are()) +
+                      " or '(' instead of '" + token.text + "'");
     }
     if (is("true") || is("false")) {
       Expression truth;
@@ -388,8 +417,8 @@ class Parser {
     if (is_call()) return call();
     for (const char* keyword : kKeywords)
       if (is(keyword))
-        return refuse("Expected a number, " + std::string(what_names_are()) + " or '(' instead of '" + token.text +
-                      "'");
+        return refuse("Expected a number, " + std::string(what_names_are()) +
+                      " or '(' instead of '" + token.text + "'");
     return named();
   }
 
@@ -416,7 +445,9 @@ class Parser {
     return refuse("There is no function '" + token_.text + "'; there are " + known);
   }
 
-  std::string_view what_names_are() const { return names_ == Names::layers ? "a layer" : "a column"; }
+  std::string_view what_names_are() const {
+    return names_ == Names::layers ? "a layer" : "a column";
+  }
 
   bool is_keyword() const {
     return std::ranges::any_of(kKeywords, [&](const char* word) { return is(word); });
@@ -427,7 +458,8 @@ class Parser {
     const auto at = token_.at;
     const std::string what = "the name of " + std::string(what_names_are());
     if (is_keyword())
-      return refuse("'" + token_.text + "' is a word of the language; as " + what + " it stands in double quotes");
+      return refuse("'" + token_.text + "' is a word of the language; as " + what +
+                    " it stands in double quotes");
     if (token_.kind != Token::Kind::word && token_.kind != Token::Kind::quoted)
       return refuse("Expected " + what + " instead of '" + token_.text + "'");
     Expression expression;
@@ -451,11 +483,13 @@ class Parser {
   }
 
   Expression validity() {
-    if (names_ == Names::columns) return refuse("valid() is for layers; of a column write 'is not null'");
+    if (names_ == Names::columns)
+      return refuse("valid() is for layers; of a column write 'is not null'");
     advance();
     expect("(");
     Expression expression = named();
-    if (expression.is_column()) refuse("Expected the name of a layer; of a column write 'is not null'");
+    if (expression.is_column())
+      refuse("Expected the name of a layer; of a column write 'is not null'");
     expression.op = Op::valid;
     expect(")");
     return expression;
@@ -473,9 +507,12 @@ class Parser {
   }
 
   Expression quoted_time(bool may_be_open) {
-    if (token_.kind != Token::Kind::text) return refuse("A time stands in single quotes, as in date('2024-05-02')");
-    if (!(may_be_open && token_.text == "..") && !parse_edtf(token_.text) && !utc_timestamp(token_.text))
-      return refuse("'" + token_.text.substr(0, 100) + "' is no date; dates are written 2024-05-02");
+    if (token_.kind != Token::Kind::text)
+      return refuse("A time stands in single quotes, as in date('2024-05-02')");
+    if (!(may_be_open && token_.text == "..") && !parse_edtf(token_.text) &&
+        !utc_timestamp(token_.text))
+      return refuse("'" + token_.text.substr(0, 100) +
+                    "' is no date; dates are written 2024-05-02");
     return literal();
   }
 
@@ -576,7 +613,8 @@ class Parser {
     Expression chain = take("else") ? argument() : unknown();
     expect("end");
     for (auto branch = branches.rbegin(); branch != branches.rend(); ++branch)
-      chain = make(Op::choose, at, std::move(branch->first), std::move(branch->second), std::move(chain));
+      chain = make(Op::choose, at, std::move(branch->first), std::move(branch->second),
+                   std::move(chain));
     return chain;
   }
 
@@ -620,7 +658,8 @@ class Parser {
 
   Expression condition(Expression expression, std::size_t at) {
     if (expression.is_column()) return make(Op::holds, at, std::move(expression));
-    if (!expression.is_condition()) refuse("A condition is wanted here, not a number: compare it with something", at);
+    if (!expression.is_condition())
+      refuse("A condition is wanted here, not a number: compare it with something", at);
     return expression;
   }
   Expression value(Expression expression, std::size_t at) {
@@ -632,7 +671,8 @@ class Parser {
     return value(std::move(expression), at);
   }
   Expression textual(Expression expression, std::size_t at) {
-    if (!expression.is_text() && !expression.is_column()) refuse("A text or a column is wanted here", at);
+    if (!expression.is_text() && !expression.is_column())
+      refuse("A text or a column is wanted here", at);
     return expression;
   }
 
@@ -699,10 +739,13 @@ class Parser {
   std::optional<Problem> problem_;
 };
 
-Result<Expression> parse(std::string_view text, const std::string& field, Names names, bool wants_condition) {
+Result<Expression> parse(std::string_view text, const std::string& field, Names names,
+                         bool wants_condition) {
   if (text.size() > kMaxExpressionLength)
-    return fail(422, "Expression too long",
-                "An expression has at most " + std::to_string(kMaxExpressionLength) + " characters.", field);
+    return fail(
+        422, "Expression too long",
+        "An expression has at most " + std::to_string(kMaxExpressionLength) + " characters.",
+        field);
   return Parser(text, field, names).whole(wants_condition);
 }
 

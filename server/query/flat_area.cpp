@@ -23,7 +23,11 @@ class Context {
     // Called within long operations: what it throws ends them.
     std::call_once(once, [] { GEOS_interruptRegisterCallback(&check_question); });
     GEOSContext_setErrorMessageHandler_r(
-        handle_, [](const char* message, void* context) { static_cast<Context*>(context)->message_ = message; }, this);
+        handle_,
+        [](const char* message, void* context) {
+          static_cast<Context*>(context)->message_ = message;
+        },
+        this);
   }
   ~Context() { GEOS_finish_r(handle_); }
   Context(const Context&) = delete;
@@ -61,8 +65,8 @@ Owned closed_ring(const FlatRing& ring) {
   numbers.reserve(3 * (ring.size() + 1));
   for (std::size_t i = 0; i <= ring.size(); ++i)
     for (int axis = 0; axis < 3; ++axis) numbers.push_back(ring[i % ring.size()][axis]);
-  GEOSCoordSequence* corners =
-      GEOSCoordSeq_copyFromBuffer_r(geos(), numbers.data(), static_cast<unsigned>(ring.size() + 1), 1, 0);
+  GEOSCoordSequence* corners = GEOSCoordSeq_copyFromBuffer_r(
+      geos(), numbers.data(), static_cast<unsigned>(ring.size() + 1), 1, 0);
   if (!corners) context().give_up();
   return owned(GEOSGeom_createLinearRing_r(geos(), corners));
 }
@@ -80,7 +84,8 @@ Owned areas_alone(Owned geometry) {
     for (int k = 0; of_part == GEOS_MULTIPOLYGON && k < GEOSGetNumGeometries_r(geos(), part); ++k)
       kept.push_back(GEOSGeom_clone_r(geos(), GEOSGetGeometryN_r(geos(), part, k)));
   }
-  return owned(GEOSGeom_createCollection_r(geos(), GEOS_MULTIPOLYGON, kept.data(), static_cast<unsigned>(kept.size())));
+  return owned(GEOSGeom_createCollection_r(geos(), GEOS_MULTIPOLYGON, kept.data(),
+                                           static_cast<unsigned>(kept.size())));
 }
 
 Owned made_valid(Owned polygon) {
@@ -125,7 +130,8 @@ struct FlatArea::Held {
   Owned geometry;
 };
 
-FlatArea::FlatArea() : held_(std::make_unique<Held>(owned(GEOSGeom_createEmptyPolygon_r(geos())))) {}
+FlatArea::FlatArea()
+    : held_(std::make_unique<Held>(owned(GEOSGeom_createEmptyPolygon_r(geos())))) {}
 FlatArea::FlatArea(std::unique_ptr<Held> held) : held_(std::move(held)) {}
 FlatArea::FlatArea(FlatArea&&) noexcept = default;
 FlatArea& FlatArea::operator=(FlatArea&&) noexcept = default;
@@ -142,8 +148,8 @@ FlatArea::FlatArea(const FlatPolygon& polygon) {
   GEOSGeometry* shell = rings.front().release();
   std::vector<GEOSGeometry*> holes;
   for (std::size_t i = 1; i < rings.size(); ++i) holes.push_back(rings[i].release());
-  held_ = std::make_unique<Held>(
-      made_valid(owned(GEOSGeom_createPolygon_r(geos(), shell, holes.data(), static_cast<unsigned>(holes.size())))));
+  held_ = std::make_unique<Held>(made_valid(owned(
+      GEOSGeom_createPolygon_r(geos(), shell, holes.data(), static_cast<unsigned>(holes.size())))));
 }
 
 bool FlatArea::is_empty() const { return GEOSisEmpty_r(geos(), held_->geometry.get()) != 0; }
@@ -155,20 +161,22 @@ double FlatArea::area() const {
 }
 
 FlatArea FlatArea::cut_with(const FlatArea& other) const {
-  return FlatArea(std::make_unique<Held>(
-      areas_alone(owned(GEOSIntersection_r(geos(), held_->geometry.get(), other.held_->geometry.get())))));
+  return FlatArea(std::make_unique<Held>(areas_alone(
+      owned(GEOSIntersection_r(geos(), held_->geometry.get(), other.held_->geometry.get())))));
 }
 
 FlatArea FlatArea::joined(std::vector<FlatArea> areas, double grid) {
   std::vector<GEOSGeometry*> parts;
   for (FlatArea& area : areas)
     if (!area.is_empty()) parts.push_back(area.held_->geometry.release());
-  const Owned all = owned(
-      GEOSGeom_createCollection_r(geos(), GEOS_GEOMETRYCOLLECTION, parts.data(), static_cast<unsigned>(parts.size())));
-  // Rarely lines that lie in each other on one grid are too much for GEOS, and not on a coarser one.
+  const Owned all = owned(GEOSGeom_createCollection_r(geos(), GEOS_GEOMETRYCOLLECTION, parts.data(),
+                                                      static_cast<unsigned>(parts.size())));
+  // Rarely lines that lie in each other on one grid are too much for GEOS, and not on a coarser
+  // one.
   for (int tries = 1;; ++tries, grid *= 2) {
     try {
-      return FlatArea(std::make_unique<Held>(areas_alone(owned(GEOSUnaryUnionPrec_r(geos(), all.get(), grid)))));
+      return FlatArea(std::make_unique<Held>(
+          areas_alone(owned(GEOSUnaryUnionPrec_r(geos(), all.get(), grid)))));
     } catch (const std::runtime_error&) {
       if (tries == kMostGrids) throw;
     }
@@ -189,7 +197,8 @@ std::vector<FlatPolygon> FlatArea::polygons() const {
     FlatPolygon& polygon = polygons.emplace_back();
     polygon.rings.push_back(ring_of(GEOSGetExteriorRing_r(geos(), part), true));
     const int holes = GEOSGetNumInteriorRings_r(geos(), part);
-    for (int k = 0; k < holes; ++k) polygon.rings.push_back(ring_of(GEOSGetInteriorRingN_r(geos(), part, k), false));
+    for (int k = 0; k < holes; ++k)
+      polygon.rings.push_back(ring_of(GEOSGetInteriorRingN_r(geos(), part, k), false));
   }
   return polygons;
 }
@@ -202,16 +211,19 @@ struct FlatAreaTree::Held {
 FlatAreaTree::FlatAreaTree(const std::vector<FlatArea>& areas) : held_(std::make_unique<Held>()) {
   for (const FlatArea& area : areas)
     if (!area.is_empty())
-      GEOSSTRtree_insert_r(geos(), held_->tree, area.held_->geometry.get(), const_cast<FlatArea*>(&area));
+      GEOSSTRtree_insert_r(geos(), held_->tree, area.held_->geometry.get(),
+                           const_cast<FlatArea*>(&area));
 }
 FlatAreaTree::~FlatAreaTree() = default;
 
-void FlatAreaTree::find(const FlatArea& area, const std::function<void(const FlatArea&)>& visit) const {
+void FlatAreaTree::find(const FlatArea& area,
+                        const std::function<void(const FlatArea&)>& visit) const {
   std::vector<const FlatArea*> found;
   GEOSSTRtree_query_r(
       geos(), held_->tree, area.held_->geometry.get(),
       [](void* item, void* list) {
-        static_cast<std::vector<const FlatArea*>*>(list)->push_back(static_cast<const FlatArea*>(item));
+        static_cast<std::vector<const FlatArea*>*>(list)->push_back(
+            static_cast<const FlatArea*>(item));
       },
       &found);
   for (const FlatArea* each : found) visit(*each);

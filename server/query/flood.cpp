@@ -9,7 +9,8 @@ namespace strata::query {
 namespace {
 
 template <class Belongs>
-TexelSelection flood(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, std::uint32_t start, Belongs belongs) {
+TexelSelection flood(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
+                     std::uint32_t start, Belongs belongs) {
   TexelSelection selection(map.block_of_slot.size(), 0);
   std::vector<std::uint32_t> open;
   const auto take = [&](std::uint32_t texel) {
@@ -31,15 +32,17 @@ TexelSelection flood(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
 
 }  // namespace
 
-TexelSelection select_piece(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, std::uint32_t start) {
+TexelSelection select_piece(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
+                            std::uint32_t start) {
   return flood(map, graph, start, [](std::uint32_t) { return true; });
 }
 
-TexelSelection select_connected(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, const TileMap& tiles,
-                                std::uint32_t start) {
+TexelSelection select_connected(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
+                                const TileMap& tiles, std::uint32_t start) {
   const TileTable table(tiles, map.resolution);
   const auto value_of = [&](std::uint32_t texel) -> std::optional<std::uint32_t> {
-    const auto block = static_cast<int>(map.block_of_slot[texel / 64]), i = static_cast<int>(texel % 64);
+    const auto block = static_cast<int>(map.block_of_slot[texel / 64]),
+               i = static_cast<int>(texel % 64);
     const int x = block % map.blocks_per_side * kBlockSize + i % kBlockSize,
               y = block / map.blocks_per_side * kBlockSize + i / kBlockSize;
     const TileData* tile = table.of_texel(x, y);
@@ -51,8 +54,8 @@ TexelSelection select_connected(const mesh::SurfaceMap& map, const mesh::TexelGr
   return flood(map, graph, start, [&](std::uint32_t texel) { return value_of(texel) == wanted; });
 }
 
-TexelSelection select_near(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, std::uint32_t start,
-                           const glm::vec3& place, float radius) {
+TexelSelection select_near(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
+                           std::uint32_t start, const glm::vec3& place, float radius) {
   return flood(map, graph, start, [&](std::uint32_t texel) {
     return glm::distance(map.position(texel / 64, static_cast<int>(texel % 64)), place) <= radius;
   });

@@ -8,8 +8,8 @@
 namespace strata::query {
 namespace {
 
-constexpr std::uint32_t kPixelScale = 33550, kTiepoint = 33922, kTransformation = 34264, kGeoKeys = 34735,
-                        kNodata = 42113;
+constexpr std::uint32_t kPixelScale = 33550, kTiepoint = 33922, kTransformation = 34264,
+                        kGeoKeys = 34735, kNodata = 42113;
 constexpr std::uint16_t kModelType = 1024, kRasterType = 1025, kProjected = 3072;
 constexpr std::uint16_t kGeographic = 2, kPixelIsPoint = 2;
 constexpr std::uint16_t kUserDefined = 32767;
@@ -65,7 +65,8 @@ std::optional<double> nodata_of(TIFF* tiff) {
   while (!number.empty() && number.front() == ' ') number.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-  return !number.empty() && error == std::errc() && std::isfinite(value) ? std::optional(value) : std::nullopt;
+  return !number.empty() && error == std::errc() && std::isfinite(value) ? std::optional(value)
+                                                                         : std::nullopt;
 }
 
 void set_nodata(TIFF* tiff, const char* number) {
@@ -87,7 +88,8 @@ Result<void> read_geo_tags(TIFF* tiff, MapTiff& info) {
   if (matrix.size() >= 16)
     world = WorldFile{matrix[0], matrix[4], matrix[1], matrix[5], matrix[3], matrix[7]};
   else if (scale.size() >= 2 && tie.size() == 6)
-    world = WorldFile{scale[0], 0, 0, -scale[1], tie[3] - tie[0] * scale[0], tie[4] + tie[1] * scale[1]};
+    world = WorldFile{
+        scale[0], 0, 0, -scale[1], tie[3] - tie[0] * scale[0], tie[4] + tie[1] * scale[1]};
   if (!world) return {};
   auto good = checked(shifted(*world, keys.is_point ? 0 : 0.5), "body");
   if (!good) return tl::unexpected(good.error());

@@ -19,7 +19,9 @@ std::string inside(const std::string& where, const std::string& member) {
   return where.empty() ? member : where + "." + member;
 }
 
-std::string element(const std::string& list, std::size_t i) { return list + "[" + std::to_string(i) + "]"; }
+std::string element(const std::string& list, std::size_t i) {
+  return list + "[" + std::to_string(i) + "]";
+}
 
 class Reader {
  public:
@@ -31,9 +33,11 @@ class Reader {
     if (type == "FeatureCollection") return each(node, "features", where, depth);
     if (type == "GeometryCollection") return each(node, "geometries", where, depth);
     if (type == "Feature") return feature(node, where, depth);
-    if (type == "Polygon") return polygon(member(node, "coordinates"), inside(where, "coordinates"));
+    if (type == "Polygon")
+      return polygon(member(node, "coordinates"), inside(where, "coordinates"));
     if (type == "MultiPolygon") return polygons(member(node, "coordinates"), where);
-    return refuse(where, "Only Polygon and MultiPolygon are painted, not " + type.substr(0, 40) + ".");
+    return refuse(where,
+                  "Only Polygon and MultiPolygon are painted, not " + type.substr(0, 40) + ".");
   }
 
   FeatureMap take() { return std::move(map_); }
@@ -63,7 +67,8 @@ class Reader {
     if (!node.contains("geometry")) return refuse(where, "A feature has a `geometry`.");
     if (node["geometry"].is_null()) return {};
     if (map_.features.size() == kMaxMapFeatures)
-      return refuse(where, "A map has at most " + std::to_string(kMaxMapFeatures) + " features; send it in parts.");
+      return refuse(where, "A map has at most " + std::to_string(kMaxMapFeatures) +
+                               " features; send it in parts.");
     map_.features.push_back({{}, {}, "body" + (where.empty() ? "" : "." + where)});
     if (auto read = properties(member(node, "properties"), where); !read) return read;
     return read(node["geometry"], inside(where, "geometry"), depth + 1);
@@ -80,7 +85,8 @@ class Reader {
       if (value.is_string()) read = value.get<std::string>();
       const auto [column, is_new] = columns_.try_emplace(name, map_.columns.size());
       if (is_new && map_.columns.size() == kMaxMapColumns)
-        return refuse(where, "A map has at most " + std::to_string(kMaxMapColumns) + " different properties.");
+        return refuse(where, "A map has at most " + std::to_string(kMaxMapColumns) +
+                                 " different properties.");
       if (is_new) map_.columns.push_back(name);
       if (values.size() <= column->second) {
         cells_ += column->second + 1 - values.size();
@@ -93,9 +99,11 @@ class Reader {
   }
 
   Result<void> polygons(const json& list, const std::string& where) {
-    if (!list.is_array()) return refuse(where, "A MultiPolygon has a list of polygons as `coordinates`.");
+    if (!list.is_array())
+      return refuse(where, "A MultiPolygon has a list of polygons as `coordinates`.");
     for (std::size_t i = 0; i < list.size(); ++i)
-      if (auto read = polygon(list[i], element(inside(where, "coordinates"), i)); !read) return read;
+      if (auto read = polygon(list[i], element(inside(where, "coordinates"), i)); !read)
+        return read;
     return {};
   }
 
@@ -104,7 +112,8 @@ class Reader {
     MapFeature::Rings read_rings;
     for (std::size_t r = 0; r < rings.size(); ++r) {
       const std::string place = element(where, r);
-      if (!rings[r].is_array() || rings[r].size() < 3) return refuse(place, "A ring has at least three points.");
+      if (!rings[r].is_array() || rings[r].size() < 3)
+        return refuse(place, "A ring has at least three points.");
       auto& ring = read_rings.emplace_back();
       for (std::size_t p = 0; p < rings[r].size(); ++p) {
         const json& point = rings[r][p];
@@ -114,7 +123,8 @@ class Reader {
         if (!std::isfinite(at.x) || !std::isfinite(at.y))
           return refuse(element(place, p), "Coordinates are finite numbers.");
         if (++points_ > kMaxMapPoints)
-          return refuse(place, "A map has at most " + std::to_string(kMaxMapPoints) + " points; send it in parts.");
+          return refuse(place, "A map has at most " + std::to_string(kMaxMapPoints) +
+                                   " points; send it in parts.");
         ring.push_back(at);
       }
     }
@@ -138,8 +148,10 @@ Result<FeatureMap> parse_geojson(std::string_view text) {
         return depth <= kMaxDepth;
       },
       false);
-  if (too_deep) return fail(422, "Map not understood", "It is nested too deeply to be GeoJSON.", "body");
-  if (parsed.is_discarded()) return fail(400, "Malformed JSON", "The body is no JSON text.", "body");
+  if (too_deep)
+    return fail(422, "Map not understood", "It is nested too deeply to be GeoJSON.", "body");
+  if (parsed.is_discarded())
+    return fail(400, "Malformed JSON", "The body is no JSON text.", "body");
   Reader reader;
   if (auto read = reader.read(parsed, ""); !read) return tl::unexpected(read.error());
   return reader.take();

@@ -4,7 +4,8 @@
 
 namespace strata::query {
 
-KeyNames::KeyNames(const Palette& palette, const std::set<double>& taken) : palette_(palette), taken_(taken) {
+KeyNames::KeyNames(const Palette& palette, const std::set<double>& taken)
+    : palette_(palette), taken_(taken) {
   for (const Palette::Point& point : palette.points) {
     points_[point.at] = point;
     if (!point.label.empty()) keys_.emplace(point.label, point.at);
@@ -16,7 +17,9 @@ KeyNames::KeyNames(const Palette& palette, const std::set<double>& taken) : pale
 Palette::Point& KeyNames::point(double key) {
   changed_ = true;
   auto [found, is_new] = points_.try_emplace(key);
-  if (is_new) found->second = {key, generated_color(static_cast<std::uint32_t>(static_cast<std::int64_t>(key))), {}};
+  if (is_new)
+    found->second = {
+        key, generated_color(static_cast<std::uint32_t>(static_cast<std::int64_t>(key))), {}};
   return found->second;
 }
 
@@ -32,7 +35,8 @@ double KeyNames::key_of(const std::string& name) {
 }
 
 void KeyNames::name(double key, const std::string& name) {
-  if (const auto found = points_.find(key); found != points_.end() && !found->second.label.empty()) return;
+  if (const auto found = points_.find(key); found != points_.end() && !found->second.label.empty())
+    return;
   point(key).label = name;
   keys_.emplace(name, key);
   added_names_.push_back(name);
@@ -40,7 +44,8 @@ void KeyNames::name(double key, const std::string& name) {
 
 void KeyNames::color(double key, const Rgba& color) {
   if (!fixed_colors_.insert(key).second) return;
-  if (const auto found = points_.find(key); found != points_.end() && found->second.color == color) return;
+  if (const auto found = points_.find(key); found != points_.end() && found->second.color == color)
+    return;
   point(key).color = color;
 }
 

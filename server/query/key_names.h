@@ -12,10 +12,12 @@ namespace strata::query {
 // Keys by their names, as a layer's legend has them and a map adds to them.
 class KeyNames {
  public:
-  // The names are the labels of a categorical palette. Keys in `taken` mean something already, though they may have no name.
+  // The names are the labels of a categorical palette. Keys in `taken` mean something already,
+  // though they may have no name.
   KeyNames(const Palette& palette, const std::set<double>& taken);
 
-  // The key of that name; a new name gets the lowest number from 1 that has no name and is not taken.
+  // The key of that name; a new name gets the lowest number from 1 that has no name and is not
+  // taken.
   double key_of(const std::string& name);
   // Gives a key its name, and its colour where one is told; those that it has in the legend stay.
   void name(double key, const std::string& name);

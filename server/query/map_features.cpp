@@ -19,15 +19,17 @@ const MapValue& value_in(const MapFeature& feature, std::size_t column) {
   return column < feature.values.size() ? feature.values[column] : nothing;
 }
 
-Result<std::size_t> column_named(const FeatureMap& map, const std::string& name, const char* field) {
+Result<std::size_t> column_named(const FeatureMap& map, const std::string& name,
+                                 const char* field) {
   const auto found = std::find(map.columns.begin(), map.columns.end(), name);
   if (found != map.columns.end()) return static_cast<std::size_t>(found - map.columns.begin());
   std::string known;
   for (const std::string& column : map.columns) known += (known.empty() ? "" : ", ") + column;
-  return fail(422, "No such attribute",
-              "The map has no attribute '" + name + "'" +
-                  (known.empty() ? "; it has none at all." : "; it has " + known.substr(0, 500) + "."),
-              field);
+  return fail(
+      422, "No such attribute",
+      "The map has no attribute '" + name + "'" +
+          (known.empty() ? "; it has none at all." : "; it has " + known.substr(0, 500) + "."),
+      field);
 }
 
 tl::unexpected<Problem> refuse(const MapFeature& feature, const std::string& what) {
@@ -58,7 +60,8 @@ std::vector<MapColumn> columns_of(const FeatureMap& map) {
       const MapValue& value = value_in(feature, c);
       column.is_number = column.is_number && std::holds_alternative<double>(value);
       const std::string text = text_of(value);
-      column.is_text = column.is_text && std::holds_alternative<std::string>(value) && !text.empty();
+      column.is_text =
+          column.is_text && std::holds_alternative<std::string>(value) && !text.empty();
       auto& samples = column.samples;
       if (samples.size() < kMostSamples && !text.empty() && text.size() <= kLongestSample &&
           std::find(samples.begin(), samples.end(), text) == samples.end())
@@ -95,14 +98,17 @@ Result<FlatMap> flat_map(const FeatureMap& map, const MapChoice& choice, KeyName
       else if (text && !text->empty() && keys)
         number = keys->key_of(*text);
       else if (text && !text->empty())
-        return refuse(feature, "the attribute '" + choice.attribute + "' holds no number but \"" + text->substr(0, 60) +
+        return refuse(feature, "the attribute '" + choice.attribute + "' holds no number but \"" +
+                                   text->substr(0, 60) +
                                    "\". Names need a layer whose legend is categorical.");
       else
         return refuse(feature, "the attribute '" + choice.attribute + "' holds no number.");
     }
     if (!choice.names.empty() && keys)
-      if (std::string name = text_of(value_in(feature, name_column)); !name.empty()) keys->name(number, name);
-    for (const MapFeature::Rings& rings : feature.polygons) areas.push_back({PolygonArea(rings), number});
+      if (std::string name = text_of(value_in(feature, name_column)); !name.empty())
+        keys->name(number, name);
+    for (const MapFeature::Rings& rings : feature.polygons)
+      areas.push_back({PolygonArea(rings), number});
   }
   if (areas.empty()) return fail(422, "No polygons", "The map holds no polygon.", "body");
   return FlatMap(std::move(areas));

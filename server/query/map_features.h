@@ -12,7 +12,8 @@
 
 namespace strata::query {
 
-// Maps of polygons with attributes, whatever file they came in. Coordinates are the plane's, in model units.
+// Maps of polygons with attributes, whatever file they came in. Coordinates are the plane's, in
+// model units.
 
 constexpr std::size_t kMaxMapPoints = 2'000'000;
 constexpr std::size_t kMaxMapFeatures = 500'000;
@@ -43,9 +44,10 @@ struct FeatureMap {
 // What a person can choose from.
 struct MapColumn {
   std::string name;
-  bool is_number = false;            // every feature has a number
-  bool is_text = false;              // every feature has a text that is not empty
-  std::vector<std::string> samples;  // different values in the order of their first appearance, kMostSamples at most
+  bool is_number = false;  // every feature has a number
+  bool is_text = false;    // every feature has a text that is not empty
+  // different values in the order of their first appearance, kMostSamples at most
+  std::vector<std::string> samples;
 };
 constexpr std::size_t kMostSamples = 12;
 std::vector<MapColumn> columns_of(const FeatureMap& map);
@@ -54,10 +56,11 @@ std::vector<MapColumn> columns_of(const FeatureMap& map);
 struct MapChoice {
   std::string attribute;  // a number or the name of a key; empty: `value` for all
   double value = 0;
-  std::string names;  // the attribute that holds the names of the numbers; empty: they are not named
+  // the attribute that holds the names of the numbers; empty: they are not named
+  std::string names;
 };
-// The areas with their values, later ones on top. Names become keys in `keys`; null: names are refused. Refused (422): an
-// unknown attribute, a feature without it, no area at all.
+// The areas with their values, later ones on top. Names become keys in `keys`; null: names are
+// refused. Refused (422): an unknown attribute, a feature without it, no area at all.
 Result<FlatMap> flat_map(const FeatureMap& map, const MapChoice& choice, KeyNames* keys);
 
 }  // namespace strata::query

@@ -8,7 +8,8 @@
 
 namespace strata::query {
 
-// Numbers to be found among many, in a time that does not grow with how many there are: hashed, open addressing, at most half full.
+// Numbers to be found among many, in a time that does not grow with how many there are: hashed,
+// open addressing, at most half full.
 class NumberSet {
  public:
   // Finite numbers, in any order, also several times.
@@ -32,7 +33,8 @@ class NumberSet {
   std::size_t place_of(double number) const {
     const auto bits = std::bit_cast<std::uint64_t>(number == 0 ? 0.0 : number);
     std::size_t place = bits * 0x9e3779b97f4a7c15u >> shift_;
-    while (used_[place] != 0 && places_[place] != number) place = (place + 1) & (places_.size() - 1);
+    while (used_[place] != 0 && places_[place] != number)
+      place = (place + 1) & (places_.size() - 1);
     return place;
   }
 

@@ -22,14 +22,16 @@ using mesh::Way;
 // What lies at each surface texel of the map.
 class Classes {
  public:
-  Classes(const LayerView& view, const mesh::SurfaceMap& map, const TexelSelection* within, const ValueClasses& classes)
+  Classes(const LayerView& view, const mesh::SurfaceMap& map, const TexelSelection* within,
+          const ValueClasses& classes)
       : is_one_(!classes.each && classes.limits.empty()), valid_(map.block_of_slot.size()) {
     if (!is_one_) class_of_.resize(map.block_of_slot.size() * 64);
     for (const auto& [address, tile] : view.snapshot.tiles)
       for_each_value(*tile, address, view.layer.type, map, within,
                      [&](std::uint32_t slot, int texel, std::uint32_t bits, double value) {
                        valid_[slot] |= std::uint64_t{1} << texel;
-                       if (!is_one_) class_of_[slot * 64 + std::uint32_t(texel)] = classes.of(bits, value);
+                       if (!is_one_)
+                         class_of_[slot * 64 + std::uint32_t(texel)] = classes.of(bits, value);
                      });
   }
   bool is_valid(std::uint32_t texel) const { return (valid_[texel / 64] >> texel % 64 & 1u) != 0; }
@@ -38,7 +40,8 @@ class Classes {
   bool is_full_of(std::uint32_t slot, std::uint32_t a_class) const {
     if (valid_[slot] != ~std::uint64_t{0}) return false;
     const auto first = class_of_.begin() + std::ptrdiff_t{slot} * 64;
-    return is_one_ || std::all_of(first, first + 64, [&](std::uint32_t each) { return each == a_class; });
+    return is_one_ ||
+           std::all_of(first, first + 64, [&](std::uint32_t each) { return each == a_class; });
   }
 
  private:
@@ -102,7 +105,8 @@ class Measuring {
           continue;
         }
         empty = empty && classes_.is_empty(beside) && graph_.has_links[beside] == 0;
-        full = full && map_.surface_mask[beside] == ~std::uint64_t{0} && classes_.is_full_of(beside, a_class);
+        full = full && map_.surface_mask[beside] == ~std::uint64_t{0} &&
+               classes_.is_full_of(beside, a_class);
       }
     return empty || full;
   }
@@ -139,19 +143,23 @@ class Measuring {
   std::uint32_t walk(std::uint32_t texel, const Walk& walk) const {
     for (int order = 0; order < walk.order_count; ++order) {
       std::uint32_t at = texel;
-      for (int i = 0; i < walk.steps && at != kNoNeighbour; ++i) at = step(at, walk.orders[order][i]);
+      for (int i = 0; i < walk.steps && at != kNoNeighbour; ++i)
+        at = step(at, walk.orders[order][i]);
       if (at != kNoNeighbour) return at;
     }
     return kNoNeighbour;
   }
 
-  std::uint32_t step(std::uint32_t texel, Way way) const { return mesh::neighbour(map_, graph_, texel, way); }
+  std::uint32_t step(std::uint32_t texel, Way way) const {
+    return mesh::neighbour(map_, graph_, texel, way);
+  }
 
   // kNoSlot: nothing is there.
   std::uint32_t slot_beside(std::uint32_t slot, int dx, int dy) const {
     const auto block = static_cast<int>(map_.block_of_slot[slot]);
     const int x = block % map_.blocks_per_side + dx, y = block / map_.blocks_per_side + dy;
-    if (x < 0 || y < 0 || x >= map_.blocks_per_side || y >= map_.blocks_per_side) return mesh::kNoSlot;
+    if (x < 0 || y < 0 || x >= map_.blocks_per_side || y >= map_.blocks_per_side)
+      return mesh::kNoSlot;
     return map_.slot_of_block[static_cast<std::size_t>(y) * map_.blocks_per_side + x];
   }
 
@@ -162,7 +170,8 @@ class Measuring {
   // What is worked out of a texel only where there may be a border.
   class Surroundings {
    public:
-    Surroundings(const Measuring& measuring, std::uint32_t texel) : measuring_(measuring), texel_(texel) {}
+    Surroundings(const Measuring& measuring, std::uint32_t texel)
+        : measuring_(measuring), texel_(texel) {}
 
     // The length that a pair of texels in this direction stands for.
     double weight(std::size_t direction) {
@@ -172,19 +181,22 @@ class Measuring {
 
     bool is_at_open_edge() { return reach().at_open_edge; }
 
-    // The texel on the other side of a seam that lies in this direction; kNoNeighbour: there is no other side.
+    // The texel on the other side of a seam that lies in this direction; kNoNeighbour: there is no
+    // other side.
     std::uint32_t beyond_seam(std::size_t direction) {
       if (reach().over_seam.empty()) return kNoNeighbour;
       const auto& [x, y] = sides();
       const auto [dx, dy] = kDirection[direction % kDirections];
-      const glm::dvec3 way = (direction < kDirections ? 1.0 : -1.0) * (double(dx) * x + double(dy) * y);
+      const glm::dvec3 way =
+          (direction < kDirections ? 1.0 : -1.0) * (double(dx) * x + double(dy) * y);
       const glm::dvec3 here = measuring_.place(texel_);
       double nearest = std::numeric_limits<double>::infinity();
       std::uint32_t found = kNoNeighbour;
       for (const std::uint32_t other : reach().over_seam) {
         const glm::dvec3 there = measuring_.place(other) - here;
         // Where a seam ends at an open edge, the one or the other lies ahead.
-        if (is_at_open_edge() && glm::dot(there, way) < 0.5 * glm::length(there) * glm::length(way)) continue;
+        if (is_at_open_edge() && glm::dot(there, way) < 0.5 * glm::length(there) * glm::length(way))
+          continue;
         const double apart = glm::length(there - way);
         if (apart >= nearest) continue;
         nearest = apart;
@@ -212,15 +224,17 @@ class Measuring {
         const std::size_t last = reached.size();
         for (; first < last; ++first) {
           const Reached from = reached[first];
-          mesh::for_each_neighbour(measuring_.map_, measuring_.graph_, from.texel, [&](std::uint32_t next) {
-            if (std::ranges::find(reached, next, &Reached::texel) != reached.end()) return;
-            reached.push_back({next, from.over || !are_beside(from.texel, next)});
-          });
+          mesh::for_each_neighbour(
+              measuring_.map_, measuring_.graph_, from.texel, [&](std::uint32_t next) {
+                if (std::ranges::find(reached, next, &Reached::texel) != reached.end()) return;
+                reached.push_back({next, from.over || !are_beside(from.texel, next)});
+              });
         }
       }
       for (const auto& [each, over] : reached) {
         if (over) reach_->over_seam.push_back(each);
-        reach_->at_open_edge |= !over && (measuring_.graph_.at_open_edge[each / 64] >> each % 64 & 1u) != 0;
+        reach_->at_open_edge |=
+            !over && (measuring_.graph_.at_open_edge[each / 64] >> each % 64 & 1u) != 0;
       }
       return *reach_;
     }
@@ -231,14 +245,16 @@ class Measuring {
 
     std::array<double, kDirections> weigh() {
       const auto& [along_x, along_y] = sides();
-      const double xx = glm::dot(along_x, along_x), xy = glm::dot(along_x, along_y), yy = glm::dot(along_y, along_y);
+      const double xx = glm::dot(along_x, along_x), xy = glm::dot(along_x, along_y),
+                   yy = glm::dot(along_y, along_y);
       const double area = std::sqrt(std::max(xx * yy - xy * xy, 0.0));
       std::array<double, kDirections> weights{};
       if (area <= 0) return weights;
       const double side = std::sqrt(xx);
       std::array<double, kDirections> angles{}, lengths{};
       for (std::size_t k = 0; k < kDirections; ++k) {
-        const glm::dvec2 line(kDirection[k][0] * side + kDirection[k][1] * xy / side, kDirection[k][1] * area / side);
+        const glm::dvec2 line(kDirection[k][0] * side + kDirection[k][1] * xy / side,
+                              kDirection[k][1] * area / side);
         angles[k] = std::atan2(line.y, line.x);
         lengths[k] = glm::length(line);
       }
@@ -255,7 +271,8 @@ class Measuring {
       if (sides_) return *sides_;
       const glm::dvec3 here = measuring_.place(texel_);
       const auto side = [&](Way forward, Way back) {
-        const std::uint32_t next = measuring_.step(texel_, forward), before = measuring_.step(texel_, back);
+        const std::uint32_t next = measuring_.step(texel_, forward),
+                            before = measuring_.step(texel_, back);
         const glm::dvec3 from = before != kNoNeighbour ? measuring_.place(before) : here,
                          to = next != kNoNeighbour ? measuring_.place(next) : here;
         return (to - from) / (before != kNoNeighbour && next != kNoNeighbour ? 2.0 : 1.0);
@@ -283,8 +300,9 @@ class Measuring {
 
 }  // namespace
 
-Perimeters measure_perimeters(const LayerView& view, const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-                              const TexelSelection* within, const ValueClasses& value_classes, int threads) {
+Perimeters measure_perimeters(const LayerView& view, const mesh::SurfaceMap& map,
+                              const mesh::TexelGraph& graph, const TexelSelection* within,
+                              const ValueClasses& value_classes, int threads) {
   const Classes classes(view, map, within, value_classes);
   const Measuring measuring(classes, map, graph);
   constexpr std::size_t kAtOnce = 1024;

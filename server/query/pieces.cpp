@@ -33,8 +33,9 @@ class Trees {
 
 }  // namespace
 
-PieceCounts count_pieces(const LayerView& view, const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-                         const TexelSelection* within, const ValueClasses& classes) {
+PieceCounts count_pieces(const LayerView& view, const mesh::SurfaceMap& map,
+                         const mesh::TexelGraph& graph, const TexelSelection* within,
+                         const ValueClasses& classes) {
   const ValueType type = view.layer.type;
   const bool is_one = !classes.each && classes.limits.empty();
   const std::size_t texels = map.block_of_slot.size() * 64;
@@ -55,7 +56,8 @@ PieceCounts count_pieces(const LayerView& view, const mesh::SurfaceMap& map, con
     if (texel % kTexelsPerTile == 0) turn.check(kTexelsPerTile);
     if (!trees.has(texel)) continue;
     mesh::for_each_neighbour(map, graph, texel, [&](std::uint32_t other) {
-      if (other < texel && trees.has(other) && (is_one || class_of[other] == class_of[texel])) trees.join(texel, other);
+      if (other < texel && trees.has(other) && (is_one || class_of[other] == class_of[texel]))
+        trees.join(texel, other);
     });
   }
   PieceCounts counts;

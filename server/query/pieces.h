@@ -15,9 +15,10 @@ struct PieceCounts {
   std::map<std::uint32_t, std::uint64_t> of_class;  // by ValueClasses::of
 };
 
-// Areas of the surface that are connected and hold values of one class; of texels in `within` (null: all). Seams of the atlas are no
-// borders.
-PieceCounts count_pieces(const LayerView& view, const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-                         const TexelSelection* within, const ValueClasses& classes);
+// Areas of the surface that are connected and hold values of one class; of texels in `within`
+// (null: all). Seams of the atlas are no borders.
+PieceCounts count_pieces(const LayerView& view, const mesh::SurfaceMap& map,
+                         const mesh::TexelGraph& graph, const TexelSelection* within,
+                         const ValueClasses& classes);
 
 }  // namespace strata::query

@@ -7,14 +7,15 @@ namespace strata::query {
 PixelFinder::PixelFinder(int width, int height, const WorldFile& world)
     : width_(width),
       height_(height),
-      pixel_from_plane_(
-          glm::inverse(glm::dmat2(world.x_per_column, world.y_per_column, world.x_per_row, world.y_per_row))),
+      pixel_from_plane_(glm::inverse(
+          glm::dmat2(world.x_per_column, world.y_per_column, world.x_per_row, world.y_per_row))),
       first_centre_(world.x, world.y) {}
 
 std::optional<std::size_t> PixelFinder::pixel_at(const glm::dvec2& point) const {
   const glm::dvec2 pixel = place_of(point) + 0.5;
   if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < width_ && pixel.y < height_)) return std::nullopt;
-  return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(pixel.x);
+  return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(width_) +
+         static_cast<std::size_t>(pixel.x);
 }
 
 PlacedPicture::PlacedPicture(Picture picture, const WorldFile& world)

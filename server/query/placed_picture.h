@@ -14,7 +14,9 @@ class PixelFinder {
   PixelFinder(int width, int height, const WorldFile& world);
   std::optional<std::size_t> pixel_at(const glm::dvec2& point) const;  // row · width + column
   // In pixels, centres at whole numbers; also outside of the picture.
-  glm::dvec2 place_of(const glm::dvec2& point) const { return pixel_from_plane_ * (point - first_centre_); }
+  glm::dvec2 place_of(const glm::dvec2& point) const {
+    return pixel_from_plane_ * (point - first_centre_);
+  }
 
  private:
   int width_, height_;

@@ -24,19 +24,20 @@ constexpr double kSliverTexels = 1.0 / 64;
 constexpr std::size_t kBytesOfCorner = 400;   // that GEOS and the rings take, at most
 constexpr std::size_t kBytesOfTriangle = 60;  // of the rims and the lookup, while they are made
 
-// Texels of one class whose surface turns the same side to the plane have a label: what folds over itself in the plane would otherwise have rings
-// that take away what they go round.
+// Texels of one class whose surface turns the same side to the plane have a label: what folds over
+// itself in the plane would otherwise have rings that take away what they go round.
 class Labels {
  public:
-  Labels(const LayerView& view, const mesh::SurfaceMap& map, const ValueClasses& classes, const OutlinePlane& plane)
+  Labels(const LayerView& view, const mesh::SurfaceMap& map, const ValueClasses& classes,
+         const OutlinePlane& plane)
       : map_(map), plane_(plane), of_texel_(map.block_of_slot.size() * 64, 0) {
     const QuestionTurn turn;
     for (const auto& [address, tile] : sorted_tiles(view.snapshot.tiles)) {
       turn.check(kTexelsPerTile);
       for_each_value(*tile, address, view.layer.type, map, nullptr,
                      [&](std::uint32_t slot, int texel, std::uint32_t bits, double value) {
-                       const auto [known, is_new] =
-                           number_of_.try_emplace(classes.of(bits, value), static_cast<std::uint32_t>(classes_.size()));
+                       const auto [known, is_new] = number_of_.try_emplace(
+                           classes.of(bits, value), static_cast<std::uint32_t>(classes_.size()));
                        if (is_new) classes_.push_back(known->first);
                        const bool turned = is_turned(slot, texel);
                        of_texel_[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)] =
@@ -84,9 +85,10 @@ class Labels {
   std::vector<std::uint32_t> of_texel_;
 };
 
-// Lobes of a chart that meet in one vertex have an outer ring each. Outer rings run in the direction of the widest ring, holes against it.
-void add_chart_areas(const mesh::Geometry& geometry, const mesh::ChartRims& chart, double resolution,
-                     std::vector<FlatArea>& areas) {
+// Lobes of a chart that meet in one vertex have an outer ring each. Outer rings run in the
+// direction of the widest ring, holes against it.
+void add_chart_areas(const mesh::Geometry& geometry, const mesh::ChartRims& chart,
+                     double resolution, std::vector<FlatArea>& areas) {
   std::vector<FlatRing> rings;
   for (const auto& rim : chart.rings) {
     FlatRing& ring = rings.emplace_back();
@@ -95,7 +97,8 @@ void add_chart_areas(const mesh::Geometry& geometry, const mesh::ChartRims& char
   }
   const auto size = [](const FlatRing& ring) { return std::abs(ring_area(ring)); };
   const double widest = ring_area(*std::ranges::max_element(rings, {}, size));
-  const auto holes = std::ranges::partition(rings, [&](const FlatRing& ring) { return ring_area(ring) * widest > 0; });
+  const auto holes = std::ranges::partition(
+      rings, [&](const FlatRing& ring) { return ring_area(ring) * widest > 0; });
   for (FlatRing& outer : std::span(rings.begin(), holes.begin())) {
     const std::vector<std::vector<glm::dvec2>> flat{{outer.begin(), outer.end()}};
     const PolygonArea inside(flat);
@@ -140,8 +143,11 @@ class Laying {
 
 // What is left between lines that are the same but for rounding.
 void drop_slivers(std::vector<FlatPolygon>& polygons, double least_area) {
-  const auto is_sliver = [&](const FlatRing& ring) { return std::abs(ring_area(ring)) < least_area; };
-  std::erase_if(polygons, [&](const FlatPolygon& polygon) { return is_sliver(polygon.rings.front()); });
+  const auto is_sliver = [&](const FlatRing& ring) {
+    return std::abs(ring_area(ring)) < least_area;
+  };
+  std::erase_if(polygons,
+                [&](const FlatPolygon& polygon) { return is_sliver(polygon.rings.front()); });
   for (FlatPolygon& polygon : polygons) std::erase_if(polygon.rings, is_sliver);
 }
 
@@ -164,13 +170,16 @@ Result<PlaneOutlines> outlines_of(const Labels& labels, const std::vector<TexelR
       laying.lay(area.cut_with(chart), laid[Labels::class_number(region.label)]);
     });
   }
-  const double texel = std::sqrt(map.area_total / static_cast<double>(std::max<std::uint64_t>(map.surface_texels, 1)));
-  const glm::dvec3 origin(geometry.origin[plane.right], geometry.origin[plane.up], geometry.origin[plane.depth]);
+  const double texel = std::sqrt(
+      map.area_total / static_cast<double>(std::max<std::uint64_t>(map.surface_texels, 1)));
+  const glm::dvec3 origin(geometry.origin[plane.right], geometry.origin[plane.up],
+                          geometry.origin[plane.depth]);
   PlaneOutlines outlines;
   for (std::size_t i = 0; i < laid.size(); ++i) {
     turn.check();
     const FlatArea all = FlatArea::joined(std::move(laid[i]), texel * kGridOfTexel);
-    auto& polygons = outlines[labels.classes()[i]] = all.simplified(texel * kSimplifiedTexels).polygons();
+    auto& polygons = outlines[labels.classes()[i]] =
+        all.simplified(texel * kSimplifiedTexels).polygons();
     drop_slivers(polygons, texel * texel * kSliverTexels);
     for (FlatPolygon& polygon : polygons)
       for (FlatRing& ring : polygon.rings)
@@ -181,18 +190,20 @@ Result<PlaneOutlines> outlines_of(const Labels& labels, const std::vector<TexelR
 
 }  // namespace
 
-Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry& geometry, const mesh::SurfaceMap& map,
-                                     const ValueClasses& classes, const OutlinePlane& plane) {
+Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry& geometry,
+                                     const mesh::SurfaceMap& map, const ValueClasses& classes,
+                                     const OutlinePlane& plane) {
   const QuestionMemory memory(map.block_of_slot.size() * 64 * sizeof(std::uint32_t) +
                               geometry.triangle_count() * kBytesOfTriangle);
   const Labels labels(view, map, classes, plane);
   if (labels.classes().empty()) return PlaneOutlines{};
   std::vector<TexelRegion> regions;
   if (!find_regions(map, labels.of_texel(), kMostOutlineCorners, regions))
-    return fail(422, "Outlines too long",
-                "The borders of what is painted have more than " + std::to_string(kMostOutlineCorners) +
-                    " corners of texels. Ask for texels.tif instead, or for outlines of a layer with fewer areas.",
-                "layer");
+    return fail(
+        422, "Outlines too long",
+        "The borders of what is painted have more than " + std::to_string(kMostOutlineCorners) +
+            " corners of texels. Ask for texels.tif instead, or for outlines of a layer with fewer areas.",
+        "layer");
   std::size_t corners = 0;
   for (const TexelRegion& region : regions)
     for (const auto& ring : region.rings) corners += ring.size();
@@ -201,10 +212,11 @@ Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry
     return outlines_of(labels, regions, geometry, map, plane);
   } catch (const std::runtime_error& error) {
     log::error(std::string("outlines of a layer: ") + error.what());
-    return fail(500, "Outlines not made",
-                "The areas could not be laid on the plane. Ask for outlines along another axis, or for texels.tif; the "
-                "server's log says more.",
-                "along");
+    return fail(
+        500, "Outlines not made",
+        "The areas could not be laid on the plane. Ask for outlines along another axis, or for texels.tif; the "
+        "server's log says more.",
+        "along");
   }
 }
 

@@ -8,18 +8,21 @@ namespace {
 
 // Points on a line in steps of at most `step`, its corners among them.
 template <class Point>
-Result<std::vector<Point>> steps_of(std::span<const Point> corners, double step, const char* field) {
-  const auto too_many = fail(
-      422, "Too many samples",
-      "A profile has at most " + std::to_string(kMaxProfileSamples) + " samples; take longer steps or a shorter line.",
-      field);
+Result<std::vector<Point>> steps_of(std::span<const Point> corners, double step,
+                                    const char* field) {
+  const auto too_many = fail(422, "Too many samples",
+                             "A profile has at most " + std::to_string(kMaxProfileSamples) +
+                                 " samples; take longer steps or a shorter line.",
+                             field);
   std::vector<Point> points{corners.front()};
   for (std::size_t i = 1; i < corners.size(); ++i) {
     const double steps = std::max(1.0, std::ceil(glm::length(corners[i] - corners[i - 1]) / step));
-    if (!(steps + static_cast<double>(points.size()) <= static_cast<double>(kMaxProfileSamples))) return too_many;
+    if (!(steps + static_cast<double>(points.size()) <= static_cast<double>(kMaxProfileSamples)))
+      return too_many;
     const int count = static_cast<int>(steps);
     for (int k = 1; k <= count; ++k)
-      points.push_back(corners[i - 1] + (corners[i] - corners[i - 1]) * (static_cast<double>(k) / count));
+      points.push_back(corners[i - 1] +
+                       (corners[i] - corners[i - 1]) * (static_cast<double>(k) / count));
   }
   return points;
 }
@@ -42,18 +45,23 @@ Profile sample(const std::vector<Point>& points, Find find) {
 
 }  // namespace
 
-Result<Profile> profile_near(const mesh::SearchTree& tree, const glm::dvec3& origin, std::span<const glm::dvec3> places,
-                             double step, const std::vector<LayerView>& layers) {
+Result<Profile> profile_near(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                             std::span<const glm::dvec3> places, double step,
+                             const std::vector<LayerView>& layers) {
   const auto points = steps_of(places, step, "step_mm");
   if (!points) return tl::unexpected(points.error());
-  return sample(*points, [&](const glm::dvec3& at) { return nearest_point(tree, origin, at, layers); });
+  return sample(*points,
+                [&](const glm::dvec3& at) { return nearest_point(tree, origin, at, layers); });
 }
 
-Result<Profile> profile_seen(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera,
-                             std::span<const glm::dvec2> path, const std::vector<LayerView>& layers) {
+Result<Profile> profile_seen(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                             const Camera& camera, std::span<const glm::dvec2> path,
+                             const std::vector<LayerView>& layers) {
   const auto points = steps_of(path, 1.0, "path");
   if (!points) return tl::unexpected(points.error());
-  return sample(*points, [&](const glm::dvec2& at) { return pick(tree, origin, camera, at.x, at.y, layers); });
+  return sample(*points, [&](const glm::dvec2& at) {
+    return pick(tree, origin, camera, at.x, at.y, layers);
+  });
 }
 
 }  // namespace strata::query

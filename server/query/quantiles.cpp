@@ -27,7 +27,8 @@ class Reached {
   explicit Reached(double area) : area_(area) {}
   void add(double value, double area) {
     sum_ += area;
-    while (found_ < kQuantiles.size() && sum_.value() >= kQuantiles[found_] * area_) values_[found_++] = value;
+    while (found_ < kQuantiles.size() && sum_.value() >= kQuantiles[found_] * area_)
+      values_[found_++] = value;
     last_ = value;
   }
   Quantiles finish() {
@@ -45,8 +46,8 @@ class Reached {
 
 }  // namespace
 
-std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap& map, const TexelSelection* within,
-                                   const TileSums& sums) {
+std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap& map,
+                                   const TexelSelection* within, const TileSums& sums) {
   const double whole = sums.area.value();
   if (!(whole > 0)) return std::nullopt;
   const ValueType type = view.layer.type;
@@ -58,15 +59,18 @@ std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap
     return reached.finish();
   }
 
-  // Two digits of 16 bits: the area of each upper one, then of the lower ones where a share is reached.
+  // Two digits of 16 bits: the area of each upper one, then of the lower ones where a share is
+  // reached.
   constexpr std::size_t kDigits = std::size_t{1} << 16;
   const QuestionTurn turn;
   const auto for_each = [&](auto visit) {
     for (const auto& [address, tile] : view.snapshot.tiles) {
       turn.check(kTexelsPerTile);
       for_each_value(
-          *tile, address, type, map, within, [&](std::uint32_t slot, int texel, std::uint32_t, double value) {
-            visit(code_of(type, value), double{map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)]});
+          *tile, address, type, map, within,
+          [&](std::uint32_t slot, int texel, std::uint32_t, double value) {
+            visit(code_of(type, value),
+                  double{map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)]});
           });
     }
   };
@@ -77,7 +81,8 @@ std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap
   for (std::size_t digit = 0; digit < kDigits; ++digit) {
     const double until = below + upper[digit];
     for (const double share : kQuantiles)
-      if (upper[digit] > 0 && until >= share * whole * (1 - 1e-9) && below <= share * whole * (1 + 1e-9))
+      if (upper[digit] > 0 && until >= share * whole * (1 - 1e-9) &&
+          below <= share * whole * (1 + 1e-9))
         lower[digit].resize(kDigits, 0.0);
     below = until;
   }
@@ -87,7 +92,8 @@ std::optional<Quantiles> quantiles(const LayerView& view, const mesh::SurfaceMap
   for (std::size_t digit = 0; digit < kDigits; ++digit) {
     if (lower[digit].empty()) {
       if (upper[digit] > 0)
-        reached.add(value_of(type, static_cast<std::uint32_t>(digit << 16 | 0xffffu)), upper[digit]);
+        reached.add(value_of(type, static_cast<std::uint32_t>(digit << 16 | 0xffffu)),
+                    upper[digit]);
       continue;
     }
     for (std::size_t low = 0; low < kDigits; ++low)

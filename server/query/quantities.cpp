@@ -12,15 +12,17 @@ namespace strata::query {
 
 ValueClasses classes_of(const Layer& layer) {
   ValueClasses classes;
-  classes.each = layer.kind == LayerKind::database || layer.palette.mode == PaletteMode::categorical;
+  classes.each =
+      layer.kind == LayerKind::database || layer.palette.mode == PaletteMode::categorical;
   if (classes.each) return classes;
   for (const Palette::Point& point : layer.palette.points) classes.limits.push_back(point.at);
   classes.last_limit_below = layer.palette.mode == PaletteMode::linear && classes.limits.size() > 1;
   return classes;
 }
 
-Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-                              const ValueClasses& classes, double metres_per_unit) {
+Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map,
+                              const mesh::TexelGraph& graph, const ValueClasses& classes,
+                              double metres_per_unit) {
   if (map.resolution != view.layer.resolution)
     throw std::invalid_argument("The surface map is of another resolution than the layer.");
   const ValueType type = view.layer.type;
@@ -43,7 +45,8 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
                      last_class = number;
                      last->value = value;
                      ++last->texels;
-                     last->area += map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
+                     last->area +=
+                         map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
                    });
     if (sums.size() > kMostClasses)
       return fail(422, "Too many classes",
@@ -55,8 +58,10 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
   Quantities out;
   CompensatedSum area;
   out.surface_m2 = map.area_total * m2_per_unit2;
-  std::vector<std::pair<double, std::uint32_t>> order;  // ranges ascend with their number, values with themselves
-  for (const auto& [number, sum] : sums) order.emplace_back(classes.each ? sum.value : double(number), number);
+  // ranges ascend with their number, values with themselves
+  std::vector<std::pair<double, std::uint32_t>> order;
+  for (const auto& [number, sum] : sums)
+    order.emplace_back(classes.each ? sum.value : double(number), number);
   std::ranges::sort(order);
   for (const auto& [place, number] : order) {
     const Sum& sum = sums.at(number);

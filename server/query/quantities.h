@@ -26,9 +26,11 @@ struct Quantities {
   double surface_m2 = 0;          // of the whole model
 };
 
-// How much there is of each class, over valid surface texels (gutter excluded). The map and its graph must be of the layer's
-// resolution. The same on every call. Refused (422): more than kMostClasses classes.
-Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-                              const ValueClasses& classes, double metres_per_unit);
+// How much there is of each class, over valid surface texels (gutter excluded). The map and its
+// graph must be of the layer's resolution. The same on every call. Refused (422): more than
+// kMostClasses classes.
+Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map,
+                              const mesh::TexelGraph& graph, const ValueClasses& classes,
+                              double metres_per_unit);
 
 }  // namespace strata::query

@@ -27,7 +27,8 @@ struct Header {
   std::size_t data_at = 0;
 };
 
-// The text of a key's value in a Python dictionary without blanks: up to the comma or brace that ends it.
+// The text of a key's value in a Python dictionary without blanks: up to the comma or brace that
+// ends it.
 std::optional<std::string> value_of(const std::string& dictionary, const std::string& key) {
   const auto at = dictionary.find("'" + key + "':");
   if (at == std::string::npos) return std::nullopt;
@@ -43,8 +44,11 @@ std::optional<std::string> value_of(const std::string& dictionary, const std::st
 }
 
 Result<Header> read_header(std::span<const std::uint8_t> bytes) {
-  auto damaged = [] { return refuse_raster("This is not a NumPy file, or its header is damaged."); };
-  if (bytes.size() < 12 || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) return damaged();
+  auto damaged = [] {
+    return refuse_raster("This is not a NumPy file, or its header is damaged.");
+  };
+  if (bytes.size() < 12 || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0)
+    return damaged();
   const int version = bytes[6];
   if (version < 1 || version > 3)
     return refuse_raster("NumPy format version " + std::to_string(version) + " is not known.");
@@ -59,7 +63,8 @@ Result<Header> read_header(std::span<const std::uint8_t> bytes) {
     if (c == ' ' || c == '\n' || c == '\t') continue;
     text += c == '"' ? '\'' : c;
   }
-  const auto descr = value_of(text, "descr"), order = value_of(text, "fortran_order"), shape = value_of(text, "shape");
+  const auto descr = value_of(text, "descr"), order = value_of(text, "fortran_order"),
+             shape = value_of(text, "shape");
   if (!descr || !order || !shape || (*order != "True" && *order != "False")) return damaged();
   return Header{*descr, *order == "True", *shape, start + length};
 }
@@ -67,8 +72,8 @@ Result<Header> read_header(std::span<const std::uint8_t> bytes) {
 Result<void> check_shape(const Layer& layer, const Header& header) {
   const std::string side = std::to_string(layer.resolution);
   if (header.shape == "(" + side + "," + side + ")") return {};
-  return refuse_raster("The array's shape is " + header.shape.substr(0, 100) + ", but the layer needs " +
-                       raster_needs(layer) + ".");
+  return refuse_raster("The array's shape is " + header.shape.substr(0, 100) +
+                       ", but the layer needs " + raster_needs(layer) + ".");
 }
 
 // "'>f4'"
@@ -91,7 +96,8 @@ std::optional<SampleForm> form_of(std::string_view dtype) {
     return std::nullopt;
   const int least = kind == 'f' ? 2 : 1, most = kind == 'b' ? 1 : 8;
   const bool is_length = std::has_single_bit(static_cast<unsigned>(std::max(form.bytes, 0)));
-  return is_length && form.bytes >= least && form.bytes <= most ? std::optional(form) : std::nullopt;
+  return is_length && form.bytes >= least && form.bytes <= most ? std::optional(form)
+                                                                : std::nullopt;
 }
 
 // What an element holds: a value, and after it in a structured array whether it is valid.
@@ -99,7 +105,9 @@ struct Element {
   SampleForm value;
   std::optional<SampleForm> valid;
 
-  std::size_t bytes() const { return static_cast<std::size_t>(value.bytes + (valid ? valid->bytes : 0)); }
+  std::size_t bytes() const {
+    return static_cast<std::size_t>(value.bytes + (valid ? valid->bytes : 0));
+  }
 };
 
 Result<Element> element_of(const std::string& descr) {
@@ -107,8 +115,9 @@ Result<Element> element_of(const std::string& descr) {
   if (const auto value = form_of(descr)) return Element{*value, {}};
   const std::string_view text = descr;
   constexpr std::size_t kType = 5;  // "'<f4'"
-  if (text.size() == kFirst.size() + kSecond.size() + kLast.size() + 2 * kType && text.starts_with(kFirst) &&
-      text.substr(kFirst.size() + kType).starts_with(kSecond) && text.ends_with(kLast)) {
+  if (text.size() == kFirst.size() + kSecond.size() + kLast.size() + 2 * kType &&
+      text.starts_with(kFirst) && text.substr(kFirst.size() + kType).starts_with(kSecond) &&
+      text.ends_with(kLast)) {
     const auto value = form_of(text.substr(kFirst.size(), kType)),
                valid = form_of(text.substr(text.size() - kLast.size() - kType, kType));
     if (value && valid && valid->bytes == 1) return Element{*value, valid};
@@ -124,7 +133,8 @@ Result<Element> element_of(const std::string& descr) {
 Result<std::vector<std::uint8_t>> encode_npy(const Layer& layer, const TileMap& tiles) {
   const std::string side = std::to_string(layer.resolution);
   std::string header = "{'descr': [('value', '" + dtype_of(layer.type) +
-                       "'), ('valid', '|b1')], 'fortran_order': False, 'shape': (" + side + ", " + side + "), }";
+                       "'), ('valid', '|b1')], 'fortran_order': False, 'shape': (" + side + ", " +
+                       side + "), }";
   constexpr std::size_t kBefore = 10;
   header.append(63 - (kBefore + header.size()) % 64, ' ');  // data begins at a multiple of 64
   header += '\n';
@@ -133,8 +143,8 @@ Result<std::vector<std::uint8_t>> encode_npy(const Layer& layer, const TileMap& 
   const std::size_t row_bytes = std::size_t(layer.resolution) * (width + 1);
   std::vector<std::uint8_t> out(kMagic.begin(), kMagic.end());
   out.reserve(kBefore + header.size() + row_bytes * layer.resolution);
-  out.insert(out.end(),
-             {1, 0, static_cast<std::uint8_t>(header.size()), static_cast<std::uint8_t>(header.size() >> 8)});
+  out.insert(out.end(), {1, 0, static_cast<std::uint8_t>(header.size()),
+                         static_cast<std::uint8_t>(header.size() >> 8)});
   out.insert(out.end(), header.begin(), header.end());
 
   const TileRows rows(layer, tiles);
@@ -163,8 +173,8 @@ Result<TileMap> decode_npy(const Layer& layer, std::span<const std::uint8_t> byt
   const std::span<const std::uint8_t> data = bytes.subspan(header->data_at);
   if (data.size() != side * side * stride)
     return refuse_raster("The file holds " + std::to_string(data.size()) +
-                         " bytes of texels, but its header promises " + std::to_string(side * side * stride) +
-                         ". It was cut or is damaged.");
+                         " bytes of texels, but its header promises " +
+                         std::to_string(side * side * stride) + ". It was cut or is damaged.");
   TileMapBuilder builder(layer);
   const SampleReader reader(layer, element->value);
   // In the order of the file: memory is read from its begin to its end.

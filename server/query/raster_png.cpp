@@ -11,7 +11,8 @@ namespace {
 
 struct Reader {
   PngMessage message;
-  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &message, keep_png_message, ignore_png_warning);
+  png_structp png =
+      png_create_read_struct(PNG_LIBPNG_VER_STRING, &message, keep_png_message, ignore_png_warning);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   std::span<const std::uint8_t> rest;
   Reader() = default;
@@ -51,10 +52,13 @@ Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& 
   const int width = bytes_per_texel(layer.type);
   const TileRows rows(layer, tiles);
   std::vector<std::uint32_t> bits(layer.resolution);
-  std::vector<std::uint8_t> valid(layer.resolution), line(std::size_t(layer.resolution) * 2 * width), out;
+  std::vector<std::uint8_t> valid(layer.resolution),
+      line(std::size_t(layer.resolution) * 2 * width), out;
 
   PngWriter writer;
-  auto failed = [&] { return fail(500, "PNG not written", std::string("libpng: ") + writer.message.text); };
+  auto failed = [&] {
+    return fail(500, "PNG not written", std::string("libpng: ") + writer.message.text);
+  };
   if (writer.info == nullptr) return failed();
   const png_structp png = writer.png;
   const auto side = static_cast<png_uint_32>(layer.resolution);
@@ -62,8 +66,8 @@ Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& 
         png_set_write_fn(png, &out, append_bytes, nullptr);
         png_set_compression_level(png, 3);
         png_set_filter(png, 0, PNG_FILTER_NONE);  // painted classes are runs of equal bytes
-        png_set_IHDR(png, writer.info, side, side, 8 * width, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_INTERLACE_NONE,
-                     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        png_set_IHDR(png, writer.info, side, side, 8 * width, PNG_COLOR_TYPE_GRAY_ALPHA,
+                     PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         png_write_info(png, writer.info);
       }))
     return failed();
@@ -89,7 +93,9 @@ Result<TileMap> decode_png(const Layer& layer, std::span<const std::uint8_t> byt
                 "texels");
   const int width = bytes_per_texel(layer.type);
   Reader reader;
-  auto damaged = [&] { return refuse_raster(std::string("The PNG cannot be read: ") + reader.message.text + "."); };
+  auto damaged = [&] {
+    return refuse_raster(std::string("The PNG cannot be read: ") + reader.message.text + ".");
+  };
   if (reader.info == nullptr) return damaged();
   reader.rest = bytes;
   const png_structp png = reader.png;
@@ -99,15 +105,16 @@ Result<TileMap> decode_png(const Layer& layer, std::span<const std::uint8_t> byt
         png_read_info(png, reader.info);
       }))
     return damaged();
-  if (auto size =
-          check_raster_size(layer, png_get_image_width(png, reader.info), png_get_image_height(png, reader.info));
+  if (auto size = check_raster_size(layer, png_get_image_width(png, reader.info),
+                                    png_get_image_height(png, reader.info));
       !size)
     return tl::unexpected(size.error());
-  const int color_type = png_get_color_type(png, reader.info), bit_depth = png_get_bit_depth(png, reader.info);
+  const int color_type = png_get_color_type(png, reader.info),
+            bit_depth = png_get_bit_depth(png, reader.info);
   if (color_type != PNG_COLOR_TYPE_GRAY_ALPHA || bit_depth != 8 * width)
-    return refuse_raster("The PNG is " + describe(color_type, bit_depth) + ", but the layer needs " +
-                         describe(PNG_COLOR_TYPE_GRAY_ALPHA, 8 * width) + " (" + raster_needs(layer) +
-                         "; opaque where a texel is valid).");
+    return refuse_raster("The PNG is " + describe(color_type, bit_depth) +
+                         ", but the layer needs " + describe(PNG_COLOR_TYPE_GRAY_ALPHA, 8 * width) +
+                         " (" + raster_needs(layer) + "; opaque where a texel is valid).");
   if (png_get_interlace_type(png, reader.info) != PNG_INTERLACE_NONE)
     return refuse_raster("The PNG is interlaced; save it without interlacing.");
 

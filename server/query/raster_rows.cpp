@@ -22,7 +22,8 @@ TileRows::TileRows(const Layer& layer, const TileMap& tiles)
       tiles_[std::size_t(address.y) * tiles_per_side_ + address.x] = tile.get();
 }
 
-void TileRows::read(int file_row, std::span<std::uint32_t> bits, std::span<std::uint8_t> valid) const {
+void TileRows::read(int file_row, std::span<std::uint32_t> bits,
+                    std::span<std::uint8_t> valid) const {
   check_question();
   std::fill(bits.begin(), bits.end(), 0u);
   std::fill(valid.begin(), valid.end(), std::uint8_t{0});
@@ -52,7 +53,8 @@ Result<void> TileMapBuilder::put(int x, int file_row, const std::uint8_t* value)
   std::uint32_t bits = 0;
   std::memcpy(&bits, value, bytes_);
   if (is_float(type_) && !std::isfinite(decode_value(type_, bits)))
-    return refuse_raster("The value in column " + std::to_string(x) + " of row " + std::to_string(file_row) +
+    return refuse_raster("The value in column " + std::to_string(x) + " of row " +
+                         std::to_string(file_row) +
                          " is not a finite number. Mark such texels as not valid.");
   const int y = resolution_ - 1 - file_row;
   auto& tile = tiles_[std::size_t(y / kTileSize) * tiles_per_side_ + x / kTileSize];

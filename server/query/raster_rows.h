@@ -28,7 +28,8 @@ class TileRows {
 class TileMapBuilder {
  public:
   explicit TileMapBuilder(const Layer& layer);
-  // A valid texel from its little-endian storage; a float that is not finite is a Problem that names its place.
+  // A valid texel from its little-endian storage; a float that is not finite is a Problem that
+  // names its place.
   Result<void> put(int x, int file_row, const std::uint8_t* value);
   TileMap finish();
 

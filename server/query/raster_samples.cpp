@@ -20,7 +20,9 @@ Kind kind_of(ValueType type) {
   return lowest_value(type) < 0 ? Kind::signed_whole : Kind::unsigned_whole;
 }
 
-double half_of(std::uint64_t bits) { return decode_value(ValueType::f16, static_cast<std::uint32_t>(bits)); }
+double half_of(std::uint64_t bits) {
+  return decode_value(ValueType::f16, static_cast<std::uint32_t>(bits));
+}
 
 // As the file would keep it.
 long double rounded(double nodata, const SampleForm& form) {
@@ -90,16 +92,19 @@ std::optional<std::uint32_t> SampleReader::bits_of(Number number) const {
   return *bits;
 }
 
-Result<void> SampleReader::put(TileMapBuilder& builder, int x, int file_row, const std::uint8_t* sample) const {
+Result<void> SampleReader::put(TileMapBuilder& builder, int x, int file_row,
+                               const std::uint8_t* sample) const {
   if (is_of_layer_) return builder.put(x, file_row, sample);
   const Number value = number(sample);
   const auto bits = bits_of(value);
   if (!bits) {
     const bool is_inexact = is_float(type_) && form_.kind != Kind::real;
-    return refuse_raster("The value " + number_text(value) + " in column " + std::to_string(x) + " of row " +
-                         std::to_string(file_row) + " does not fit into a layer of " + std::string(name(type_)) +
+    return refuse_raster("The value " + number_text(value) + " in column " + std::to_string(x) +
+                         " of row " + std::to_string(file_row) + " does not fit into a layer of " +
+                         std::string(name(type_)) +
                          (is_inexact ? " without rounding."
-                                     : std::string(", which holds ") + (is_float(type_) ? "numbers" : "whole numbers") +
+                                     : std::string(", which holds ") +
+                                           (is_float(type_) ? "numbers" : "whole numbers") +
                                            " from " + number_text(lowest_value(type_)) + " to " +
                                            number_text(highest_value(type_)) + "."));
   }

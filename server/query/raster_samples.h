@@ -18,8 +18,8 @@ struct SampleForm {
 // "16-bit signed whole numbers"
 std::string describe(const SampleForm& form);
 
-// Brings numbers of a file into a layer of any type. Whole numbers must be of the layer's type; real ones are rounded to the nearest
-// of a layer of floats, which must be finite.
+// Brings numbers of a file into a layer of any type. Whole numbers must be of the layer's type;
+// real ones are rounded to the nearest of a layer of floats, which must be finite.
 class SampleReader {
  public:
   // `nodata`: a number that stands for "not painted", as the file names it.

@@ -42,7 +42,8 @@ void describe_values(TIFF* tiff, const Layer& layer) {
   TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, sample_format(layer.type));
   TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
   TIFFSetField(tiff, TIFFTAG_SOFTWARE, "Strata");
-  TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, ("Layer " + layer.name + ": value, then valid (1 or 0)").c_str());
+  TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION,
+               ("Layer " + layer.name + ": value, then valid (1 or 0)").c_str());
   if (is_float(layer.type)) set_nodata(tiff, "nan");
 }
 
@@ -74,9 +75,12 @@ class TiffTiles {
   bool write_values(TIFF* tiff) {
     return write(tiff, kTiffTile * 2 * static_cast<std::size_t>(width_),
                  [&](std::uint8_t* row, int x, std::size_t from) {
-                   std::uint8_t* to = row + static_cast<std::size_t>(x) * 2 * static_cast<std::size_t>(width_);
-                   std::memcpy(to, valid_[from] ? &bits_[from] : &nothing_, static_cast<std::size_t>(width_));
-                   if (valid_[from]) std::memcpy(to + width_, &one_, static_cast<std::size_t>(width_));
+                   std::uint8_t* to =
+                       row + static_cast<std::size_t>(x) * 2 * static_cast<std::size_t>(width_);
+                   std::memcpy(to, valid_[from] ? &bits_[from] : &nothing_,
+                               static_cast<std::size_t>(width_));
+                   if (valid_[from])
+                     std::memcpy(to + width_, &one_, static_cast<std::size_t>(width_));
                  });
   }
   // A bit for each texel.
@@ -102,9 +106,10 @@ class TiffTiles {
         for (int y = 0; y < height; ++y)
           for (int x = 0; x < std::min(kTiffTile, side_ - left); ++x)
             put(tile.data() + static_cast<std::size_t>(y) * row_bytes, x,
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(left + x));
-        if (TIFFWriteTile(tiff, tile.data(), static_cast<std::uint32_t>(left), static_cast<std::uint32_t>(top), 0, 0) <
-            0)
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) +
+                    static_cast<std::size_t>(left + x));
+        if (TIFFWriteTile(tiff, tile.data(), static_cast<std::uint32_t>(left),
+                          static_cast<std::uint32_t>(top), 0, 0) < 0)
           return false;
       }
     }

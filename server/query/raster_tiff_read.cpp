@@ -13,8 +13,8 @@ namespace {
 constexpr int kMostDirectories = 64;  // in which a mask is looked for
 
 tl::unexpected<Problem> damaged(const TiffMemory& file) {
-  return refuse_raster(
-      "The TIFF cannot be read: " + (file.complaint.empty() ? std::string("damaged") : file.complaint) + ".");
+  return refuse_raster("The TIFF cannot be read: " +
+                       (file.complaint.empty() ? std::string("damaged") : file.complaint) + ".");
 }
 
 std::optional<SampleForm> sample_form(int bits, int format) {
@@ -53,37 +53,42 @@ Result<TiffForm> form_of(const Layer& layer, TIFF* tiff) {
             format = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT);
   const auto sample = sample_form(bits, format);
   if (!sample)
-    return refuse_raster("The TIFF's samples have " + std::to_string(bits) + " bits and format " +
-                         std::to_string(format) +
-                         "; save it with whole numbers of 8 to 64 bits, or floating-point ones of 16 to 64.");
+    return refuse_raster(
+        "The TIFF's samples have " + std::to_string(bits) + " bits and format " +
+        std::to_string(format) +
+        "; save it with whole numbers of 8 to 64 bits, or floating-point ones of 16 to 64.");
   if (samples != 1 && samples != 2)
     return refuse_raster(
         "The TIFF has " + std::to_string(samples) + " samples of " + describe(*sample) +
         " a pixel; a layer takes one (the value), or two (the value, then 0 where nothing is painted).");
   if (auto good = check_compression(tiff); !good) return tl::unexpected(good.error());
-  return TiffForm{*sample, samples,
-                  samples > 1 && tiff_tag<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE};
+  return TiffForm{
+      *sample, samples,
+      samples > 1 && tiff_tag<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE};
 }
 
 // visit(x, row, count, samples) for all pixels of one plane of the directory.
 template <class Visit>
-Result<void> visit_tiles(TIFF* tiff, const TiffMemory& file, std::uint32_t side, int pixel_bits, std::uint16_t plane,
-                         Visit visit) {
+Result<void> visit_tiles(TIFF* tiff, const TiffMemory& file, std::uint32_t side, int pixel_bits,
+                         std::uint16_t plane, Visit visit) {
   const auto tile_width = tiff_tag<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH),
              tile_height = tiff_tag<std::uint32_t>(tiff, TIFFTAG_TILELENGTH);
-  const std::uint64_t row_bytes = (std::uint64_t{tile_width} * static_cast<unsigned>(pixel_bits) + 7) / 8;
+  const std::uint64_t row_bytes =
+      (std::uint64_t{tile_width} * static_cast<unsigned>(pixel_bits) + 7) / 8;
   if (tile_width == 0 || tile_height == 0 || row_bytes > kMaxTiffTileBytes / tile_height)
-    return refuse_raster("The TIFF's tiles are " + std::to_string(tile_width) + " × " + std::to_string(tile_height) +
-                         "; save it with tiles of 256 × 256.");
+    return refuse_raster("The TIFF's tiles are " + std::to_string(tile_width) + " × " +
+                         std::to_string(tile_height) + "; save it with tiles of 256 × 256.");
   std::vector<std::uint8_t> tile(row_bytes * tile_height);
   if (TIFFTileSize64(tiff) != tile.size()) return damaged(file);
   for (std::uint32_t top = 0; top < side; top += tile_height)
     for (std::uint32_t left = 0; left < side; left += tile_width) {
-      if (TIFFReadTile(tiff, tile.data(), left, top, 0, plane) != static_cast<tmsize_t>(tile.size()))
+      if (TIFFReadTile(tiff, tile.data(), left, top, 0, plane) !=
+          static_cast<tmsize_t>(tile.size()))
         return damaged(file);
       const auto columns = static_cast<int>(std::min(tile_width, side - left));
       for (std::uint32_t y = 0; y < std::min(tile_height, side - top); ++y)
-        if (auto good = visit(static_cast<int>(left), static_cast<int>(top + y), columns, tile.data() + y * row_bytes);
+        if (auto good = visit(static_cast<int>(left), static_cast<int>(top + y), columns,
+                              tile.data() + y * row_bytes);
             !good)
           return good;
     }
@@ -91,14 +96,15 @@ Result<void> visit_tiles(TIFF* tiff, const TiffMemory& file, std::uint32_t side,
 }
 
 template <class Visit>
-Result<void> visit_plane(TIFF* tiff, const TiffMemory& file, std::uint32_t side, int pixel_bits, std::uint16_t plane,
-                         Visit visit) {
+Result<void> visit_plane(TIFF* tiff, const TiffMemory& file, std::uint32_t side, int pixel_bits,
+                         std::uint16_t plane, Visit visit) {
   if (TIFFIsTiled(tiff)) return visit_tiles(tiff, file, side, pixel_bits, plane, visit);
   std::vector<std::uint8_t> line((std::size_t{side} * static_cast<unsigned>(pixel_bits) + 7) / 8);
   if (TIFFScanlineSize64(tiff) != line.size()) return damaged(file);
   for (std::uint32_t row = 0; row < side; ++row) {
     if (TIFFReadScanline(tiff, line.data(), row, plane) != 1) return damaged(file);
-    if (auto good = visit(0, static_cast<int>(row), static_cast<int>(side), line.data()); !good) return good;
+    if (auto good = visit(0, static_cast<int>(row), static_cast<int>(side), line.data()); !good)
+      return good;
   }
   return {};
 }
@@ -112,15 +118,17 @@ class Painted {
     bits_[static_cast<std::size_t>(row) * side_ + static_cast<std::size_t>(x)] = painted;
   }
   bool is_known() const { return !bits_.empty(); }
-  bool at(int x, int row) const { return bits_[static_cast<std::size_t>(row) * side_ + static_cast<std::size_t>(x)]; }
+  bool at(int x, int row) const {
+    return bits_[static_cast<std::size_t>(row) * side_ + static_cast<std::size_t>(x)];
+  }
 
  private:
   std::size_t side_;
   std::vector<bool> bits_;
 };
 
-Result<void> read_valid_plane(TIFF* tiff, const TiffMemory& file, const Layer& layer, const TiffForm& form,
-                              Painted& painted) {
+Result<void> read_valid_plane(TIFF* tiff, const TiffMemory& file, const Layer& layer,
+                              const TiffForm& form, Painted& painted) {
   const SampleReader reader(layer, form.sample);
   return visit_plane(tiff, file, static_cast<std::uint32_t>(layer.resolution), form.pixel_bits(), 1,
                      [&](int x, int row, int count, const std::uint8_t* samples) -> Result<void> {
@@ -140,7 +148,8 @@ Result<bool> find_mask(TIFF* tiff, const TiffMemory& file) {
   return false;
 }
 
-// The internal mask of GDAL, of 1 or 8 bits. The first directory is the current one again afterwards.
+// The internal mask of GDAL, of 1 or 8 bits. The first directory is the current one again
+// afterwards.
 Result<void> read_mask(TIFF* tiff, TiffMemory& file, const Layer& layer, Painted& painted) {
   const auto has_mask = find_mask(tiff, file);
   if (!has_mask) return tl::unexpected(has_mask.error());
@@ -153,13 +162,14 @@ Result<void> read_mask(TIFF* tiff, TiffMemory& file, const Layer& layer, Painted
     if (tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL) != 1 || (bits != 1 && bits != 8))
       return refuse_raster("The TIFF's mask is not one of 1 or 8 bits a pixel.");
     if (auto good = check_compression(tiff); !good) return good;
-    auto read =
-        visit_plane(tiff, file, static_cast<std::uint32_t>(layer.resolution), bits, 0,
-                    [&](int x, int row, int count, const std::uint8_t* samples) -> Result<void> {
-                      for (int i = 0; i < count; ++i)
-                        painted.set(x + i, row, bits == 8 ? samples[i] != 0 : (samples[i / 8] >> (7 - i % 8) & 1) != 0);
-                      return {};
-                    });
+    auto read = visit_plane(
+        tiff, file, static_cast<std::uint32_t>(layer.resolution), bits, 0,
+        [&](int x, int row, int count, const std::uint8_t* samples) -> Result<void> {
+          for (int i = 0; i < count; ++i)
+            painted.set(x + i, row,
+                        bits == 8 ? samples[i] != 0 : (samples[i / 8] >> (7 - i % 8) & 1) != 0);
+          return {};
+        });
     if (!read) return read;
   }
   if (!TIFFSetDirectory(tiff, 0)) return damaged(file);
@@ -181,7 +191,8 @@ Result<TileMap> decode_tiff(const Layer& layer, std::span<const std::uint8_t> by
     if (auto read = read_valid_plane(tiff.get(), file, layer, *form, painted); !read)
       return tl::unexpected(read.error());
   } else if (!has_valid) {
-    if (auto read = read_mask(tiff.get(), file, layer, painted); !read) return tl::unexpected(read.error());
+    if (auto read = read_mask(tiff.get(), file, layer, painted); !read)
+      return tl::unexpected(read.error());
   }
   TileMapBuilder builder(layer);
   const SampleReader reader(layer, form->sample, nodata);
@@ -196,8 +207,8 @@ Result<TileMap> decode_tiff(const Layer& layer, std::span<const std::uint8_t> by
     }
     return {};
   };
-  const auto read =
-      visit_plane(tiff.get(), file, static_cast<std::uint32_t>(layer.resolution), form->pixel_bits(), 0, put);
+  const auto read = visit_plane(tiff.get(), file, static_cast<std::uint32_t>(layer.resolution),
+                                form->pixel_bits(), 0, put);
   if (!read) return tl::unexpected(read.error());
   return builder.finish();
 }

@@ -16,7 +16,8 @@ std::string_view trimmed(std::string_view text) {
   const auto is_blank = [](char c) { return c == ' ' || c == '\r'; };
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
+    text = text.substr(1, text.size() - 2);
   return text;
 }
 
@@ -52,7 +53,8 @@ std::optional<double> number_of(std::string_view text) {
   double value = 0;
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
   return value;
 }
 
@@ -76,8 +78,8 @@ Result<std::vector<Reading>> parse_readings(std::string_view csv) {
       const auto names = fields_of(line, separator);
       columns = names.size();
       for (std::size_t i = 0; i < kColumns.size(); ++i) {
-        const auto found =
-            std::find_if(names.begin(), names.end(), [&](auto name) { return lower(name) == kColumns[i]; });
+        const auto found = std::find_if(names.begin(), names.end(),
+                                        [&](auto name) { return lower(name) == kColumns[i]; });
         if (found == names.end())
           return refuse(line_number, "there is no column '" + std::string(kColumns[i]) +
                                          "'; the first line names the columns x, y, z and value.");
@@ -87,21 +89,25 @@ Result<std::vector<Reading>> parse_readings(std::string_view csv) {
     }
     const auto fields = fields_of(line, separator);
     if (fields.size() != columns)
-      return refuse(line_number, "it has " + std::to_string(fields.size()) + " fields where the first line has " +
-                                     std::to_string(columns) + ".");
+      return refuse(line_number, "it has " + std::to_string(fields.size()) +
+                                     " fields where the first line has " + std::to_string(columns) +
+                                     ".");
     std::array<double, kColumns.size()> numbers{};
     for (std::size_t i = 0; i < kColumns.size(); ++i) {
       const auto number = number_of(fields[column[i]]);
-      if (!number) return refuse(line_number, "the column '" + std::string(kColumns[i]) + "' holds no number.");
+      if (!number)
+        return refuse(line_number,
+                      "the column '" + std::string(kColumns[i]) + "' holds no number.");
       numbers[i] = *number;
     }
     if (readings.size() == kMaxReadings)
-      return refuse(line_number,
-                    "there are more than " + std::to_string(kMaxReadings) + " readings; send them in parts.");
+      return refuse(line_number, "there are more than " + std::to_string(kMaxReadings) +
+                                     " readings; send them in parts.");
     readings.push_back({{numbers[0], numbers[1], numbers[2]}, numbers[3], line_number});
   }
   if (readings.empty())
-    return fail(422, "No readings", "Send lines of x, y, z and value below a line that names these columns.", "body");
+    return fail(422, "No readings",
+                "Send lines of x, y, z and value below a line that names these columns.", "body");
   return readings;
 }
 

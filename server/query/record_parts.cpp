@@ -9,7 +9,8 @@ using Op = Expression::Op;
 
 constexpr std::uint32_t kMostDense = 1u << 16;  // keys are mostly counted up: half a MiB at most
 
-// The one layer whose record the expression reads; nothing where it reads a layer itself, or several.
+// The one layer whose record the expression reads; nothing where it reads a layer itself, or
+// several.
 const std::string* only_record(const Expression& e) {
   const std::string* found = nullptr;
   if (e.op == Op::layer || e.op == Op::valid) return nullptr;
@@ -43,11 +44,14 @@ class Splitter {
  private:
   Expression rewrite(const Expression& e) {
     if (const std::string* layer = only_record(e)) return part(e, *layer);
-    const bool of_records = e.is_text() || e.op == Op::keys || (e.op >= Op::like && !is_logic(e.op));
-    if (of_records || std::ranges::any_of(e.parts, [](const Expression& part) { return part.is_text(); })) {
+    const bool of_records =
+        e.is_text() || e.op == Op::keys || (e.op >= Op::like && !is_logic(e.op));
+    if (of_records ||
+        std::ranges::any_of(e.parts, [](const Expression& part) { return part.is_text(); })) {
       if (!problem_)
-        problem_ = expression_problem("Texts and times are compared within one record: a column of it with a text",
-                                      e.position.at, field_);
+        problem_ = expression_problem(
+            "Texts and times are compared within one record: a column of it with a text",
+            e.position.at, field_);
       return {};
     }
     Expression rest = e;

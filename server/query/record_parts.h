@@ -10,8 +10,9 @@
 
 namespace strata::query {
 
-// What is the same for all texels that hold one key: the largest parts of a formula over layers that read nothing but the record
-// behind one layer's key. They are answered once a record, by the database, and looked up at each texel.
+// What is the same for all texels that hold one key: the largest parts of a formula over layers
+// that read nothing but the record behind one layer's key. They are answered once a record, by the
+// database, and looked up at each texel.
 struct RecordPart {
   std::string layer;      // slug
   Expression expression;  // over columns (Names::columns): a number or a condition
@@ -21,7 +22,8 @@ struct SplitExpression {
   Expression expression;          // with Op::record_number and record_truth in place of the parts
   std::vector<RecordPart> parts;  // by their `index`
 };
-// Refused (422 at `field`): texts and times of columns that are set beside something else than their own record.
+// Refused (422 at `field`): texts and times of columns that are set beside something else than
+// their own record.
 Result<SplitExpression> split_records(const Expression& expression, const std::string& field);
 
 // Numbers by key, for millions of questions.

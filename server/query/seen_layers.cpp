@@ -6,8 +6,9 @@
 
 namespace strata::query {
 
-std::vector<SeenLayer> seen_layers(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera,
-                                   int columns, int rows, const std::vector<LayerView>& layers,
+std::vector<SeenLayer> seen_layers(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                                   const Camera& camera, int columns, int rows,
+                                   const std::vector<LayerView>& layers,
                                    const std::vector<LayerCover>& covers) {
   std::vector<SeenLayer> all(layers.size());
   std::mutex mutex;

@@ -24,10 +24,11 @@ struct SeenLayer {
   std::set<double> values;
 };
 
-// Of each layer (bottom to top) what is seen in the middle of some cell of a grid over the camera's window: where it is drawn and no layer
-// above it covers it wholly. `covers`: one for each layer.
-std::vector<SeenLayer> seen_layers(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera,
-                                   int columns, int rows, const std::vector<LayerView>& layers,
+// Of each layer (bottom to top) what is seen in the middle of some cell of a grid over the camera's
+// window: where it is drawn and no layer above it covers it wholly. `covers`: one for each layer.
+std::vector<SeenLayer> seen_layers(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                                   const Camera& camera, int columns, int rows,
+                                   const std::vector<LayerView>& layers,
                                    const std::vector<LayerCover>& covers);
 
 }  // namespace strata::query

@@ -17,21 +17,25 @@ namespace {
 constexpr std::size_t kShpHeader = 100, kRecordHeader = 8, kShxRecord = 8, kDbfHeader = 32;
 constexpr std::size_t kMaxSkipped = 100'000;  // records without a shape
 
-tl::unexpected<Problem> refuse(const std::string& what) { return fail(422, "Shapefile not understood", what, "body"); }
+tl::unexpected<Problem> refuse(const std::string& what) {
+  return fail(422, "Shapefile not understood", what, "body");
+}
 
 std::uint32_t big_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return std::uint32_t{bytes[at]} << 24 | std::uint32_t{bytes[at + 1]} << 16 | std::uint32_t{bytes[at + 2]} << 8 |
-         std::uint32_t{bytes[at + 3]};
+  return std::uint32_t{bytes[at]} << 24 | std::uint32_t{bytes[at + 1]} << 16 |
+         std::uint32_t{bytes[at + 2]} << 8 | std::uint32_t{bytes[at + 3]};
 }
 std::uint32_t little_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return std::uint32_t{bytes[at + 3]} << 24 | std::uint32_t{bytes[at + 2]} << 16 | std::uint32_t{bytes[at + 1]} << 8 |
-         std::uint32_t{bytes[at]};
+  return std::uint32_t{bytes[at + 3]} << 24 | std::uint32_t{bytes[at + 2]} << 16 |
+         std::uint32_t{bytes[at + 1]} << 8 | std::uint32_t{bytes[at]};
 }
 void put_big_endian(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
   for (const int shift : {24, 16, 8, 0}) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
-bool is_polygon(std::uint32_t type) { return type == SHPT_POLYGON || type == SHPT_POLYGONZ || type == SHPT_POLYGONM; }
+bool is_polygon(std::uint32_t type) {
+  return type == SHPT_POLYGON || type == SHPT_POLYGONZ || type == SHPT_POLYGONM;
+}
 
 std::string shape_name(std::uint32_t type) {
   switch (type) {
@@ -49,7 +53,8 @@ std::string shape_name(std::uint32_t type) {
   }
 }
 
-// The index of the shapes, which tells shapelib where each lies. Only what lies within the file is in it.
+// The index of the shapes, which tells shapelib where each lies. Only what lies within the file is
+// in it.
 Result<std::vector<std::uint8_t>> index_of(std::span<const std::uint8_t> shp) {
   if (shp.size() < kShpHeader || !is_shapefile(shp)) return refuse("The .shp is no shapefile.");
   const std::uint32_t type = little_endian(shp, 32);
@@ -57,19 +62,22 @@ Result<std::vector<std::uint8_t>> index_of(std::span<const std::uint8_t> shp) {
     return refuse("Only polygons are painted; the .shp holds " + shape_name(type) + ".");
   const std::uint64_t told = std::uint64_t{big_endian(shp, 24)} * 2;
   if (told > shp.size())
-    return refuse("The .shp is cut off: it should have " + std::to_string(told) + " bytes and has " +
-                  std::to_string(shp.size()) + ".");
+    return refuse("The .shp is cut off: it should have " + std::to_string(told) +
+                  " bytes and has " + std::to_string(shp.size()) + ".");
   std::vector<std::uint8_t> shx(shp.begin(), shp.begin() + kShpHeader);
   std::size_t records = 0;
   for (std::size_t at = kShpHeader; at < told; ++records) {
     const std::string record = "Record " + std::to_string(records + 1) + " of the .shp ";
     if (records == kMaxMapFeatures)
-      return refuse("A map has at most " + std::to_string(kMaxMapFeatures) + " features; send it in parts.");
+      return refuse("A map has at most " + std::to_string(kMaxMapFeatures) +
+                    " features; send it in parts.");
     if (told - at < kRecordHeader + 4) return refuse(record + "is cut off.");
     const std::uint64_t length = std::uint64_t{big_endian(shp, at + 4)} * 2;
-    if (length < 4 || length > told - at - kRecordHeader) return refuse(record + "is longer than the file.");
+    if (length < 4 || length > told - at - kRecordHeader)
+      return refuse(record + "is longer than the file.");
     const std::uint32_t shape = little_endian(shp, at + kRecordHeader);
-    if (shape != SHPT_NULL && shape != type) return refuse(record + "is of another type than the file.");
+    if (shape != SHPT_NULL && shape != type)
+      return refuse(record + "is of another type than the file.");
     put_big_endian(shx, static_cast<std::uint32_t>(at / 2));
     put_big_endian(shx, static_cast<std::uint32_t>(length / 2));
     at += kRecordHeader + length;
@@ -84,15 +92,17 @@ Result<void> check_dbf(std::span<const std::uint8_t> dbf, std::size_t shapes) {
   if (dbf.size() < kDbfHeader) return refuse("The .dbf is cut off.");
   const std::uint64_t records = little_endian(dbf, 4);
   const std::uint64_t header = little_endian(dbf, 8) & 0xffff, record = little_endian(dbf, 8) >> 16;
-  if (header <= kDbfHeader || record < 1) return refuse("The .dbf is damaged: its header has no fields.");
+  if (header <= kDbfHeader || record < 1)
+    return refuse("The .dbf is damaged: its header has no fields.");
   if (header + records * record > dbf.size())
-    return refuse("The .dbf is cut off: it should hold " + std::to_string(records) + " records of " +
-                  std::to_string(record) + " bytes.");
+    return refuse("The .dbf is cut off: it should hold " + std::to_string(records) +
+                  " records of " + std::to_string(record) + " bytes.");
   if (records != shapes)
-    return refuse("The .shp has " + std::to_string(shapes) + " shapes and the .dbf " + std::to_string(records) +
-                  " records: they do not belong together.");
+    return refuse("The .shp has " + std::to_string(shapes) + " shapes and the .dbf " +
+                  std::to_string(records) + " records: they do not belong together.");
   const std::uint64_t fields = (header - kDbfHeader) / kDbfHeader;
-  if (fields > kMaxMapColumns) return refuse("A map has at most " + std::to_string(kMaxMapColumns) + " attributes.");
+  if (fields > kMaxMapColumns)
+    return refuse("A map has at most " + std::to_string(kMaxMapColumns) + " attributes.");
   if (fields * records > kMaxMapValues) return refuse(too_many_values());
   return {};
 }
@@ -113,7 +123,9 @@ MapValue number_in(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
+  if (text.empty() || error != std::errc() || end != text.data() + text.size() ||
+      !std::isfinite(value))
+    return {};
   return value;
 }
 
@@ -141,7 +153,9 @@ class Reader {
     for (int i = 0; i < static_cast<int>(records); ++i) {
       if (table && DBFIsRecordDeleted(table.get(), i)) continue;
       const std::unique_ptr<SHPObject, DestroyShape> shape(SHPReadObject(shapes.get(), i));
-      if (!shape) return refuse(memory.complaint("Record " + std::to_string(i + 1) + " of the .shp cannot be read"));
+      if (!shape)
+        return refuse(
+            memory.complaint("Record " + std::to_string(i + 1) + " of the .shp cannot be read"));
       if (shape->nSHPType == SHPT_NULL) {
         if (++skipped_ > kMaxSkipped) return refuse("Most of its records have no shape.");
         continue;
@@ -163,26 +177,32 @@ class Reader {
 
   Result<void> keep(const SHPObject& shape, DBFInfo* table, int record) {
     MapFeature feature{{}, {}, "Record " + std::to_string(record + 1)};
-    const auto bad = [&](const std::string& what) { return refuse(feature.place + " of the .shp " + what); };
+    const auto bad = [&](const std::string& what) {
+      return refuse(feature.place + " of the .shp " + what);
+    };
     points_ += static_cast<std::size_t>(shape.nVertices);
     if (points_ > kMaxMapPoints)
-      return refuse("A map has at most " + std::to_string(kMaxMapPoints) + " points; send it in parts.");
+      return refuse("A map has at most " + std::to_string(kMaxMapPoints) +
+                    " points; send it in parts.");
     MapFeature::Rings rings;
     for (int part = 0; part < shape.nParts; ++part) {
       const int begin = shape.panPartStart[part];
       const int end = part + 1 < shape.nParts ? shape.panPartStart[part + 1] : shape.nVertices;
-      if (begin < 0 || begin > end || end > shape.nVertices) return bad("has rings that lie outside of it.");
+      if (begin < 0 || begin > end || end > shape.nVertices)
+        return bad("has rings that lie outside of it.");
       if (end - begin < 3) return bad("has a ring of fewer than three points.");
       auto& ring = rings.emplace_back();
       for (int v = begin; v < end; ++v) {
         const glm::dvec2 at(shape.padfX[v], shape.padfY[v]);
-        if (!std::isfinite(at.x) || !std::isfinite(at.y)) return bad("has a coordinate that is no finite number.");
+        if (!std::isfinite(at.x) || !std::isfinite(at.y))
+          return bad("has a coordinate that is no finite number.");
         ring.push_back(at);
       }
     }
     if (rings.empty()) return {};
     feature.polygons.push_back(std::move(rings));
-    for (int c = 0; c < static_cast<int>(types_.size()); ++c) feature.values.push_back(value_of(table, record, c));
+    for (int c = 0; c < static_cast<int>(types_.size()); ++c)
+      feature.values.push_back(value_of(table, record, c));
     map_.features.push_back(std::move(feature));
     return {};
   }
@@ -194,7 +214,8 @@ class Reader {
     switch (types_[static_cast<std::size_t>(column)]) {
       case FTInteger:
       case FTDouble: return number_in(held);
-      case FTLogical: return std::string_view("TtYy").find(*held) != std::string_view::npos ? 1.0 : 0.0;
+      case FTLogical:
+        return std::string_view("TtYy").find(*held) != std::string_view::npos ? 1.0 : 0.0;
       default: return text_->utf8(held);
     }
   }
@@ -220,7 +241,8 @@ std::string epsg_of(std::string_view wkt) {
   if (found == std::string_view::npos) return {};
   std::string_view rest = wkt.substr(found + 18);
   const auto digits = rest.find_first_not_of("0123456789");
-  if (digits == 0 || digits == std::string_view::npos || digits > 6 || rest[digits] != '"') return {};
+  if (digits == 0 || digits == std::string_view::npos || digits > 6 || rest[digits] != '"')
+    return {};
   // The last authority is the whole system's only where nothing else follows it.
   if (rest.substr(digits + 1).find_first_not_of("] \r\n\t") != std::string_view::npos) return {};
   return "EPSG:" + std::string(rest.substr(0, digits));

@@ -8,9 +8,12 @@
 namespace strata::query {
 namespace {
 
-thread_local ShapelibMemory* current = nullptr;  // shapelib's hooks have no place for a pointer of ours
+// shapelib's hooks have no place for a pointer of ours
+thread_local ShapelibMemory* current = nullptr;
 
-ShapelibMemory::OpenFile& file_of(SAFile handle) { return *reinterpret_cast<ShapelibMemory::OpenFile*>(handle); }
+ShapelibMemory::OpenFile& file_of(SAFile handle) {
+  return *reinterpret_cast<ShapelibMemory::OpenFile*>(handle);
+}
 
 SAOffset read_bytes(void* to, SAOffset size, SAOffset count, SAFile handle) {
   auto& file = file_of(handle);

@@ -9,8 +9,8 @@
 
 namespace strata::query {
 
-// Files in memory for shapelib, and its first complaint about them. While one lives, its thread's shapelib calls through `hooks`
-// see these files alone; nothing is written anywhere.
+// Files in memory for shapelib, and its first complaint about them. While one lives, its thread's
+// shapelib calls through `hooks` see these files alone; nothing is written anywhere.
 class ShapelibMemory {
  public:
   using Files = std::map<std::string, std::span<const std::uint8_t>>;

@@ -24,20 +24,25 @@ class Counting {
 
   std::vector<std::shared_ptr<const TileSums>> sums() const {
     std::vector<std::shared_ptr<const TileSums>> found(tiles_.size());
-    for_each_tile([&](std::size_t i, TileAddress address, const std::shared_ptr<const TileData>& tile) {
-      const auto make = [&] { return sum_tile(*tile, address, type_, map_, request_.within); };
-      found[i] = cache() ? cache()->sums(address, tile, make) : std::make_shared<const TileSums>(make());
-    });
+    for_each_tile(
+        [&](std::size_t i, TileAddress address, const std::shared_ptr<const TileData>& tile) {
+          const auto make = [&] { return sum_tile(*tile, address, type_, map_, request_.within); };
+          found[i] = cache() ? cache()->sums(address, tile, make)
+                             : std::make_shared<const TileSums>(make());
+        });
     return found;
   }
 
   TileHistogram histogram(double min, double max) const {
     std::vector<std::shared_ptr<const TileHistogram>> found(tiles_.size());
-    for_each_tile([&](std::size_t i, TileAddress address, const std::shared_ptr<const TileData>& tile) {
-      const auto make = [&] { return count_tile(*tile, address, type_, map_, request_.within, min, max); };
-      found[i] =
-          cache() ? cache()->histogram(address, tile, min, max, make) : std::make_shared<const TileHistogram>(make());
-    });
+    for_each_tile(
+        [&](std::size_t i, TileAddress address, const std::shared_ptr<const TileData>& tile) {
+          const auto make = [&] {
+            return count_tile(*tile, address, type_, map_, request_.within, min, max);
+          };
+          found[i] = cache() ? cache()->histogram(address, tile, min, max, make)
+                             : std::make_shared<const TileHistogram>(make());
+        });
     TileHistogram all;
     for (const auto& of_tile : found)
       for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
@@ -80,7 +85,8 @@ TileSums join(const std::vector<std::shared_ptr<const TileSums>>& parts) {
     all.too_many_keys |= part->too_many_keys;
     if (all.too_many_keys) continue;
     for (const auto& key : part->keys) {
-      const auto [found, fresh] = index.try_emplace(key.bits, static_cast<std::uint32_t>(all.keys.size()));
+      const auto [found, fresh] =
+          index.try_emplace(key.bits, static_cast<std::uint32_t>(all.keys.size()));
       if (fresh)
         all.keys.push_back(key);
       else
@@ -115,9 +121,10 @@ Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const 
   out.std = area > 0 ? std::sqrt(sums.squares / area) : 0;
   for (const auto& key : sums.keys) {
     const double of_key = key.area.value();
-    const glm::dvec3 centroid = of_key > 0 ? key.weighted_position / of_key : (key.lowest + key.highest) / 2.0;
-    out.keys[decode_value(type, key.bits)] = {key.texels, of_key * m2_per_unit2, centroid + origin, key.lowest + origin,
-                                              key.highest + origin};
+    const glm::dvec3 centroid =
+        of_key > 0 ? key.weighted_position / of_key : (key.lowest + key.highest) / 2.0;
+    out.keys[decode_value(type, key.bits)] = {key.texels, of_key * m2_per_unit2, centroid + origin,
+                                              key.lowest + origin, key.highest + origin};
   }
 
   TileHistogram histogram;
@@ -125,7 +132,8 @@ Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const 
     histogram = counting.histogram(out.min, out.max);
   } else {
     for (const auto& key : sums.keys) {
-      const auto bin = static_cast<std::size_t>(bin_of(decode_value(type, key.bits), out.min, out.max));
+      const auto bin =
+          static_cast<std::size_t>(bin_of(decode_value(type, key.bits), out.min, out.max));
       histogram.texels[bin] += key.texels;
       histogram.area[bin] += key.area.value();
     }
@@ -140,14 +148,16 @@ Statistics statistics(const LayerView& view, const mesh::SurfaceMap& map, const 
   if (request.quantiles) out.quantiles = quantiles(view, map, request.within, sums);
   const ValueClasses value_classes{.each = !is_float(type)};
   if (request.pieces) {
-    const PieceCounts counts = count_pieces(view, map, *request.graph, request.within, value_classes);
+    const PieceCounts counts =
+        count_pieces(view, map, *request.graph, request.within, value_classes);
     out.pieces = counts.all;
     for (const auto& [bits, pieces] : counts.of_class)
-      if (const auto key = out.keys.find(decode_value(type, bits)); key != out.keys.end()) key->second.pieces = pieces;
+      if (const auto key = out.keys.find(decode_value(type, bits)); key != out.keys.end())
+        key->second.pieces = pieces;
   }
   if (request.perimeter) {
-    const Perimeters perimeters =
-        measure_perimeters(view, map, *request.graph, request.within, value_classes, request.threads);
+    const Perimeters perimeters = measure_perimeters(view, map, *request.graph, request.within,
+                                                     value_classes, request.threads);
     out.perimeter_m = perimeters.all * metres_per_unit;
     for (auto& [key, of_key] : out.keys) of_key.perimeter_m = 0;
     for (const auto& [bits, length] : perimeters.of_class)

@@ -18,7 +18,8 @@ struct KeyStatistics {
   glm::dvec3 centroid{0};                   // world, weighted by area
   glm::dvec3 bounds_min{0}, bounds_max{0};  // world
   std::optional<std::uint64_t> pieces{};    // where asked for: connected areas of this key
-  std::optional<double> perimeter_m{};      // where asked for: around these areas, along the surface
+  // where asked for: around these areas, along the surface
+  std::optional<double> perimeter_m{};
 };
 
 // Over valid surface texels (gutter excluded), weighted by true surface area.
@@ -31,12 +32,14 @@ struct Statistics {
     std::uint64_t texels = 0;
     double area_m2 = 0;
   };
-  std::vector<Bin>
-      histogram;  // 64 equal bins from min to max; one where all values are equal; empty where nothing is valid
-  std::map<double, KeyStatistics> keys;  // integer layers with ≤ 4096 distinct values; otherwise empty
-  std::optional<Quantiles> quantiles;    // where asked for and something has an area
-  std::optional<std::uint64_t> pieces;   // where asked for: connected areas, of one value each in integer layers
-  std::optional<double> perimeter_m;     // where asked for: around what is valid, along the surface
+  // 64 equal bins from min to max; one where all values are equal; empty where nothing is valid
+  std::vector<Bin> histogram;
+  // integer layers with ≤ 4096 distinct values; otherwise empty
+  std::map<double, KeyStatistics> keys;
+  std::optional<Quantiles> quantiles;  // where asked for and something has an area
+  // where asked for: connected areas, of one value each in integer layers
+  std::optional<std::uint64_t> pieces;
+  std::optional<double> perimeter_m;  // where asked for: around what is valid, along the surface
 };
 
 struct StatisticsRequest {

@@ -11,8 +11,8 @@ bool tells_keys_apart(const Layer& layer) {
   return layer.kind == LayerKind::database || bytes_per_texel(layer.type) == 1;
 }
 
-std::vector<TileSums::Key> surface_keys(const TileData& tile, TileAddress address, const Layer& layer,
-                                        const mesh::SurfaceMap& map) {
+std::vector<TileSums::Key> surface_keys(const TileData& tile, TileAddress address,
+                                        const Layer& layer, const mesh::SurfaceMap& map) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const bool apart = tells_keys_apart(layer);
   std::vector<TileSums::Key> keys;
@@ -24,10 +24,12 @@ std::vector<TileSums::Key> surface_keys(const TileData& tile, TileAddress addres
                    if (keys.empty() || keys[last].bits != bits) {
                      const auto [found, fresh] = index.try_emplace(bits, keys.size());
                      if (fresh)
-                       keys.push_back({bits, 0, 0, glm::dvec3(0), glm::dvec3(kInfinity), glm::dvec3(-kInfinity)});
+                       keys.push_back({bits, 0, 0, glm::dvec3(0), glm::dvec3(kInfinity),
+                                       glm::dvec3(-kInfinity)});
                      last = found->second;
                    }
-                   const double area = map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
+                   const double area =
+                       map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
                    const glm::dvec3 position(map.position(slot, texel));
                    keys[last].add({bits, 1, area, area * position, position, position});
                  });

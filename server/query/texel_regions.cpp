@@ -11,14 +11,18 @@ namespace {
 constexpr std::uint32_t kNoRegion = 0xffffffffu;
 constexpr std::size_t kLeastCorners = 4;  // of a region
 constexpr glm::ivec2 kSteps[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-// Of a corner, the texels to the left and to the right of the edge that goes on in each direction, as their lower left corners.
+// Of a corner, the texels to the left and to the right of the edge that goes on in each direction,
+// as their lower left corners.
 constexpr glm::ivec2 kLeftOf[] = {{0, 0}, {-1, 0}, {-1, -1}, {0, -1}};
 constexpr glm::ivec2 kRightOf[] = {{0, -1}, {0, 0}, {-1, 0}, {-1, -1}};
 
 class Regions {
  public:
   Regions(const mesh::SurfaceMap& map, const std::vector<std::uint32_t>& labels)
-      : map_(map), labels_(labels), region_of_(labels.size(), kNoRegion), walked_(map.block_of_slot.size(), 0) {}
+      : map_(map),
+        labels_(labels),
+        region_of_(labels.size(), kNoRegion),
+        walked_(map.block_of_slot.size(), 0) {}
 
   bool find(std::size_t corner_limit, std::vector<TexelRegion>& regions) {
     const QuestionTurn turn;
@@ -84,7 +88,8 @@ class Regions {
     }
   }
 
-  // From the lower left corner of a texel along its lower edge, the region always on the left; given up once it has more than `most` corners.
+  // From the lower left corner of a texel along its lower edge, the region always on the left;
+  // given up once it has more than `most` corners.
   std::vector<glm::ivec2> walk(glm::ivec2 start, std::uint32_t region, std::size_t most) {
     std::vector<glm::ivec2> ring;
     glm::ivec2 at = start;
@@ -116,13 +121,14 @@ class Regions {
   const mesh::SurfaceMap& map_;
   const std::vector<std::uint32_t>& labels_;
   std::vector<std::uint32_t> region_of_;
-  std::vector<std::uint64_t> walked_;  // a slot: bits of the texels whose lower edge is on a ring that is found
+  // a slot: bits of the texels whose lower edge is on a ring that is found
+  std::vector<std::uint64_t> walked_;
 };
 
 }  // namespace
 
-bool find_regions(const mesh::SurfaceMap& map, const std::vector<std::uint32_t>& labels, std::size_t corner_limit,
-                  std::vector<TexelRegion>& regions) {
+bool find_regions(const mesh::SurfaceMap& map, const std::vector<std::uint32_t>& labels,
+                  std::size_t corner_limit, std::vector<TexelRegion>& regions) {
   const QuestionMemory memory(labels.size() * sizeof(std::uint32_t));
   return Regions(map, labels).find(corner_limit, regions);
 }

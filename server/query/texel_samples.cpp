@@ -46,7 +46,8 @@ void add_key(CellSum& sum, std::uint32_t bits, double weight) {
 std::uint32_t largest_key(const CellSum& sum) {
   return std::ranges::max_element(sum.keys,
                                   [](const auto& a, const auto& b) {
-                                    return a.second != b.second ? a.second < b.second : a.first > b.first;
+                                    return a.second != b.second ? a.second < b.second
+                                                                : a.first > b.first;
                                   })
       ->first;
 }
@@ -60,7 +61,8 @@ Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, do
   bool countable = true;
   for_each_sample(texels, [&](const TexelSample& sample) {
     const glm::dvec3 index = glm::floor(sample.position / edge);
-    for (int axis = 0; axis < 3; ++axis) countable &= std::abs(index[axis]) < 1e15;  // NaN and infinity are not
+    // NaN and infinity are not
+    for (int axis = 0; axis < 3; ++axis) countable &= std::abs(index[axis]) < 1e15;
     if (!countable) return false;
     CellSum& sum = cells[{static_cast<std::int64_t>(index.z), static_cast<std::int64_t>(index.y),
                           static_cast<std::int64_t>(index.x)}];
@@ -76,7 +78,8 @@ Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, do
   });
   if (!countable || cells.size() > kMostCells)
     return fail(422, "Cells too small",
-                "The surface has more than " + std::to_string(kMostCells) + " cells of this size. Ask for larger ones.",
+                "The surface has more than " + std::to_string(kMostCells) +
+                    " cells of this size. Ask for larger ones.",
                 "cell");
   std::vector<Cell> order;
   order.reserve(cells.size());

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kSlotsAtOnce = 4096;
 
-SelectionExtent measure_slots(const mesh::SurfaceMap& map, const TexelSelection* selection, std::size_t first,
-                              std::size_t last) {
+SelectionExtent measure_slots(const mesh::SurfaceMap& map, const TexelSelection* selection,
+                              std::size_t first, std::size_t last) {
   SelectionExtent extent;
   CompensatedSum area;
   for (std::size_t slot = first; slot < last; ++slot) {
@@ -33,7 +33,8 @@ SelectionExtent measure_slots(const mesh::SurfaceMap& map, const TexelSelection*
 
 }  // namespace
 
-SelectionExtent measure_selection(const mesh::SurfaceMap& map, const TexelSelection* selection, int threads) {
+SelectionExtent measure_selection(const mesh::SurfaceMap& map, const TexelSelection* selection,
+                                  int threads) {
   const std::size_t slots = map.surface_mask.size();
   std::vector<SelectionExtent> parts((slots + kSlotsAtOnce - 1) / kSlotsAtOnce);
   mesh::parallel_for(threads, static_cast<int>(parts.size()), [&](int number) {

@@ -26,7 +26,8 @@ std::vector<std::pair<TileAddress, const TileData*>> sorted_tiles(const TileMap&
 
 const double* values_of_bits(ValueType type) {
   static const std::vector<double> u8 = decode_all(ValueType::u8), i8 = decode_all(ValueType::i8),
-                                   u16 = decode_all(ValueType::u16), i16 = decode_all(ValueType::i16),
+                                   u16 = decode_all(ValueType::u16),
+                                   i16 = decode_all(ValueType::i16),
                                    f16 = decode_all(ValueType::f16);
   switch (type) {
     case ValueType::u8: return u8.data();

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Keys of one tile. Neighbours mostly share a value, so a run of texels is added up before it is looked for.
+// Keys of one tile. Neighbours mostly share a value, so a run of texels is added up before it is
+// looked for.
 class KeySums {
  public:
   explicit KeySums(const mesh::SurfaceMap& map) : map_(map) {}
@@ -41,7 +42,8 @@ class KeySums {
  private:
   void end_run() {
     if (run_.texels == 0 || too_many_) return;
-    const auto [found, fresh] = index_.try_emplace(run_.bits, static_cast<std::uint32_t>(keys_.size()));
+    const auto [found, fresh] =
+        index_.try_emplace(run_.bits, static_cast<std::uint32_t>(keys_.size()));
     if (!fresh)
       keys_[found->second].add(run_);
     else if (keys_.size() < kMaxStatisticsKeys)
@@ -69,11 +71,12 @@ void TileSums::Key::add(const Key& other) {
 
 double TileSums::mean() const {
   if (!(area.value() > 0)) return (min + max) / 2;
-  return std::clamp(weighted.value() / area.value(), min, max);  // of a constant its value, whatever is rounded
+  // of a constant its value, whatever is rounded
+  return std::clamp(weighted.value() / area.value(), min, max);
 }
 
-TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type, const mesh::SurfaceMap& map,
-                  const TexelSelection* within) {
+TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type,
+                  const mesh::SurfaceMap& map, const TexelSelection* within) {
   TileSums sums;
   sums.min = kInfinity;
   sums.max = -kInfinity;
@@ -83,7 +86,8 @@ TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type, con
   double near = 0, differences = 0, squares = 0;
   for_each_value(tile, address, type, map, within,
                  [&](std::uint32_t slot, int texel, std::uint32_t bits, double value) {
-                   const double area = map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
+                   const double area =
+                       map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
                    if (sums.texels++ == 0) near = value;
                    const double difference = value - near;
                    sums.area += area;
@@ -101,16 +105,19 @@ TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type, con
   return sums;
 }
 
-TileHistogram count_tile(const TileData& tile, TileAddress address, ValueType type, const mesh::SurfaceMap& map,
-                         const TexelSelection* within, double min, double max) {
+TileHistogram count_tile(const TileData& tile, TileAddress address, ValueType type,
+                         const mesh::SurfaceMap& map, const TexelSelection* within, double min,
+                         double max) {
   TileHistogram histogram;
   histogram.min = min;
   histogram.max = max;
-  for_each_value(tile, address, type, map, within, [&](std::uint32_t slot, int texel, std::uint32_t, double value) {
-    const auto bin = static_cast<std::size_t>(bin_of(value, min, max));
-    ++histogram.texels[bin];
-    histogram.area[bin] += map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
-  });
+  for_each_value(tile, address, type, map, within,
+                 [&](std::uint32_t slot, int texel, std::uint32_t, double value) {
+                   const auto bin = static_cast<std::size_t>(bin_of(value, min, max));
+                   ++histogram.texels[bin];
+                   histogram.area[bin] +=
+                       map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
+                 });
   return histogram;
 }
 

@@ -17,8 +17,9 @@ namespace strata::query {
 constexpr std::size_t kMaxStatisticsKeys = 4096;
 constexpr int kHistogramBins = 64;
 
-// What the valid surface texels of one tile add to a layer's statistics, in units of the model. Sums of two tiles are joined
-// without loss (Chan, Golub, LeVeque 1983), so that after a stroke only its tiles are counted again.
+// What the valid surface texels of one tile add to a layer's statistics, in units of the model.
+// Sums of two tiles are joined without loss (Chan, Golub, LeVeque 1983), so that after a stroke
+// only its tiles are counted again.
 struct TileSums {
   std::uint64_t texels = 0;
   CompensatedSum area;
@@ -33,14 +34,15 @@ struct TileSums {
     glm::dvec3 lowest{0}, highest{0};
     void add(const Key& other);
   };
-  std::vector<Key> keys;  // of integer types, ascending bits; none where there are more than kMaxStatisticsKeys
+  // of integer types, ascending bits; none where there are more than kMaxStatisticsKeys
+  std::vector<Key> keys;
   bool too_many_keys = false;
 
   // Weighted by area; without any, the middle.
   double mean() const;
 };
-TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type, const mesh::SurfaceMap& map,
-                  const TexelSelection* within);
+TileSums sum_tile(const TileData& tile, TileAddress address, ValueType type,
+                  const mesh::SurfaceMap& map, const TexelSelection* within);
 
 // Equal bins over [min, max] of the whole layer.
 struct TileHistogram {
@@ -49,20 +51,25 @@ struct TileHistogram {
   std::array<double, kHistogramBins> area{};
 };
 inline int bin_of(double value, double min, double max) {
-  return max > min ? std::min(kHistogramBins - 1, static_cast<int>((value - min) / (max - min) * kHistogramBins)) : 0;
+  return max > min ? std::min(kHistogramBins - 1,
+                              static_cast<int>((value - min) / (max - min) * kHistogramBins))
+                   : 0;
 }
-TileHistogram count_tile(const TileData& tile, TileAddress address, ValueType type, const mesh::SurfaceMap& map,
-                         const TexelSelection* within, double min, double max);
+TileHistogram count_tile(const TileData& tile, TileAddress address, ValueType type,
+                         const mesh::SurfaceMap& map, const TexelSelection* within, double min,
+                         double max);
 
 // Sums of the tiles of one layer, kept while a tile holds the same. Thread-safe.
 class TileSumsCache {
  public:
   // Made by `make` where the tile has changed.
   template <class Make>
-  std::shared_ptr<const TileSums> sums(TileAddress address, const std::shared_ptr<const TileData>& tile, Make make) {
+  std::shared_ptr<const TileSums> sums(TileAddress address,
+                                       const std::shared_ptr<const TileData>& tile, Make make) {
     {
       std::lock_guard lock(mutex_);
-      if (const Entry& entry = entries_[address]; entry.sums && is_of(entry, tile)) return entry.sums;
+      if (const Entry& entry = entries_[address]; entry.sums && is_of(entry, tile))
+        return entry.sums;
     }
     auto made = std::make_shared<const TileSums>(make());
     std::lock_guard lock(mutex_);
@@ -71,12 +78,14 @@ class TileSumsCache {
   }
   // The same, where also the limits must be those of the last one.
   template <class Make>
-  std::shared_ptr<const TileHistogram> histogram(TileAddress address, const std::shared_ptr<const TileData>& tile,
+  std::shared_ptr<const TileHistogram> histogram(TileAddress address,
+                                                 const std::shared_ptr<const TileData>& tile,
                                                  double min, double max, Make make) {
     {
       std::lock_guard lock(mutex_);
       const Entry& entry = entries_[address];
-      if (entry.histogram && is_of(entry, tile) && entry.histogram->min == min && entry.histogram->max == max)
+      if (entry.histogram && is_of(entry, tile) && entry.histogram->min == min &&
+          entry.histogram->max == max)
         return entry.histogram;
     }
     auto made = std::make_shared<const TileHistogram>(make());

@@ -20,12 +20,16 @@ class TileTable {
   const TileData* of_texel(int x, int y) const {
     return tiles_[std::size_t(y / kTileSize) * tiles_per_side_ + x / kTileSize];
   }
-  // Along one axis: the layer's texel that holds the centre of a texel of a map of another resolution.
+  // Along one axis: the layer's texel that holds the centre of a texel of a map of another
+  // resolution.
   int texel_under(int texel, int map_resolution) const {
-    return static_cast<int>((2 * std::int64_t{texel} + 1) * (std::int64_t{tiles_per_side_} * kTileSize) /
+    return static_cast<int>((2 * std::int64_t{texel} + 1) *
+                            (std::int64_t{tiles_per_side_} * kTileSize) /
                             (2 * std::int64_t{map_resolution}));
   }
-  const TileData* of_block(int bx, int by) const { return of_texel(bx * kBlockSize, by * kBlockSize); }
+  const TileData* of_block(int bx, int by) const {
+    return of_texel(bx * kBlockSize, by * kBlockSize);
+  }
 
  private:
   int tiles_per_side_;

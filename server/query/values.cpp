@@ -26,7 +26,9 @@ SurfacePoint off_the_model(const std::vector<LayerView>& layers) {
   return point;
 }
 
-bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 }  // namespace
 
@@ -36,8 +38,8 @@ LayerValue value_at(const LayerView& view, glm::vec2 uv) {
   return {view.layer.slug, true, decode_value(view.layer.type, *bits)};
 }
 
-SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origin, const glm::dvec3& world_point,
-                           const std::vector<LayerView>& layers) {
+SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                           const glm::dvec3& world_point, const std::vector<LayerView>& layers) {
   const glm::vec3 in_model(world_point - origin);
   if (!is_finite(in_model)) return off_the_model(layers);
   const auto hit = tree.nearest(in_model, std::numeric_limits<float>::max());
@@ -46,7 +48,8 @@ SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origi
 
 namespace {
 
-// Along a curve through the box of the points (Morton 1966): neighbours on it are mostly neighbours in space.
+// Along a curve through the box of the points (Morton 1966): neighbours on it are mostly neighbours
+// in space.
 std::uint64_t curve_index(const glm::dvec3& place) {
   std::uint64_t index = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -65,11 +68,12 @@ std::uint64_t curve_index(const glm::dvec3& place) {
 }  // namespace
 
 std::vector<SurfacePoint> nearest_points(const mesh::SearchTree& tree, const glm::dvec3& origin,
-                                         std::span<const glm::dvec3> world_points, const std::vector<LayerView>& layers,
-                                         int threads) {
+                                         std::span<const glm::dvec3> world_points,
+                                         const std::vector<LayerView>& layers, int threads) {
   constexpr float kFar = std::numeric_limits<float>::max();
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
-  for (const glm::dvec3& point : world_points) low = glm::min(low, point), high = glm::max(high, point);
+  for (const glm::dvec3& point : world_points)
+    low = glm::min(low, point), high = glm::max(high, point);
   const glm::dvec3 size = glm::max(high - low, 1e-300);
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
   order.reserve(world_points.size());
@@ -78,29 +82,31 @@ std::vector<SurfacePoint> nearest_points(const mesh::SearchTree& tree, const glm
   std::ranges::sort(order);
   constexpr std::size_t kPointsAtOnce = 1024;
   std::vector<SurfacePoint> points(world_points.size());
-  mesh::parallel_for(threads, static_cast<int>((order.size() + kPointsAtOnce - 1) / kPointsAtOnce), [&](int part) {
-    const std::size_t first = static_cast<std::size_t>(part) * kPointsAtOnce;
-    std::optional<glm::vec3> last;  // a place on the surface: none that is farther is wanted
-    for (std::size_t i = first; i < std::min(order.size(), first + kPointsAtOnce); ++i) {
-      const std::uint32_t number = order[i].second;
-      const glm::vec3 in_model(world_points[number] - origin);
-      if (!is_finite(in_model)) {
-        points[number] = off_the_model(layers);
-        continue;
-      }
-      // A little more than the distance, which is rounded.
-      const float limit = last ? std::min(kFar, glm::distance(in_model, *last) * 1.0001f + 1e-30f) : kFar;
-      auto hit = tree.nearest(in_model, limit);
-      if (!hit) hit = tree.nearest(in_model, kFar);
-      points[number] = hit ? surface_point(*hit, origin, layers) : off_the_model(layers);
-      if (hit) last = hit->position;
-    }
-  });
+  mesh::parallel_for(
+      threads, static_cast<int>((order.size() + kPointsAtOnce - 1) / kPointsAtOnce), [&](int part) {
+        const std::size_t first = static_cast<std::size_t>(part) * kPointsAtOnce;
+        std::optional<glm::vec3> last;  // a place on the surface: none that is farther is wanted
+        for (std::size_t i = first; i < std::min(order.size(), first + kPointsAtOnce); ++i) {
+          const std::uint32_t number = order[i].second;
+          const glm::vec3 in_model(world_points[number] - origin);
+          if (!is_finite(in_model)) {
+            points[number] = off_the_model(layers);
+            continue;
+          }
+          // A little more than the distance, which is rounded.
+          const float limit =
+              last ? std::min(kFar, glm::distance(in_model, *last) * 1.0001f + 1e-30f) : kFar;
+          auto hit = tree.nearest(in_model, limit);
+          if (!hit) hit = tree.nearest(in_model, kFar);
+          points[number] = hit ? surface_point(*hit, origin, layers) : off_the_model(layers);
+          if (hit) last = hit->position;
+        }
+      });
   return points;
 }
 
-SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera, double x, double y,
-                  const std::vector<LayerView>& layers) {
+SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera,
+                  double x, double y, const std::vector<LayerView>& layers) {
   if (!(x >= 0 && y >= 0 && x <= camera.width && y <= camera.height)) return off_the_model(layers);
   const Ray ray = ray_through_pixel(camera, x, y);
   const RaySpan kept = kept_span(camera, ray);
@@ -115,18 +121,19 @@ SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const 
   return surface_point(*hit, origin, layers);
 }
 
-std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree, const glm::dvec3& origin,
-                                                    const Camera& camera, int columns, int rows,
-                                                    const LayerView& layer) {
-  std::vector<std::optional<std::uint32_t>> keys(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree,
+                                                    const glm::dvec3& origin, const Camera& camera,
+                                                    int columns, int rows, const LayerView& layer) {
+  std::vector<std::optional<std::uint32_t>> keys(static_cast<std::size_t>(columns) *
+                                                 static_cast<std::size_t>(rows));
   const std::vector<LayerView> layers{layer};
   mesh::parallel_for(mesh::background_threads(), rows, [&](int row) {
     for (int column = 0; column < columns; ++column) {
       const auto point = pick(tree, origin, camera, (column + 0.5) * camera.width / columns,
                               (row + 0.5) * camera.height / rows, layers);
       if (point.hit && point.values[0].valid)
-        keys[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)] =
-            static_cast<std::uint32_t>(point.values[0].value);
+        keys[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+             static_cast<std::size_t>(column)] = static_cast<std::uint32_t>(point.values[0].value);
     }
   });
   return keys;

@@ -37,14 +37,15 @@ struct SurfacePoint {
 // Value at a texture coordinate: the texel that holds it (nearest), as the screen shows it.
 LayerValue value_at(const LayerView& view, glm::vec2 uv);
 
-SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origin, const glm::dvec3& world_point,
-                           const std::vector<LayerView>& layers);
-SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera, double x, double y,
-                  const std::vector<LayerView>& layers);
-// What the layer has in the middle of each cell of a grid over the camera's window, row by row from the top left; nothing where there is
-// no surface or nothing is painted. Of a layer of whole numbers that are not negative.
-std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree, const glm::dvec3& origin,
-                                                    const Camera& camera, int columns, int rows,
-                                                    const LayerView& layer);
+SurfacePoint nearest_point(const mesh::SearchTree& tree, const glm::dvec3& origin,
+                           const glm::dvec3& world_point, const std::vector<LayerView>& layers);
+SurfacePoint pick(const mesh::SearchTree& tree, const glm::dvec3& origin, const Camera& camera,
+                  double x, double y, const std::vector<LayerView>& layers);
+// What the layer has in the middle of each cell of a grid over the camera's window, row by row from
+// the top left; nothing where there is no surface or nothing is painted. Of a layer of whole
+// numbers that are not negative.
+std::vector<std::optional<std::uint32_t>> seen_keys(const mesh::SearchTree& tree,
+                                                    const glm::dvec3& origin, const Camera& camera,
+                                                    int columns, int rows, const LayerView& layer);
 
 }  // namespace strata::query

@@ -32,8 +32,9 @@ std::size_t ply_bytes(ValueType type) {
 
 std::string property_name(const std::string& slug) {
   static constexpr std::string_view kTaken[] = {
-      "x",     "y",    "z",     "nx",     "ny",    "nz",     "s",       "t",         "u",          "v",    "red",
-      "green", "blue", "alpha", "radius", "value", "scalar", "quality", "intensity", "confidence", "flags"};
+      "x",      "y",     "z",      "nx",      "ny",        "nz",         "s",
+      "t",      "u",     "v",      "red",     "green",     "blue",       "alpha",
+      "radius", "value", "scalar", "quality", "intensity", "confidence", "flags"};
   return std::ranges::find(kTaken, slug) == std::end(kTaken) ? slug : "layer_" + slug;
 }
 
@@ -49,36 +50,45 @@ VertexPly::VertexPly(std::shared_ptr<const mesh::Geometry> geometry, std::vector
                      std::optional<VertexColors> colors)
     : geometry_(std::move(geometry)), layers_(std::move(layers)), colors_(std::move(colors)) {
   const mesh::Geometry& mesh = *geometry_;
-  for (const glm::dvec3& position : mesh.positions) has_doubles_ |= glm::dvec3(glm::vec3(position)) != position;
-  const auto same_color = [&](const mesh::Vertex& vertex) { return vertex.color == mesh.vertices.front().color; };
+  for (const glm::dvec3& position : mesh.positions)
+    has_doubles_ |= glm::dvec3(glm::vec3(position)) != position;
+  const auto same_color = [&](const mesh::Vertex& vertex) {
+    return vertex.color == mesh.vertices.front().color;
+  };
   has_colors_ = colors_ || !std::ranges::all_of(mesh.vertices, same_color);
   first_.assign(mesh.positions.size() + 1, 0);
   for (const mesh::Vertex& vertex : mesh.vertices) ++first_[vertex.position_index + 1];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   vertices_.resize(mesh.vertices.size());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) vertices_[next[mesh.vertices[i].position_index]++] = i;
+  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i)
+    vertices_[next[mesh.vertices[i].position_index]++] = i;
 }
 
 std::string VertexPly::head() const {
   const char* place = has_doubles_ ? "double" : "float";
-  std::string text =
-      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(geometry_->positions.size()) + "\n";
-  for (const char* axis : {"x", "y", "z"}) text += std::string("property ") + place + " " + axis + "\n";
+  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                     std::to_string(geometry_->positions.size()) + "\n";
+  for (const char* axis : {"x", "y", "z"})
+    text += std::string("property ") + place + " " + axis + "\n";
   if (has_colors_)
-    for (const char* channel : {"red", "green", "blue"}) text += std::string("property uchar ") + channel + "\n";
+    for (const char* channel : {"red", "green", "blue"})
+      text += std::string("property uchar ") + channel + "\n";
   for (const LayerView& view : layers_) {
     const std::string name = property_name(view.layer.slug);
-    text += std::string("property ") + ply_type(view.layer.type) + " " + name + "\nproperty uchar " + name + "_valid\n";
+    text += std::string("property ") + ply_type(view.layer.type) + " " + name +
+            "\nproperty uchar " + name + "_valid\n";
   }
   return text + "element face " + std::to_string(geometry_->triangle_count()) +
          "\nproperty list uchar uint vertex_indices\nend_header\n";
 }
 
 std::uint64_t VertexPly::bytes() const {
-  std::uint64_t of_vertex = 3 * (has_doubles_ ? sizeof(double) : sizeof(float)) + (has_colors_ ? 3 : 0);
+  std::uint64_t of_vertex =
+      3 * (has_doubles_ ? sizeof(double) : sizeof(float)) + (has_colors_ ? 3 : 0);
   for (const LayerView& view : layers_) of_vertex += ply_bytes(view.layer.type) + 1;
-  return head().size() + of_vertex * geometry_->positions.size() + kFaceBytes * geometry_->triangle_count();
+  return head().size() + of_vertex * geometry_->positions.size() +
+         kFaceBytes * geometry_->triangle_count();
 }
 
 void VertexPly::append_vertex(std::uint32_t position, std::vector<std::uint8_t>& out) const {
@@ -89,18 +99,21 @@ void VertexPly::append_vertex(std::uint32_t position, std::vector<std::uint8_t>&
       append(out, place[axis]);
     else
       append(out, static_cast<float>(place[axis]));
-  const std::span of_position(vertices_.data() + first_[position], vertices_.data() + first_[position + 1]);
+  const std::span of_position(vertices_.data() + first_[position],
+                              vertices_.data() + first_[position + 1]);
   if (colors_) {
     const auto color = colors_->at(of_position);
     out.insert(out.end(), color.begin(), color.end());
   } else if (has_colors_) {
     const std::uint32_t color = of_position.empty() ? 0 : mesh.vertices[of_position.front()].color;
-    for (int channel = 0; channel < 3; ++channel) out.push_back(static_cast<std::uint8_t>(color >> (8 * channel)));
+    for (int channel = 0; channel < 3; ++channel)
+      out.push_back(static_cast<std::uint8_t>(color >> (8 * channel)));
   }
   for (const LayerView& view : layers_) {
     std::optional<std::uint32_t> bits;
     for (const std::uint32_t vertex : of_position)
-      if (!bits) bits = bits_at(view.snapshot.tiles, view.layer.resolution, mesh.vertices[vertex].uv);
+      if (!bits)
+        bits = bits_at(view.snapshot.tiles, view.layer.resolution, mesh.vertices[vertex].uv);
     if (view.layer.type == ValueType::f16) {
       append(out, static_cast<float>(decode_value(view.layer.type, bits.value_or(0))));
     } else {

@@ -14,20 +14,24 @@
 namespace strata::render {
 namespace {
 
-// Float arithmetic of the shader and the rounding of packed positions move a texel by far less than this.
+// Float arithmetic of the shader and the rounding of packed positions move a texel by far less than
+// this.
 constexpr double kMargin_px = 0.05;
 constexpr double kMarginDepth = 1e-6;
 constexpr double kMarginRadius = 1e-5;  // of a sphere, relative
 
 // Bounds of (row_i · p) / (row_w · p) over a sphere: the planes row_i - k row_w that touch it.
-std::pair<double, double> ratio_bounds(double a, double b, double radius, double aa, double ab, double bb) {
+std::pair<double, double> ratio_bounds(double a, double b, double radius, double aa, double ab,
+                                       double bb) {
   const double r2 = radius * radius;
   const double qa = b * b - r2 * bb, qb = a * b - r2 * ab, qc = a * a - r2 * aa;
   const double root = std::sqrt(std::max(0.0, qb * qb - qa * qc));
   return {(qb - root) / qa, (qb + root) / qa};
 }
 
-double half_diagonal(const PixelBox& box) { return glm::length(glm::dvec2(box.x1 - box.x0, box.y1 - box.y0)) / 2; }
+double half_diagonal(const PixelBox& box) {
+  return glm::length(glm::dvec2(box.x1 - box.x0, box.y1 - box.y0)) / 2;
+}
 
 double distance_to_axis(const shader::EditSegment& s, const glm::dvec2& point) {
   const glm::dvec2 a{s.ends.x, s.ends.y}, along = glm::dvec2(s.ends.z, s.ends.w) - a;
@@ -43,15 +47,18 @@ constexpr std::size_t kSubtreesForThreads = 32;
 // Under a large tool most blocks are taken by the eight: to test each costs as much as to paint it.
 constexpr std::size_t kWholeLevel = 1;
 
-// The sides of the tool's box in the window as planes through the eye; a sphere beyond one is left out by a tenth of what its
-// exact box costs.
-std::array<glm::dvec4, 4> sides_of(const PixelBox& tool, const glm::dmat4& clip, int width, int height) {
+// The sides of the tool's box in the window as planes through the eye; a sphere beyond one is left
+// out by a tenth of what its exact box costs.
+std::array<glm::dvec4, 4> sides_of(const PixelBox& tool, const glm::dmat4& clip, int width,
+                                   int height) {
   const glm::dmat4 rows = glm::transpose(clip);
   // Window x · w is linear in the position, and w is above 0 where anything is painted.
-  const glm::dvec4 x = 0.5 * width * (rows[0] + rows[3]), y = 0.5 * height * (rows[1] + rows[3]), w = rows[3];
-  std::array planes = {
-      x - (std::max(tool.x0, 0.0) - kMargin_px) * w, (std::min(tool.x1, double(width)) + kMargin_px) * w - x,
-      y - (std::max(tool.y0, 0.0) - kMargin_px) * w, (std::min(tool.y1, double(height)) + kMargin_px) * w - y};
+  const glm::dvec4 x = 0.5 * width * (rows[0] + rows[3]), y = 0.5 * height * (rows[1] + rows[3]),
+                   w = rows[3];
+  std::array planes = {x - (std::max(tool.x0, 0.0) - kMargin_px) * w,
+                       (std::min(tool.x1, double(width)) + kMargin_px) * w - x,
+                       y - (std::max(tool.y0, 0.0) - kMargin_px) * w,
+                       (std::min(tool.y1, double(height)) + kMargin_px) * w - y};
   for (auto& plane : planes) {
     const double length = glm::length(glm::dvec3(plane));
     plane = length > 0 ? plane / length : glm::dvec4(0, 0, 0, 1);
@@ -81,14 +88,15 @@ std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int w
   const auto [y0, y1] = bounds(1);
   const auto [z0, z1] = bounds(2);
   if (z1 < -1 || z0 > 1) return std::nullopt;
-  return WindowBox{
-      {(x0 * 0.5 + 0.5) * width, (y0 * 0.5 + 0.5) * height, (x1 * 0.5 + 0.5) * width, (y1 * 0.5 + 0.5) * height},
-      z0 * 0.5 + 0.5,
-      w - w_reach};
+  return WindowBox{{(x0 * 0.5 + 0.5) * width, (y0 * 0.5 + 0.5) * height, (x1 * 0.5 + 0.5) * width,
+                    (y1 * 0.5 + 0.5) * height},
+                   z0 * 0.5 + 0.5,
+                   w - w_reach};
 }
 
-BlockCuller::BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_from_model, int width, int height,
-                         const ToolPath& path, const DepthBias& bias, const DepthGrid& grid)
+BlockCuller::BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_from_model, int width,
+                         int height, const ToolPath& path, const DepthBias& bias,
+                         const DepthGrid& grid)
     : map_(map),
       clip_(clip_from_model),
       width_(width),
@@ -98,10 +106,11 @@ BlockCuller::BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_fro
       grid_(grid),
       tool_planes_(sides_of(path.box, clip_from_model, width, height)) {}
 
-// take(level, index, under) of the subtrees below one that passed, each as soon as it is of `stop_level` or wholly in the tool.
+// take(level, index, under) of the subtrees below one that passed, each as soon as it is of
+// `stop_level` or wholly in the tool.
 template <class Take>
-void BlockCuller::descend(std::size_t level, std::size_t index, const Under& under, std::size_t stop_level,
-                          Scratch& scratch, Take&& take) const {
+void BlockCuller::descend(std::size_t level, std::size_t index, const Under& under,
+                          std::size_t stop_level, Scratch& scratch, Take&& take) const {
   if (level == stop_level || (level <= kWholeLevel && under.all_of_it)) {
     take(level, index, under);
     return;
@@ -109,8 +118,10 @@ void BlockCuller::descend(std::size_t level, std::size_t index, const Under& und
   const auto& children = map_.tree.levels[level - 1];
   const std::size_t first = index * mesh::BlockTree::kChildren;
   Under& under_child = scratch[level - 1];
-  for (std::size_t child = first; child < std::min(first + mesh::BlockTree::kChildren, children.size()); ++child)
-    if (passes(children[child], under, under_child)) descend(level - 1, child, under_child, stop_level, scratch, take);
+  for (std::size_t child = first;
+       child < std::min(first + mesh::BlockTree::kChildren, children.size()); ++child)
+    if (passes(children[child], under, under_child))
+      descend(level - 1, child, under_child, stop_level, scratch, take);
 }
 
 std::vector<BlockCuller::Subtree> BlockCuller::find_subtrees() const {
@@ -136,7 +147,8 @@ BlockCuller::Found BlockCuller::find_parts(const Subtree& subtree) const {
     const auto list = found.segment_lists.add(under.segments);
     const auto count = static_cast<std::uint32_t>(under.segments.size());
     std::size_t first = index, last = index + 1;
-    for (; level > 0; --level) first *= mesh::BlockTree::kChildren, last *= mesh::BlockTree::kChildren;
+    for (; level > 0; --level)
+      first *= mesh::BlockTree::kChildren, last *= mesh::BlockTree::kChildren;
     for (last = std::min(last, map_.tree.parts.size()); first < last; ++first)
       found.parts.push_back({static_cast<std::uint32_t>(first), list, count, under.all_of_it});
   };
@@ -148,7 +160,8 @@ BlockCuller::Found BlockCuller::find_parts(const Subtree& subtree) const {
 TouchedParts BlockCuller::find(int threads) const {
   const auto subtrees = find_subtrees();
   std::vector<Found> found(subtrees.size());
-  mesh::parallel_for(subtrees.size() < kSubtreesForThreads ? 1 : threads, static_cast<int>(subtrees.size()),
+  mesh::parallel_for(subtrees.size() < kSubtreesForThreads ? 1 : threads,
+                     static_cast<int>(subtrees.size()),
                      [&](int i) { found[i] = find_parts(subtrees[i]); });
 
   TouchedParts touched;
@@ -159,7 +172,8 @@ TouchedParts BlockCuller::find(int threads) const {
   std::size_t count = 0;
   for (std::size_t tile = 0; tile < end.size(); ++tile) {
     if (end[tile] == 0) continue;
-    const auto x = static_cast<std::uint16_t>(tile % per_side), y = static_cast<std::uint16_t>(tile / per_side);
+    const auto x = static_cast<std::uint16_t>(tile % per_side),
+               y = static_cast<std::uint16_t>(tile / per_side);
     touched.tiles.push_back({{x, y}, count, end[tile]});
     count += std::exchange(end[tile], static_cast<std::uint32_t>(count));
   }
@@ -194,7 +208,8 @@ void BlockCuller::add_blocks(const TouchedParts& touched, const TouchedParts::Ti
       return touched.segment_lists.at(of.segments, of.segment_count);
     };
     const mesh::BlockTree::Part& in_tree = map_.tree.parts[part.part];
-    CandidateBlock block{in_tree.slot, tile.address, place, 0, part.segment_count, part.part, part.in_tool};
+    CandidateBlock block{in_tree.slot,       tile.address, place,       0,
+                         part.segment_count, part.part,    part.in_tool};
     if (in_tree.shares_block) block.in_tool = false;  // other parts may lie elsewhere
     if (next[first[place]] == kNone) {
       block.segments = candidates.segment_lists.add(list_of(part));
@@ -214,7 +229,8 @@ void BlockCuller::add_blocks(const TouchedParts& touched, const TouchedParts::Ti
   }
 }
 
-bool BlockCuller::passes(const mesh::BoundingSphere& bounds, const Under& parent, Under& under) const {
+bool BlockCuller::passes(const mesh::BoundingSphere& bounds, const Under& parent,
+                         Under& under) const {
   if (leaves_out(bounds)) return false;
   const auto box = project(bounds);
   if (!box) return false;
@@ -245,18 +261,21 @@ std::optional<WindowBox> BlockCuller::project(const mesh::BoundingSphere& bounds
   if (!found) return found;
   auto& box = found->box;
   box = {box.x0 - kMargin_px, box.y0 - kMargin_px, box.x1 + kMargin_px, box.y1 + kMargin_px};
-  if (box.x1 < 0 || box.y1 < 0 || box.x0 > width_ || box.y0 > height_ || !box.overlaps(path_.box)) return std::nullopt;
+  if (box.x1 < 0 || box.y1 < 0 || box.x0 > width_ || box.y0 > height_ || !box.overlaps(path_.box))
+    return std::nullopt;
   return found;
 }
 
-// The circle around the box against the segment's axis: long slanted segments have boxes much larger than they are.
+// The circle around the box against the segment's axis: long slanted segments have boxes much
+// larger than they are.
 bool BlockCuller::lies_under(const WindowBox& window, std::uint32_t segment) const {
   const PixelBox& box = window.box;
   if (!path_.boxes[segment].overlaps(box)) return false;
   const auto& s = path_.segments[segment];
   const glm::dvec2 center{(box.x0 + box.x1) / 2, (box.y0 + box.y1) / 2};
   const double around = half_diagonal(box);
-  const double reach = std::max(s.tool.x, s.tool.y) * std::sqrt(2.0) + around;  // √2: squares reach that far
+  // √2: squares reach that far
+  const double reach = std::max(s.tool.x, s.tool.y) * std::sqrt(2.0) + around;
   return distance_to_axis(s, center) <= reach;
 }
 
@@ -277,7 +296,8 @@ bool BlockCuller::keep_covering(const WindowBox& window, std::vector<std::uint32
 
 bool BlockCuller::is_hidden(const WindowBox& window) const {
   if (!grid_.cells || window.w0 <= 0) return false;
-  const double bias = bias_.fixed ? *bias_.fixed : bias_.scale / (window.w0 * window.w0) * (1 + bias_.slope_limit);
+  const double bias =
+      bias_.fixed ? *bias_.fixed : bias_.scale / (window.w0 * window.w0) * (1 + bias_.slope_limit);
   const double nearest = window.z0 - bias - kMarginDepth;
   const auto cell = [](double pixel, int count) {
     return static_cast<int>(std::clamp(std::floor(pixel / shader::kDepthCell), 0.0, count - 1.0));

@@ -55,8 +55,8 @@ struct TouchedParts {
   SegmentLists segment_lists;
 };
 
-// Exact window box of a sphere (`z0`: nearest window depth, `w0`: smallest w); empty when it is behind the eye; the whole
-// window when the eye's plane cuts it.
+// Exact window box of a sphere (`z0`: nearest window depth, `w0`: smallest w); empty when it is
+// behind the eye; the whole window when the eye's plane cuts it.
 struct WindowBox {
   PixelBox box;
   double z0 = 0, w0 = 0;
@@ -64,10 +64,11 @@ struct WindowBox {
 std::optional<WindowBox> project_sphere(const glm::dmat4& clip_from_model, int width, int height,
                                         const glm::dvec3& center, double radius);
 
-// Blocks of the surface map that a stroke may touch: spheres around ever fewer of them are projected to the window and tested
-// against the window, the tool's segments and the depth grid. Conservative: never leaves out a texel that the edit would
-// write. Each block gets the list of segments it may lie under. What it is made of must outlive it; const functions may run
-// on several threads.
+// Blocks of the surface map that a stroke may touch: spheres around ever fewer of them are
+// projected to the window and tested against the window, the tool's segments and the depth grid.
+// Conservative: never leaves out a texel that the edit would write. Each block gets the list of
+// segments it may lie under. What it is made of must outlive it; const functions may run on several
+// threads.
 class BlockCuller {
  public:
   BlockCuller(const mesh::SurfaceMap& map, const glm::dmat4& clip_from_model, int width, int height,
@@ -76,7 +77,8 @@ class BlockCuller {
   // On up to `threads` threads where there is much to find.
   TouchedParts find(int threads) const;
   // The blocks of a tile, row-major.
-  void add_blocks(const TouchedParts& touched, const TouchedParts::Tile& tile, Candidates& candidates) const;
+  void add_blocks(const TouchedParts& touched, const TouchedParts::Tile& tile,
+                  Candidates& candidates) const;
 
  private:
   struct Under {
@@ -93,8 +95,8 @@ class BlockCuller {
   };
   using Scratch = std::array<Under, 16>;  // one a level of the tree
   template <class Take>
-  void descend(std::size_t level, std::size_t index, const Under& under, std::size_t stop_level, Scratch& scratch,
-               Take&& take) const;
+  void descend(std::size_t level, std::size_t index, const Under& under, std::size_t stop_level,
+               Scratch& scratch, Take&& take) const;
   std::vector<Subtree> find_subtrees() const;
   Found find_parts(const Subtree& subtree) const;
   bool passes(const mesh::BoundingSphere& bounds, const Under& parent, Under& under) const;

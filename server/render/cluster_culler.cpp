@@ -21,8 +21,9 @@ Result<ClusterCuller> ClusterCuller::create(const std::filesystem::path& shader_
   return culler;
 }
 
-Result<void> ClusterCuller::hide(const gl::Texture& depth, const MeshBuffers& mesh, const glm::mat4& clip_from_model,
-                                 const gl::Buffer& commands, std::size_t first, std::size_t count) {
+Result<void> ClusterCuller::hide(const gl::Texture& depth, const MeshBuffers& mesh,
+                                 const glm::mat4& clip_from_model, const gl::Buffer& commands,
+                                 std::size_t first, std::size_t count) {
   if (auto made = grid_.run(depth, cells_); !made) return made;
   program_.use();
   glProgramUniformMatrix4fv(program_.id(), 0, 1, GL_FALSE, glm::value_ptr(clip_from_model));

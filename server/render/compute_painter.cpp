@@ -56,8 +56,9 @@ Result<void> ComputePainter::cull(GpuScene& scene, const PaintTarget& target) {
     if (auto made = scene.depths().make_grid(*depth_); !made) return made;
   }
   const mesh::Geometry& geometry = target.mesh.geometry();
-  auto touched = scene.edit_culler().dispatch(stroke_, geometry.origin, path_, depth_bias(geometry), target.map,
-                                              stroke_.through ? nullptr : &depth_->grid, target.layer);
+  auto touched = scene.edit_culler().dispatch(stroke_, geometry.origin, path_, depth_bias(geometry),
+                                              target.map, stroke_.through ? nullptr : &depth_->grid,
+                                              target.layer);
   if (!touched) return tl::unexpected(touched.error());
   touched_ = std::move(*touched);
   return {};
@@ -73,8 +74,9 @@ Result<void> ComputePainter::dispatch(GpuScene& scene, const PaintTarget& target
     if (!room) return tl::unexpected(room.error());
     tiles_ = std::move(*room);
   }
-  auto edit = scene.edit_pass().dispatch(stroke_, std::move(touched), scene.edit_culler(), target.map,
-                                         depth_ ? &depth_->texture : nullptr, target.layer, scene.tables());
+  auto edit =
+      scene.edit_pass().dispatch(stroke_, std::move(touched), scene.edit_culler(), target.map,
+                                 depth_ ? &depth_->texture : nullptr, target.layer, scene.tables());
   if (!edit) return tl::unexpected(edit.error());
   edit_ = std::move(*edit);
   outcome_.bytes_up += edit_.fresh_tiles.size() * sizeof(PageId);
@@ -84,14 +86,16 @@ Result<void> ComputePainter::dispatch(GpuScene& scene, const PaintTarget& target
 
 void ComputePainter::collect_edited(GpuScene& scene, const PaintTarget& target) {
   const EditedTiles edited = EditPass::edited(edit_);
-  outcome_.edit_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin_).count();
+  outcome_.edit_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin_).count();
   outcome_.gpu_ms = scene.edit_culler().gpu_ms() + (edit_.edited ? scene.edit_pass().gpu_ms() : 0);
   for (const TileAddress tile : edit_.fresh_tiles) {
     if (!edited.masks.contains(tile)) target.layer.free_page(tile);
   }
   outcome_.written_min = edited.written_min;
   outcome_.written_max = edited.written_max;
-  for (const auto& [tile, mask] : edited.masks) outcome_.tiles.push_back({tile, mask, TileData(target.layer.type())});
+  for (const auto& [tile, mask] : edited.masks)
+    outcome_.tiles.push_back({tile, mask, TileData(target.layer.type())});
   edit_ = {};
 }
 

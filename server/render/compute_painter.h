@@ -6,8 +6,8 @@
 
 namespace strata::render {
 
-// Radii under the path → the parts that may be touched → the dispatch over them → which texels it wrote → the tiles with them. After
-// the dispatch nothing can fail but the context.
+// Radii under the path → the parts that may be touched → the dispatch over them → which texels it
+// wrote → the tiles with them. After the dispatch nothing can fail but the context.
 class ComputePainter : public StrokePainter {
  public:
   using StrokePainter::StrokePainter;

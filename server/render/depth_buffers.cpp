@@ -23,15 +23,17 @@ void DepthBuffer::start(const DepthKey& new_key) {
   copy.reset();
 }
 
-Result<DepthBuffers> DepthBuffers::create(const std::filesystem::path& shader_dir, std::size_t triangles_per_slice,
-                                          GpuMemory& memory, gl::ReadbackPool& readback) {
+Result<DepthBuffers> DepthBuffers::create(const std::filesystem::path& shader_dir,
+                                          std::size_t triangles_per_slice, GpuMemory& memory,
+                                          gl::ReadbackPool& readback) {
   auto pass = MeshPass::create(MeshPass::Kind::depth, shader_dir, triangles_per_slice);
   if (!pass) return tl::unexpected(pass.error());
   auto grid = DepthGridPass::create(shader_dir);
   if (!grid) return tl::unexpected(grid.error());
   auto gather = gl::Program::load(shader_dir, {"depth_gather_pass.comp"});
   if (!gather) return tl::unexpected(gather.error());
-  auto pixels = gl::Buffer::create(kMaxPathPoints * sizeof(glm::ivec2), gl::Buffer::Use::fixed, "depth gather pixels");
+  auto pixels = gl::Buffer::create(kMaxPathPoints * sizeof(glm::ivec2), gl::Buffer::Use::fixed,
+                                   "depth gather pixels");
   if (!pixels) return tl::unexpected(pixels.error());
   DepthBuffers buffers;
   buffers.memory_ = &memory;
@@ -44,8 +46,9 @@ Result<DepthBuffers> DepthBuffers::create(const std::filesystem::path& shader_di
 }
 
 Result<std::shared_ptr<DepthBuffer>> DepthBuffers::make(const DepthKey& key) {
-  auto share = memory_->reserve(std::uint64_t{4} * static_cast<unsigned>(key.width) * static_cast<unsigned>(key.height),
-                                "a depth buffer");
+  auto share = memory_->reserve(
+      std::uint64_t{4} * static_cast<unsigned>(key.width) * static_cast<unsigned>(key.height),
+      "a depth buffer");
   if (!share) return tl::unexpected(share.error());
   auto texture = gl::Texture::create_2d(GL_DEPTH_COMPONENT32F, key.width, key.height, "depth");
   if (!texture) return tl::unexpected(texture.error());
@@ -61,7 +64,8 @@ Result<std::shared_ptr<DepthBuffer>> DepthBuffers::make(const DepthKey& key) {
 
 void DepthBuffers::offer(const std::shared_ptr<DepthBuffer>& buffer) {
   std::erase_if(offered_, [](const auto& other) { return other.expired(); });
-  const bool known = std::any_of(offered_.begin(), offered_.end(), [&](const auto& o) { return o.lock() == buffer; });
+  const bool known = std::any_of(offered_.begin(), offered_.end(),
+                                 [&](const auto& o) { return o.lock() == buffer; });
   if (!known) offered_.push_back(buffer);
 }
 
@@ -69,7 +73,8 @@ std::shared_ptr<DepthBuffer> DepthBuffers::find(const DepthKey& key) {
   for (const auto& weak : offered_) {
     if (auto buffer = weak.lock(); buffer && buffer->complete && buffer->key == key) return buffer;
   }
-  const auto found = std::find_if(recent_.begin(), recent_.end(), [&](const auto& b) { return b->key == key; });
+  const auto found =
+      std::find_if(recent_.begin(), recent_.end(), [&](const auto& b) { return b->key == key; });
   if (found == recent_.end()) return nullptr;
   auto buffer = *found;
   recent_.erase(found);
@@ -81,7 +86,8 @@ Result<std::shared_ptr<DepthBuffer>> DepthBuffers::start(const DepthKey& key) {
   if (recent_.size() >= kRecent) {
     auto oldest = std::move(recent_.back());
     recent_.pop_back();
-    if (oldest.use_count() == 1 && oldest->key.width == key.width && oldest->key.height == key.height) {
+    if (oldest.use_count() == 1 && oldest->key.width == key.width &&
+        oldest->key.height == key.height) {
       oldest->start(key);
       return oldest;
     }
@@ -89,8 +95,9 @@ Result<std::shared_ptr<DepthBuffer>> DepthBuffers::start(const DepthKey& key) {
   return make(key);
 }
 
-Result<bool> DepthBuffers::draw_slice(const std::shared_ptr<DepthBuffer>& buffer, const MeshBuffers& mesh,
-                                      const Camera& camera, MeshProgress& progress) {
+Result<bool> DepthBuffers::draw_slice(const std::shared_ptr<DepthBuffer>& buffer,
+                                      const MeshBuffers& mesh, const Camera& camera,
+                                      MeshProgress& progress) {
   const auto drawn = pass_.draw_slice(mesh, mesh_view(camera, mesh.geometry().origin),
                                       {buffer->framebuffer, buffer->texture}, progress);
   if (!drawn || !*drawn) return drawn;
@@ -114,7 +121,8 @@ void DepthBuffers::copy_to_memory(DepthBuffer& buffer, int threads) {
   std::vector<float> depth(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   glGetTextureImage(buffer.texture.id(), 0, GL_DEPTH_COMPONENT, GL_FLOAT,
                     static_cast<GLsizei>(depth.size() * sizeof(float)), depth.data());
-  buffer.copy = std::make_shared<const DepthCopy>(make_depth_copy(std::move(depth), width, height, threads));
+  buffer.copy =
+      std::make_shared<const DepthCopy>(make_depth_copy(std::move(depth), width, height, threads));
 }
 
 Result<void> DepthBuffers::make_grid(DepthBuffer& buffer) const {
@@ -124,7 +132,8 @@ Result<void> DepthBuffers::make_grid(DepthBuffer& buffer) const {
   return {};
 }
 
-Result<gl::Readback> DepthBuffers::begin_gather(const DepthBuffer& buffer, std::span<const glm::ivec2> pixels) {
+Result<gl::Readback> DepthBuffers::begin_gather(const DepthBuffer& buffer,
+                                                std::span<const glm::ivec2> pixels) {
   auto depths = readback_->begin(pixels.size() * sizeof(float));
   if (!depths) return depths;
   pixels_.upload_values(0, pixels);

@@ -28,7 +28,8 @@ struct DepthKey {
 // Of a picture of width x height pixels, which the camera's window is scaled to.
 DepthKey depth_key(std::uint64_t model, const Camera& camera, int width, int height);
 
-// Depth of a mesh from one camera; its coarse grid of largest depths and its copy are made when first asked for.
+// Depth of a mesh from one camera; its coarse grid of largest depths and its copy are made when
+// first asked for.
 struct DepthBuffer {
   DepthKey key;
   bool complete = false;  // every triangle was drawn
@@ -42,12 +43,13 @@ struct DepthBuffer {
   void start(const DepthKey& new_key);  // forgets what it holds
 };
 
-// Depth buffers for edits and views: a view's own is shared with edits from the same camera; some recent ones of cameras
-// that no view has are kept.
+// Depth buffers for edits and views: a view's own is shared with edits from the same camera; some
+// recent ones of cameras that no view has are kept.
 class DepthBuffers {
  public:
-  static Result<DepthBuffers> create(const std::filesystem::path& shader_dir, std::size_t triangles_per_slice,
-                                     GpuMemory& memory, gl::ReadbackPool& readback);
+  static Result<DepthBuffers> create(const std::filesystem::path& shader_dir,
+                                     std::size_t triangles_per_slice, GpuMemory& memory,
+                                     gl::ReadbackPool& readback);
 
   Result<std::shared_ptr<DepthBuffer>> make(const DepthKey& key);
   // A view's buffer, for `find`.
@@ -56,12 +58,13 @@ class DepthBuffers {
   // For a camera that no buffer is found for: one to be drawn by `draw_slice`.
   Result<std::shared_ptr<DepthBuffer>> start(const DepthKey& key);
   // True when the mesh is complete; the buffer is then kept as a recent one.
-  Result<bool> draw_slice(const std::shared_ptr<DepthBuffer>& buffer, const MeshBuffers& mesh, const Camera& camera,
-                          MeshProgress& progress);
+  Result<bool> draw_slice(const std::shared_ptr<DepthBuffer>& buffer, const MeshBuffers& mesh,
+                          const Camera& camera, MeshProgress& progress);
   bool evict_one();
   void forget_model(std::uint64_t model);
 
-  // Makes `buffer.copy`, on `threads` threads. Waits for the GPU: a fence after the drawing tells when it does not.
+  // Makes `buffer.copy`, on `threads` threads. Waits for the GPU: a fence after the drawing tells
+  // when it does not.
   static void copy_to_memory(DepthBuffer& buffer, int threads);
 
   // Makes `buffer.grid` (see DepthGridPass).

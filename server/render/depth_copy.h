@@ -15,8 +15,8 @@ constexpr int depth_cells(int pixels) {
 struct DepthCopy {
   int width = 0, height = 0;
   std::vector<float> depth;
-  // How much the depth changes within half a pixel to either side: the sum, over both axes, of the smaller of two one-sided
-  // differences (shaders/edit_pass.comp asks the same of the texture).
+  // How much the depth changes within half a pixel to either side: the sum, over both axes, of the
+  // smaller of two one-sided differences (shaders/edit_pass.comp asks the same of the texture).
   std::vector<float> slope;
   std::vector<float> grid;  // largest depth of each cell of kDepthCell pixels a side
 };

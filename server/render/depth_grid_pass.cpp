@@ -13,8 +13,8 @@ Result<DepthGridPass> DepthGridPass::create(const std::filesystem::path& shader_
 }
 
 std::size_t DepthGridPass::bytes(const gl::Texture& depth) {
-  return static_cast<std::size_t>(depth_cells(depth.width())) * static_cast<std::size_t>(depth_cells(depth.height())) *
-         sizeof(float);
+  return static_cast<std::size_t>(depth_cells(depth.width())) *
+         static_cast<std::size_t>(depth_cells(depth.height())) * sizeof(float);
 }
 
 Result<void> DepthGridPass::run(const gl::Texture& depth, gl::Buffer& grid) const {

@@ -8,8 +8,8 @@
 
 namespace strata::render {
 
-// The coarse grid of a depth texture: the largest depth of each cell of kDepthCell pixels a side. What lies behind it in the
-// whole cell is hidden.
+// The coarse grid of a depth texture: the largest depth of each cell of kDepthCell pixels a side.
+// What lies behind it in the whole cell is hidden.
 class DepthGridPass {
  public:
   static Result<DepthGridPass> create(const std::filesystem::path& shader_dir);

@@ -13,11 +13,13 @@ constexpr double kShareOfNew = 0.2;
 
 }  // namespace
 
-DetailBudget::DetailBudget(bool software) : ns_per_triangle_(software ? kNsSoftware : kNsHardware) {}
+DetailBudget::DetailBudget(bool software)
+    : ns_per_triangle_(software ? kNsSoftware : kNsHardware) {}
 
 int DetailBudget::choose(std::span<const std::size_t> triangles) const {
   for (std::size_t level = 0; level < triangles.size(); ++level) {
-    if (static_cast<double>(triangles[level]) * ns_per_triangle_ * 1e-6 <= kBudgetMs) return static_cast<int>(level);
+    if (static_cast<double>(triangles[level]) * ns_per_triangle_ * 1e-6 <= kBudgetMs)
+      return static_cast<int>(level);
   }
   return static_cast<int>(triangles.size()) - 1;
 }

@@ -5,8 +5,8 @@
 
 namespace strata::render {
 
-// How fine a model may be drawn while its camera moves: the finest level that fits into a few milliseconds, by what drawings of
-// this GPU took before.
+// How fine a model may be drawn while its camera moves: the finest level that fits into a few
+// milliseconds, by what drawings of this GPU took before.
 class DetailBudget {
  public:
   DetailBudget() = default;

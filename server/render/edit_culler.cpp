@@ -15,18 +15,21 @@ constexpr std::size_t kMarksBegin = offsetof(shader::EditTiles, number_of_tile),
                       kCountBytes = offsetof(shader::EditTiles, tiles);
 constexpr std::uint32_t kSegmentBits = 32;
 
-shader::EditUniforms make_uniforms(const StrokeBatch& stroke, const glm::dvec3& origin, const ToolPath& path,
-                                   const DepthBias& bias) {
+shader::EditUniforms make_uniforms(const StrokeBatch& stroke, const glm::dvec3& origin,
+                                   const ToolPath& path, const DepthBias& bias) {
   static_assert(kMaxSectionPlanes == shader::kSectionPlanes);
   shader::EditUniforms uniforms{};
   uniforms.clip_from_model = clip_from_model(stroke.camera, origin);
   uniforms.window = glm::vec4(stroke.camera.width, stroke.camera.height, 0, 0);
   uniforms.tool_box = glm::vec4(path.box.x0, path.box.y0, path.box.x1, path.box.y1);
-  uniforms.bias = glm::vec4(bias.fixed.value_or(0), bias.scale, bias.slope_factor, bias.slope_limit);
+  uniforms.bias =
+      glm::vec4(bias.fixed.value_or(0), bias.scale, bias.slope_factor, bias.slope_limit);
   uniforms.value = stroke.value_bits;
-  uniforms.flags = (stroke.erase ? shader::kEditErase : 0u) | (stroke.through ? shader::kEditThrough : 0u) |
+  uniforms.flags = (stroke.erase ? shader::kEditErase : 0u) |
+                   (stroke.through ? shader::kEditThrough : 0u) |
                    (stroke.shape == ToolShape::square ? shader::kEditSquare : 0u) |
-                   (bias.fixed ? shader::kEditFixedBias : 0u) | (stroke.max_angle_deg ? shader::kEditFacing : 0u);
+                   (bias.fixed ? shader::kEditFixedBias : 0u) |
+                   (stroke.max_angle_deg ? shader::kEditFacing : 0u);
   uniforms.segment_count = static_cast<std::uint32_t>(path.segments.size());
   uniforms.segments_per_bit = (uniforms.segment_count + kSegmentBits - 1) / kSegmentBits;
   uniforms.inner_radius = static_cast<float>(path.inner_radius);
@@ -51,7 +54,8 @@ std::size_t used_bytes(const shader::EditUniforms& uniforms) {
 
 }  // namespace
 
-Result<EditCuller> EditCuller::create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback) {
+Result<EditCuller> EditCuller::create(const std::filesystem::path& shader_dir,
+                                      gl::ReadbackPool& readback) {
   auto program = gl::Program::load(shader_dir, {"edit_cull_pass.comp"});
   if (!program) return tl::unexpected(program.error());
   auto tiles = gl::Buffer::create(sizeof(shader::EditTiles), gl::Buffer::Use::fixed, "edit tiles");
@@ -64,9 +68,11 @@ Result<EditCuller> EditCuller::create(const std::filesystem::path& shader_dir, g
   return culler;
 }
 
-Result<gl::Readback> EditCuller::dispatch(const StrokeBatch& stroke, const glm::dvec3& origin, const ToolPath& path,
-                                          const DepthBias& bias, const SurfaceMapTextures& map,
-                                          const gl::Buffer* depth_grid, const LayerTextures& layer) {
+Result<gl::Readback> EditCuller::dispatch(const StrokeBatch& stroke, const glm::dvec3& origin,
+                                          const ToolPath& path, const DepthBias& bias,
+                                          const SurfaceMapTextures& map,
+                                          const gl::Buffer* depth_grid,
+                                          const LayerTextures& layer) {
   auto uniforms = make_uniforms(stroke, origin, path, bias);
   uniforms.part_count = static_cast<std::uint32_t>(map.map().tree.parts.size());
   uniforms.table_offset = layer.table_offset();
@@ -74,7 +80,8 @@ Result<gl::Readback> EditCuller::dispatch(const StrokeBatch& stroke, const glm::
   const std::span<const shader::EditSegment> segments(path.segments);
   bytes_up_ = sent.size_bytes() + segments.size_bytes();
   if (auto replaced = uniforms_.replace(sent); !replaced) return tl::unexpected(replaced.error());
-  if (auto replaced = segments_.replace(segments); !replaced) return tl::unexpected(replaced.error());
+  if (auto replaced = segments_.replace(segments); !replaced)
+    return tl::unexpected(replaced.error());
   const auto per_side = static_cast<std::size_t>(map.map().resolution / kTileSize);
   const std::size_t list_bytes = per_side * per_side * sizeof(std::uint32_t);
   auto read = readback_->begin(kCountBytes + list_bytes);
@@ -87,7 +94,8 @@ Result<gl::Readback> EditCuller::dispatch(const StrokeBatch& stroke, const glm::
   if (depth_grid) depth_grid->bind_storage(4);
   program_.use();
   timer_.begin();
-  if (const GLuint groups = (uniforms.part_count + shader::kEditPartsPerNode - 1) / shader::kEditPartsPerNode;
+  if (const GLuint groups =
+          (uniforms.part_count + shader::kEditPartsPerNode - 1) / shader::kEditPartsPerNode;
       groups > 0) {
     const GLuint columns = std::min(groups, shader::kEditGroupsPerRow);
     glDispatchCompute(columns, (groups + columns - 1) / columns, 1);
@@ -113,12 +121,14 @@ TouchedTiles EditCuller::touched(const gl::Readback& read, int resolution) {
   std::memcpy(counts.data(), read.data().data(), sizeof counts);
   std::vector<std::uint32_t> numbers(counts[1]);
   if (!numbers.empty())
-    std::memcpy(numbers.data(), read.data().data() + kCountBytes, numbers.size() * sizeof(std::uint32_t));
+    std::memcpy(numbers.data(), read.data().data() + kCountBytes,
+                numbers.size() * sizeof(std::uint32_t));
   TouchedTiles touched;
   touched.parts = counts[0];
   const auto per_side = static_cast<std::uint32_t>(resolution / kTileSize);
   for (const std::uint32_t tile : numbers)
-    touched.tiles.push_back({static_cast<std::uint16_t>(tile % per_side), static_cast<std::uint16_t>(tile / per_side)});
+    touched.tiles.push_back(
+        {static_cast<std::uint16_t>(tile % per_side), static_cast<std::uint16_t>(tile / per_side)});
   return touched;
 }
 

@@ -20,15 +20,19 @@ struct TouchedTiles {
   std::vector<TileAddress> tiles;  // by number
 };
 
-// BlockCuller on the GPU (shaders/edit_cull_pass.comp), where testing all nodes of the tree takes microseconds: the list of parts
-// stays there for EditPass; only the tiles come back, so that they get pages.
+// BlockCuller on the GPU (shaders/edit_cull_pass.comp), where testing all nodes of the tree takes
+// microseconds: the list of parts stays there for EditPass; only the tiles come back, so that they
+// get pages.
 class EditCuller {
  public:
-  static Result<EditCuller> create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback);
+  static Result<EditCuller> create(const std::filesystem::path& shader_dir,
+                                   gl::ReadbackPool& readback);
 
-  // Sends the stroke and lists the parts. `depth_grid` is null when the stroke goes through. `origin`: of the model.
-  Result<gl::Readback> dispatch(const StrokeBatch& stroke, const glm::dvec3& origin, const ToolPath& path,
-                                const DepthBias& bias, const SurfaceMapTextures& map, const gl::Buffer* depth_grid,
+  // Sends the stroke and lists the parts. `depth_grid` is null when the stroke goes through.
+  // `origin`: of the model.
+  Result<gl::Readback> dispatch(const StrokeBatch& stroke, const glm::dvec3& origin,
+                                const ToolPath& path, const DepthBias& bias,
+                                const SurfaceMapTextures& map, const gl::Buffer* depth_grid,
                                 const LayerTextures& layer);
   static TouchedTiles touched(const gl::Readback& read, int resolution);  // once it is ready
 

@@ -21,7 +21,8 @@ struct TileResult {
 };
 
 void put(std::uint64_t bits, std::uint32_t block_in_tile, TileMask& mask) {
-  const std::uint32_t first = (block_in_tile >> 4) * kBlockSize * kTileSize + (block_in_tile & 15) * kBlockSize;
+  const std::uint32_t first =
+      (block_in_tile >> 4) * kBlockSize * kTileSize + (block_in_tile & 15) * kBlockSize;
   for (std::uint32_t row = 0; row < kBlockSize; ++row) {
     const std::uint32_t texel = first + row * kTileSize;
     mask.words[texel / 64] |= (bits >> (row * kBlockSize) & 0xffu) << (texel % 64);
@@ -30,8 +31,8 @@ void put(std::uint64_t bits, std::uint32_t block_in_tile, TileMask& mask) {
 
 }  // namespace
 
-KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& culler, const BlockTest& test,
-                             TestBlock test_block, int threads) {
+KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& culler,
+                             const BlockTest& test, TestBlock test_block, int threads) {
   const TouchedParts touched = culler.find(threads);
   const auto& tiles = touched.tiles;
   std::vector<TileResult> results(tiles.size());
@@ -43,8 +44,9 @@ KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& cul
     result.tested_blocks = candidates.blocks.size();
     for (const CandidateBlock& block : candidates.blocks) {
       const auto segments = candidates.segment_lists.at(block.segments, block.segment_count);
-      const std::uint64_t bits = test_block(test, map.packed_position.data() + std::size_t{block.slot} * 64,
-                                            map.packed_box[block.slot], segments, block.in_tool);
+      const std::uint64_t bits =
+          test_block(test, map.packed_position.data() + std::size_t{block.slot} * 64,
+                     map.packed_box[block.slot], segments, block.in_tool);
       if (bits == 0) continue;
       put(bits, block.block_in_tile, result.written);
       const auto& bounds = block.bounds(map);
@@ -54,7 +56,9 @@ KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& cul
     }
   };
   std::size_t next = 0;
-  for (const auto begin = Clock::now(); next < tiles.size() && Clock::now() - begin < kAlone; ++next) test_tile(next);
+  for (const auto begin = Clock::now(); next < tiles.size() && Clock::now() - begin < kAlone;
+       ++next)
+    test_tile(next);
   mesh::parallel_for(threads, static_cast<int>(tiles.size() - next),
                      [&](int number) { test_tile(next + static_cast<std::size_t>(number)); });
 
@@ -64,7 +68,8 @@ KernelResult run_edit_kernel(const mesh::SurfaceMap& map, const BlockCuller& cul
     found.tested_blocks += result.tested_blocks;
     if (!result.any) continue;
     found.written_min = found.tiles.empty() ? result.low : glm::min(found.written_min, result.low);
-    found.written_max = found.tiles.empty() ? result.high : glm::max(found.written_max, result.high);
+    found.written_max =
+        found.tiles.empty() ? result.high : glm::max(found.written_max, result.high);
     found.tiles.push_back({tiles[i].address, result.written});
   }
   return found;

@@ -18,15 +18,19 @@ float unordered(std::uint32_t number) {
 
 }  // namespace
 
-Result<EditPass> EditPass::create(const std::filesystem::path& shader_dir, gl::ReadbackPool& readback) {
+Result<EditPass> EditPass::create(const std::filesystem::path& shader_dir,
+                                  gl::ReadbackPool& readback) {
   EditPass pass;
   pass.readback_ = &readback;
-  const auto format = [](int texel_bytes) { return "TEXEL_FORMAT r" + std::to_string(8 * texel_bytes) + "ui"; };
+  const auto format = [](int texel_bytes) {
+    return "TEXEL_FORMAT r" + std::to_string(8 * texel_bytes) + "ui";
+  };
   auto programs = ProgramPerWidth::load(shader_dir, "edit_pass.comp", format);
   if (!programs) return tl::unexpected(programs.error());
   pass.programs_ = std::move(*programs);
   // Of their own, so that strokes of discs and squares do not carry what only a shape needs.
-  auto shape_programs = ProgramPerWidth::load(shader_dir, "edit_pass.comp", format, {"TOOL_TEXTURE"});
+  auto shape_programs =
+      ProgramPerWidth::load(shader_dir, "edit_pass.comp", format, {"TOOL_TEXTURE"});
   if (!shape_programs) return tl::unexpected(shape_programs.error());
   pass.shape_programs_ = std::move(*shape_programs);
   pass.timer_ = gl::TimerQuery::create("edit");
@@ -41,13 +45,14 @@ Result<void> EditPass::send_shape(const StrokeBatch& stroke) {
     if (!made) return tl::unexpected(made.error());
     shape_distances_ = std::move(*made);
   }
-  glTextureSubImage2D(shape_distances_.id(), 0, 0, 0, kShapeSide, kShapeSide, GL_RED_INTEGER, GL_UNSIGNED_BYTE,
-                      stroke.texture->distances().data());
+  glTextureSubImage2D(shape_distances_.id(), 0, 0, 0, kShapeSide, kShapeSide, GL_RED_INTEGER,
+                      GL_UNSIGNED_BYTE, stroke.texture->distances().data());
   shape_ = stroke.texture;
   return {};
 }
 
-Result<std::vector<TileAddress>> EditPass::make_pages(const std::vector<TileAddress>& tiles, LayerTextures& layer) {
+Result<std::vector<TileAddress>> EditPass::make_pages(const std::vector<TileAddress>& tiles,
+                                                      LayerTextures& layer) {
   std::vector<TileAddress> fresh;
   for (const TileAddress tile : tiles) {
     if (layer.page(tile) != shader::kNoPage) continue;
@@ -60,8 +65,9 @@ Result<std::vector<TileAddress>> EditPass::make_pages(const std::vector<TileAddr
   return fresh;
 }
 
-Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, TouchedTiles touched, const EditCuller& culler,
-                                          const SurfaceMapTextures& map, const gl::Texture* depth, LayerTextures& layer,
+Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, TouchedTiles touched,
+                                          const EditCuller& culler, const SurfaceMapTextures& map,
+                                          const gl::Texture* depth, LayerTextures& layer,
                                           PageTables& tables) {
   DispatchedEdit edit;
   edit.tiles = std::move(touched.tiles);
@@ -84,11 +90,13 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, TouchedTile
 
   std::set<std::uint32_t> chunks;
   for (const TileAddress tile : edit.tiles)
-    if (const PageId page = layer.page(tile); page != shader::kNoPage) chunks.insert(page >> shader::kPageChunkShift);
+    if (const PageId page = layer.page(tile); page != shader::kNoPage)
+      chunks.insert(page >> shader::kPageChunkShift);
   if (chunks.empty()) chunks.insert(0);  // nothing to erase, which counts as written all the same
 
   const bool has_shape = stroke.shape == ToolShape::texture;
-  const gl::Program& program = (has_shape ? shape_programs_ : programs_).of(layer.pool().texel_bytes());
+  const gl::Program& program =
+      (has_shape ? shape_programs_ : programs_).of(layer.pool().texel_bytes());
   program.use();
   edited_.buffer().clear(0, bytes);
   culler.bind(map);
@@ -98,7 +106,8 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, TouchedTile
   map.positions().bind(0);
   if (depth) depth->bind(1);
   if (has_shape) shape_distances_.bind(2);
-  const GLuint groups = (touched.parts + shader::kEditPartsPerGroup - 1) / shader::kEditPartsPerGroup;
+  const GLuint groups =
+      (touched.parts + shader::kEditPartsPerGroup - 1) / shader::kEditPartsPerGroup;
   const GLuint columns = std::min(groups, shader::kEditGroupsPerRow);
   timer_.begin();
   for (const std::uint32_t chunk : chunks) {  // only one pair of images is bound at a time
@@ -111,8 +120,8 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, TouchedTile
     glDispatchCompute(columns, (groups + columns - 1) / columns, 1);
   }
   timer_.end();
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
-                  GL_BUFFER_UPDATE_BARRIER_BIT);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT |
+                  GL_TEXTURE_UPDATE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
   edited_.buffer().copy_to(read->buffer(), 0, bytes);
   read->submit();
   edit.edited = std::move(*read);

@@ -12,16 +12,21 @@ namespace {
 
 constexpr std::size_t kBytesCollectedPerStep = std::size_t{16} << 20;  // a few milliseconds
 
-// How far a place of a mark may lie below what is seen, in pixels of the camera's window: a coarser copy's surface lies where it likes.
+// How far a place of a mark may lie below what is seen, in pixels of the camera's window: a coarser
+// copy's surface lies where it likes.
 constexpr double kMarkReach_px = 1, kMarkReachOfCopies_px = 10;
 
-// All marks are drawn for each rectangle: what one segment of them costs there (0.8 µs with llvmpipe), as `kRectCost_px`.
+// All marks are drawn for each rectangle: what one segment of them costs there (0.8 µs with
+// llvmpipe), as `kRectCost_px`.
 constexpr std::int64_t kMarkCost_px = 28;
 
-std::size_t row_bytes(const PixelRect& rect) { return std::size_t{4} * static_cast<std::size_t>(rect.width); }
+std::size_t row_bytes(const PixelRect& rect) {
+  return std::size_t{4} * static_cast<std::size_t>(rect.width);
+}
 
 double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+      .count();
 }
 
 ShadeInput::Patterns patterns_of(const FrameRequest& request, const mesh::Geometry& geometry) {
@@ -58,7 +63,8 @@ Step FrameJob::step(GpuScene& scene) {
   const auto advance = [&]() -> Result<Step> {
     switch (stage_) {
       case Stage::prepare:
-        if (auto prepared = prepare(scene, **view); !prepared) return tl::unexpected(prepared.error());
+        if (auto prepared = prepare(scene, **view); !prepared)
+          return tl::unexpected(prepared.error());
         stage_ = Stage::layers;
         return Step::more;
       case Stage::layers: {
@@ -74,7 +80,8 @@ Step FrameJob::step(GpuScene& scene) {
         return Step::more;
       }
       case Stage::area:
-        if (auto chosen = choose_area(scene, **view); !chosen) return tl::unexpected(chosen.error());
+        if (auto chosen = choose_area(scene, **view); !chosen)
+          return tl::unexpected(chosen.error());
         stage_ = frame_.rects.empty() ? Stage::readback : Stage::shade;
         return Step::more;
       case Stage::shade: {
@@ -94,7 +101,10 @@ Step FrameJob::step(GpuScene& scene) {
   if (*step == Step::done) {
     (*view)->drawing = false;
     if (scene.lost())
-      return refuse({503, "GPU lost", "The GPU context was lost and is being rebuilt. Ask for the frame again.", {}});
+      return refuse({503,
+                     "GPU lost",
+                     "The GPU context was lost and is being rebuilt. Ask for the frame again.",
+                     {}});
     pixels_ = {};
     frame_.render_ms = busy_ms_;
     frame_.level = (*view)->key.level;
@@ -109,39 +119,44 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
   view.last_used = scene.next_use();
   if (request.model != 0 && request.model != view.model)
-    return fail(422, "View of another model", "A request names its view's model, or none.", "model");
+    return fail(422, "View of another model", "A request names its view's model, or none.",
+                "model");
   if (auto valid = validate(request.camera); !valid) return valid;
-  if (request.width < 1 || request.height < 1 || request.width > kMaxViewSize || request.height > kMaxViewSize) {
-    return fail(422, "Size out of range", "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.",
-                "width");
+  if (request.width < 1 || request.height < 1 || request.width > kMaxViewSize ||
+      request.height > kMaxViewSize) {
+    return fail(422, "Size out of range",
+                "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", "width");
   }
   for (const LayerStyle& style : request.layers) {
     auto layer = scene.layer(style.layer);
     if (!layer) return tl::unexpected(layer.error());
     if ((*layer)->model() != view.model)
       return fail(422, "Layer of another model", "A view shows layers of its own model.", "layers");
-    const bool has_colors =
-        style.palette && (style.palette->mode == PaletteMode::categorical || !style.palette->points.empty());
+    const bool has_colors = style.palette && (style.palette->mode == PaletteMode::categorical ||
+                                              !style.palette->points.empty());
     if (!has_colors || !std::isfinite(style.opacity)) {
-      return fail(422, "Palette not usable", "A layer in a view needs a palette with points, and a finite opacity.",
-                  "layers");
+      return fail(422, "Palette not usable",
+                  "A layer in a view needs a palette with points, and a finite opacity.", "layers");
     }
     layer_uses_.push_back((*layer)->use(view.last_used));
   }
   if (auto valid = validate(request.light); !valid) return valid;
   if (request.looks.size() > kMaxLooksShown)
-    return fail(422, "Too many looks", "A view shows at most " + std::to_string(kMaxLooksShown) + " looks.", "looks");
+    return fail(422, "Too many looks",
+                "A view shows at most " + std::to_string(kMaxLooksShown) + " looks.", "looks");
   for (const LookStyle& style : request.looks) {
     auto look = scene.look(style.look);
     if (!look) return tl::unexpected(look.error());
     if ((*look)->model != view.model)
       return fail(422, "Look of another model", "A view shows looks of its own model.", "looks");
-    if (!std::isfinite(style.opacity)) return fail(422, "Opacity not finite", "An opacity is 0 to 1.", "looks");
+    if (!std::isfinite(style.opacity))
+      return fail(422, "Opacity not finite", "An opacity is 0 to 1.", "looks");
   }
   auto key = depth_key(view.model, request.camera, request.width, request.height);
   view.drawing = true;
   const auto has_gbuffer = [&](const DepthKey& wanted) {
-    return view.gbuffer_complete && view.key == wanted && view.looks == request.looks && view.lighting == request.light;
+    return view.gbuffer_complete && view.key == wanted && view.looks == request.looks &&
+           view.lighting == request.light;
   };
   if (request.moving) {
     key.level = view.key.level;  // what there is of this camera serves
@@ -187,14 +202,16 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
     auto look = scene.look(view.looks[i].look);
     if (!look) return tl::unexpected(look.error());
     mesh_look.looks.push_back(&(*look)->texture->texture());
-    mesh_look.uniforms.look_opacity[static_cast<glm::length_t>(i)] = std::clamp(view.looks[i].opacity, 0.0f, 1.0f);
+    mesh_look.uniforms.look_opacity[static_cast<glm::length_t>(i)] =
+        std::clamp(view.looks[i].opacity, 0.0f, 1.0f);
   }
-  const auto complete =
-      scene.gbuffer_pass().draw_slice(mesh, mesh_look, {view.gbuffer, view.depth->texture}, progress_);
+  const auto complete = scene.gbuffer_pass().draw_slice(
+      mesh, mesh_look, {view.gbuffer, view.depth->texture}, progress_);
   if (!complete || !*complete) return complete;
   view.gbuffer_complete = view.depth->complete = true;
   // A software renderer works while it is called, a GPU until the picture can be read.
-  if (scene.info().software) scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
+  if (scene.info().software)
+    scene.detail_budget().drawn(progress_.triangles(), ms_since(mesh_begin_));
   return true;
 }
 
@@ -203,15 +220,15 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
   auto model = scene.model(view.model);
   if (!model) return tl::unexpected(model.error());
   const mesh::Geometry& geometry = (*model)->mesh().geometry();
-  const glm::dmat4 clip =
-      request.camera.projection * request.camera.view * glm::translate(glm::dmat4(1.0), geometry.origin);
+  const glm::dmat4 clip = request.camera.projection * request.camera.view *
+                          glm::translate(glm::dmat4(1.0), geometry.origin);
   frame_.width = request.width;
   frame_.height = request.height;
   if (request.changed && view.shows(request)) {
     const auto marks = static_cast<std::int64_t>(view.seen_marks.count);
-    frame_.rects =
-        screen_rects(*request.changed, clip, request.width, request.height, request.align_to_16,
-                     kRectCost_px + marks * kMarkCost_px, static_cast<double>(request.width) / request.camera.width);
+    frame_.rects = screen_rects(*request.changed, clip, request.width, request.height,
+                                request.align_to_16, kRectCost_px + marks * kMarkCost_px,
+                                static_cast<double>(request.width) / request.camera.width);
     if (frame_.rects.empty()) return {};
   } else {
     frame_.rects = {{0, 0, request.width, request.height}};
@@ -224,7 +241,8 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
     auto looked = scene.mark_pass().look(pieces, view.depth->texture, cut_open, view.seen_marks);
     if (!looked) return looked;
   }
-  surface_ = screen_rect({geometry.box_min, geometry.box_max}, clip, request.width, request.height, false);
+  surface_ =
+      screen_rect({geometry.box_min, geometry.box_max}, clip, request.width, request.height, false);
   std::size_t bytes = 0;
   for (const PixelRect& rect : frame_.rects) bytes += rgba_bytes(rect);
   auto pixels = scene.readback().begin(bytes);
@@ -238,8 +256,10 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   auto model = scene.model(view.model);
   if (!model) return tl::unexpected(model.error());
   const PixelRect& rect = frame_.rects[shaded_.rect];
-  const int rows = std::max(1, scene.pixels_per_band() / (rect.width * (1 + static_cast<int>(request.layers.size()))));
-  const PixelRect band{rect.x, rect.y + shaded_.done, rect.width, std::min(rows, rect.height - shaded_.done)};
+  const int rows = std::max(
+      1, scene.pixels_per_band() / (rect.width * (1 + static_cast<int>(request.layers.size()))));
+  const PixelRect band{rect.x, rect.y + shaded_.done, rect.width,
+                       std::min(rows, rect.height - shaded_.done)};
   ShadeInput input{view.uv,
                    view.light,
                    view.shading,
@@ -255,16 +275,19 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
     input.layers.push_back({&(*layer)->textures(), style.palette, style.opacity, style.bare});
   }
   if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
-  if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded) return tl::unexpected(shaded.error());
-  auto marked = scene.mark_pass().draw(view.seen_marks, view.shading, request.width, request.height, band);
+  if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded)
+    return tl::unexpected(shaded.error());
+  auto marked =
+      scene.mark_pass().draw(view.seen_marks, view.shading, request.width, request.height, band);
   if (!marked) return tl::unexpected(marked.error());
 
   const int rows_below = rect.height - shaded_.done - band.height;
-  const std::size_t offset = shaded_.before + row_bytes(rect) * static_cast<std::size_t>(rows_below);
+  const std::size_t offset =
+      shaded_.before + row_bytes(rect) * static_cast<std::size_t>(rows_below);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, pixels_.buffer().id());
-  glGetTextureSubImage(view.picture.id(), 0, band.x, request.height - band.y - band.height, 0, band.width, band.height,
-                       1, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(rgba_bytes(band)),
-                       reinterpret_cast<void*>(offset));
+  glGetTextureSubImage(view.picture.id(), 0, band.x, request.height - band.y - band.height, 0,
+                       band.width, band.height, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+                       static_cast<GLsizei>(rgba_bytes(band)), reinterpret_cast<void*>(offset));
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   advance(shaded_, band.height);
   if (!complete(shaded_)) return false;
@@ -287,8 +310,8 @@ bool FrameJob::collect_rows() {
   while (!complete(collected_) && frame_.pixels.size() < until) {
     const PixelRect& rect = frame_.rects[collected_.rect];
     const std::size_t rows_below = static_cast<std::size_t>(rect.height - collected_.done - 1);
-    const auto* row =
-        reinterpret_cast<const std::uint8_t*>(data.data()) + collected_.before + row_bytes(rect) * rows_below;
+    const auto* row = reinterpret_cast<const std::uint8_t*>(data.data()) + collected_.before +
+                      row_bytes(rect) * rows_below;
     frame_.pixels.insert(frame_.pixels.end(), row, row + row_bytes(rect));
     advance(collected_, 1);
   }

@@ -8,8 +8,8 @@
 
 namespace strata::render {
 
-// One frame, drawn by one view: the g-buffer in slices when the camera changed, then what changed is shaded and read back in
-// bands.
+// One frame, drawn by one view: the g-buffer in slices when the camera changed, then what changed
+// is shaded and read back in bands.
 class FrameJob {
  public:
   explicit FrameJob(FrameTask task) : task_(std::move(task)) {}
@@ -18,7 +18,8 @@ class FrameJob {
   double busy_ms() const { return busy_ms_; }
   // With what its asker has been served by now.
   FrameTask::Turn turn() const {
-    return {task_.turn.acting, task_.turn.ms + busy_ms_ / static_cast<double>(task_.askers.size()), task_.turn.large};
+    return {task_.turn.acting, task_.turn.ms + busy_ms_ / static_cast<double>(task_.askers.size()),
+            task_.turn.large};
   }
   Step step(GpuScene& scene);
   void abort(const Problem& problem) { answer(tl::unexpected(problem)); }

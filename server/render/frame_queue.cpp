@@ -11,7 +11,8 @@ namespace strata::render {
 namespace {
 
 constexpr std::size_t kMaxBoxes = 64;
-// One is drawn while the other is read back: more would take the places of smaller pictures (GpuThread).
+// One is drawn while the other is read back: more would take the places of smaller pictures
+// (GpuThread).
 constexpr std::size_t kMostLarge = 2;
 
 // Everything that either had to redraw is to be redrawn.
@@ -24,12 +25,14 @@ void inherit(FrameRequest& request, const FrameRequest& other) {
   for (const auto& box : *other.changed) add_box(*request.changed, box, kMaxBoxes);
 }
 
-// Whether a view that drew one of them has the other's picture, but for what changed on the surface.
+// Whether a view that drew one of them has the other's picture, but for what changed on the
+// surface.
 bool same_picture(const FrameRequest& a, const FrameRequest& b) {
-  return a.model != 0 && a.model == b.model && a.moving == b.moving && a.width == b.width && a.height == b.height &&
-         a.camera == b.camera && a.layers == b.layers && a.looks == b.looks && a.marks == b.marks &&
-         a.light == b.light && a.unit_mm == b.unit_mm && a.background == b.background &&
-         a.background_rows == b.background_rows && a.large == b.large && a.align_to_16 == b.align_to_16;
+  return a.model != 0 && a.model == b.model && a.moving == b.moving && a.width == b.width &&
+         a.height == b.height && a.camera == b.camera && a.layers == b.layers &&
+         a.looks == b.looks && a.marks == b.marks && a.light == b.light && a.unit_mm == b.unit_mm &&
+         a.background == b.background && a.background_rows == b.background_rows &&
+         a.large == b.large && a.align_to_16 == b.align_to_16;
 }
 
 }  // namespace
@@ -43,7 +46,8 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
   if (waited) {
     inherit(request, (*state.waits)->request);
     auto& askers = (*state.waits)->askers;
-    const auto mine = std::find_if(askers.begin(), askers.end(), [&](const auto& one) { return one.view == view; });
+    const auto mine = std::find_if(askers.begin(), askers.end(),
+                                   [&](const auto& one) { return one.view == view; });
     pushed.displaced = std::move(mine->done);
     leave(view, state);
   } else if (askers_ >= max_askers_) {
@@ -52,7 +56,8 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
   enter_half(state, request.acting, waited);
   // A whole picture is not forced on those who want a part of it.
   auto same = std::find_if(waiting_.begin(), waiting_.end(), [&](const FrameTask& other) {
-    return other.request.changed.has_value() == request.changed.has_value() && same_picture(other.request, request);
+    return other.request.changed.has_value() == request.changed.has_value() &&
+           same_picture(other.request, request);
   });
   if (same == waiting_.end()) {
     waiting_.push_back({std::move(request), {}, {}});
@@ -70,9 +75,10 @@ FrameQueue::Pushed FrameQueue::push(FrameRequest request, Renderer::Done<SharedF
 // Who comes to it has no credit and no debt there.
 void FrameQueue::enter_half(View& state, bool acting, bool waited) {
   Half& to = half(acting);
-  const bool is_empty = to.under_way == 0 && std::ranges::none_of(waiting_, [&](const FrameTask& task) {
-                          return task.turn.acting == acting;
-                        });
+  const bool is_empty =
+      to.under_way == 0 && std::ranges::none_of(waiting_, [&](const FrameTask& task) {
+        return task.turn.acting == acting;
+      });
   if (is_empty) to.served_ms = std::max(to.served_ms, now_ms_);
   if (std::exchange(state.acting, acting) != acting)
     state.served_ms = to.now_ms;
@@ -81,7 +87,8 @@ void FrameQueue::enter_half(View& state, bool acting, bool waited) {
 }
 
 bool FrameQueue::is_acting(const FrameTask& task) const {
-  return std::ranges::any_of(task.askers, [&](const auto& asker) { return views_.at(asker.view).acting; });
+  return std::ranges::any_of(task.askers,
+                             [&](const auto& asker) { return views_.at(asker.view).acting; });
 }
 
 void FrameQueue::leave(ViewHandle view, View& state) {
@@ -98,7 +105,8 @@ void FrameQueue::leave(ViewHandle view, View& state) {
 FrameTask::Turn FrameQueue::turn_of(const FrameTask& task) const {
   double ms = std::numeric_limits<double>::infinity();
   for (const auto& asker : task.askers)
-    if (const View& state = views_.at(asker.view); state.acting == task.turn.acting) ms = std::min(ms, state.served_ms);
+    if (const View& state = views_.at(asker.view); state.acting == task.turn.acting)
+      ms = std::min(ms, state.served_ms);
   return {task.turn.acting, ms, task.request.large};
 }
 
@@ -109,12 +117,15 @@ bool FrameQueue::is_before(const FrameTask::Turn& a, const FrameTask::Turn& b) c
 }
 
 bool FrameQueue::is_under_way(const FrameTask& task) const {
-  return std::ranges::any_of(task.askers, [&](const auto& asker) { return views_.at(asker.view).under_way; });
+  return std::ranges::any_of(task.askers,
+                             [&](const auto& asker) { return views_.at(asker.view).under_way; });
 }
 
 std::optional<ViewHandle> FrameQueue::drawer_of(const FrameTask& task) const {
   if (is_under_way(task)) return std::nullopt;
-  const auto has_it = [&](const View& state) { return state.drew && same_picture(*state.drew, task.request); };
+  const auto has_it = [&](const View& state) {
+    return state.drew && same_picture(*state.drew, task.request);
+  };
   for (const auto& asker : task.askers)
     if (has_it(views_.at(asker.view))) return asker.view;
   if (task.request.model != 0)
@@ -175,16 +186,19 @@ std::optional<FrameTask> FrameQueue::take() {
 
 std::optional<FrameTask> FrameQueue::take_part(std::span<const FrameTask::Turn> under_way) {
   std::lock_guard lock(mutex_);
-  // What is next in each half. A rectangle does not take the other half's turn, nor that of a whole picture to go before the other half:
-  // rectangles alone would use up all the time that their half has.
+  // What is next in each half. A rectangle does not take the other half's turn, nor that of a whole
+  // picture to go before the other half: rectangles alone would use up all the time that their half
+  // has.
   std::array<std::optional<FrameTask::Turn>, 2> next;
   for (const FrameTask& task : waiting_) {
     auto& first = next[task.turn.acting ? 0 : 1];
     if (is_under_way(task)) continue;
     if (const auto its = turn_of(task); !first || its.ms < first->ms) first = its;
   }
-  // A band of a large picture takes longer than most other pictures: they need not wait until it is done.
-  const bool only_large = !under_way.empty() && std::ranges::all_of(under_way, &FrameTask::Turn::large);
+  // A band of a large picture takes longer than most other pictures: they need not wait until it is
+  // done.
+  const bool only_large =
+      !under_way.empty() && std::ranges::all_of(under_way, &FrameTask::Turn::large);
   const auto may_go_before = [&](const FrameTask& task) {
     return task.request.changed.has_value() || (only_large && !task.request.large);
   };
@@ -207,7 +221,8 @@ void FrameQueue::finished(const FrameTask& task, double took_ms) {
     state->second.served_ms += served_ms;
     if (state->second.gone && !state->second.waits) views_.erase(state);
   };
-  for (const auto& asker : task.askers) rests(asker.view, took_ms / static_cast<double>(task.askers.size()));
+  for (const auto& asker : task.askers)
+    rests(asker.view, took_ms / static_cast<double>(task.askers.size()));
   rests(task.request.view, 0);
   Half& its = half(task.turn.acting);
   if (its.under_way == 0) return;  // `take_all` came between
@@ -228,7 +243,8 @@ void FrameQueue::forget(ViewHandle view) {
 
 std::vector<FrameTask> FrameQueue::take_all() {
   std::lock_guard lock(mutex_);
-  std::vector<FrameTask> tasks(std::make_move_iterator(waiting_.begin()), std::make_move_iterator(waiting_.end()));
+  std::vector<FrameTask> tasks(std::make_move_iterator(waiting_.begin()),
+                               std::make_move_iterator(waiting_.end()));
   waiting_.clear();
   views_.clear();
   halves_ = {};

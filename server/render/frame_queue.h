@@ -29,28 +29,37 @@ struct FrameTask {
 
 // Frames that wait, and whose turn it is. Thread-safe.
 //
-// 1. A view has one place, where the latest request wins and inherits what the replaced one had to redraw.
-// 2. Requests for the same picture of one model (`FrameRequest::model`) wait as one, and are drawn by the view that drew that picture before.
-// 3. Turns are fair by what drawing has taken (start-time fair queueing): next is who was served the fewest milliseconds, and who did
-//    not ask for a while has no more credit than who waits. So the rectangle of an edit, for someone who only looks, goes before
-//    the next whole picture of someone who turns the model, and nobody waits for ever.
-// 4. Those who act and those who look on (`FrameRequest::acting`) have half of the time each, where both wait, by the same rule: a
+// 1. A view has one place, where the latest request wins and inherits what the replaced one had to
+// redraw.
+// 2. Requests for the same picture of one model (`FrameRequest::model`) wait as one, and are drawn
+// by the view that drew that picture before.
+// 3. Turns are fair by what drawing has taken (start-time fair queueing): next is who was served
+// the fewest milliseconds, and who did
+//    not ask for a while has no more credit than who waits. So the rectangle of an edit, for
+//    someone who only looks, goes before the next whole picture of someone who turns the model, and
+//    nobody waits for ever.
+// 4. Those who act and those who look on (`FrameRequest::acting`) have half of the time each, where
+// both wait, by the same rule: a
 //    hundred onlookers do not hold up one who paints, and see what is painted nevertheless.
-// 5. Bands of large pictures (`FrameRequest::large`) wait as all others do, a few are under way at a time, and what is smaller and whose turn
+// 5. Bands of large pictures (`FrameRequest::large`) wait as all others do, a few are under way at
+// a time, and what is smaller and whose turn
 //    it is goes before them at each of their steps.
 class FrameQueue {
  public:
   explicit FrameQueue(std::size_t max_askers) : max_askers_(max_askers) {}
 
   struct Pushed {
-    bool accepted = false;                                   // false: too many wait; the request is in `displaced`
-    std::optional<Renderer::Done<SharedFrame>> displaced{};  // of the refused request, or of the one it replaced
+    // false: too many wait; the request is in `displaced`
+    bool accepted = false;
+    // of the refused request, or of the one it replaced
+    std::optional<Renderer::Done<SharedFrame>> displaced{};
   };
   Pushed push(FrameRequest request, Renderer::Done<SharedFrame> done);
-  // What is next, except for views with a frame under way; its views are then under way until `finished`.
+  // What is next, except for views with a frame under way; its views are then under way until
+  // `finished`.
   std::optional<FrameTask> take();
-  // The same, of rectangles only, whose turn is before all of these: they may go before whole pictures that are half done. Before bands of
-  // large pictures alone any smaller picture may.
+  // The same, of rectangles only, whose turn is before all of these: they may go before whole
+  // pictures that are half done. Before bands of large pictures alone any smaller picture may.
   std::optional<FrameTask> take_part(std::span<const FrameTask::Turn> under_way);
   void finished(const FrameTask& task, double took_ms);
   void forget(ViewHandle view);       // it is removed

@@ -11,13 +11,18 @@
 
 namespace strata::render {
 
-// A layer of the scene. One that has a mirror is on the GPU while it is shown or painted, and leaves it when the memory is wanted
-// elsewhere: its pages are freed, and brought again from the mirror before they are next used. GPU thread only.
+// A layer of the scene. One that has a mirror is on the GPU while it is shown or painted, and
+// leaves it when the memory is wanted elsewhere: its pages are freed, and brought again from the
+// mirror before they are next used. GPU thread only.
 class GpuLayer {
  public:
   // `mirror` is null for a layer that nobody else knows: it never leaves.
-  GpuLayer(std::uint64_t model, std::unique_ptr<LayerTextures> textures, std::shared_ptr<const TileMirror> mirror)
-      : model_(model), textures_(std::move(textures)), mirror_(std::move(mirror)), is_here_(!mirror_) {}
+  GpuLayer(std::uint64_t model, std::unique_ptr<LayerTextures> textures,
+           std::shared_ptr<const TileMirror> mirror)
+      : model_(model),
+        textures_(std::move(textures)),
+        mirror_(std::move(mirror)),
+        is_here_(!mirror_) {}
 
   std::uint64_t model() const { return model_; }
   LayerTextures& textures() const { return *textures_; }
@@ -28,7 +33,8 @@ class GpuLayer {
     last_used_ = now;
     return users_;
   }
-  // Brings the next of what the mirror holds, a millisecond or two; true when all of it is here. A Problem brings nothing.
+  // Brings the next of what the mirror holds, a millisecond or two; true when all of it is here. A
+  // Problem brings nothing.
   Result<bool> bring();
   // Not one whose pages know of edits that the mirror does not.
   bool can_leave() const;

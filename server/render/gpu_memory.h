@@ -4,10 +4,12 @@
 
 namespace strata::render {
 
-// `reserve` is called on the GPU thread. What can be made again: empty pages, depth buffers, the buffers of views.
+// `reserve` is called on the GPU thread. What can be made again: empty pages, depth buffers, the
+// buffers of views.
 class GpuMemory : public MemoryLedger {
  public:
-  explicit GpuMemory(std::uint64_t budget_bytes) : MemoryLedger("GPU memory", "--gpu-memory", budget_bytes) {}
+  explicit GpuMemory(std::uint64_t budget_bytes)
+      : MemoryLedger("GPU memory", "--gpu-memory", budget_bytes) {}
 };
 
 }  // namespace strata::render

@@ -6,7 +6,8 @@
 namespace strata::render {
 namespace {
 
-// A slice of a long drawing takes 1 to 2 ms: llvmpipe needs 27 to 59 ns a triangle, and draws a slice while the next is prepared.
+// A slice of a long drawing takes 1 to 2 ms: llvmpipe needs 27 to 59 ns a triangle, and draws a
+// slice while the next is prepared.
 constexpr std::size_t kTrianglesPerSliceSoftware = 32 * 1024;
 constexpr std::size_t kTrianglesPerSliceHardware = 2 * 1024 * 1024;
 constexpr int kLowestResolution = kTileSize, kHighestResolution = 16384;
@@ -64,8 +65,9 @@ GpuScene::GpuScene(const RendererOptions& options, std::uint64_t generation, Gpu
 
 GpuScene::~GpuScene() { memory_.set_evictor(nullptr); }
 
-Result<std::unique_ptr<GpuScene>> GpuScene::create(const RendererOptions& options, std::uint64_t generation,
-                                                   GpuMemory& memory, gl::DebugMessages& messages) {
+Result<std::unique_ptr<GpuScene>> GpuScene::create(const RendererOptions& options,
+                                                   std::uint64_t generation, GpuMemory& memory,
+                                                   gl::DebugMessages& messages) {
   auto context = gl::EglContext::create({options.debug});
   if (!context) return tl::unexpected(context.error());
   std::unique_ptr<GpuScene> scene(new GpuScene(options, generation, memory));
@@ -90,17 +92,19 @@ Result<void> GpuScene::load() {
   const auto slice = info_.software ? kTrianglesPerSliceSoftware : kTrianglesPerSliceHardware;
   const std::string& dir = options_.shader_dir;
   detail_budget_ = DetailBudget(info_.software);
-  if (auto made = keep(depths_, DepthBuffers::create(dir, slice, memory_, readback_)); !made) return made;
+  if (auto made = keep(depths_, DepthBuffers::create(dir, slice, memory_, readback_)); !made)
+    return made;
   if (auto made = keep(edit_culler_, EditCuller::create(dir, readback_)); !made) return made;
   if (auto made = keep(edit_pass_, EditPass::create(dir, readback_)); !made) return made;
   if (auto made = keep(tile_reader_, TileReader::create(dir, readback_)); !made) return made;
-  if (auto made = keep(gbuffer_pass_, MeshPass::create(MeshPass::Kind::gbuffer, dir, slice)); !made) return made;
+  if (auto made = keep(gbuffer_pass_, MeshPass::create(MeshPass::Kind::gbuffer, dir, slice)); !made)
+    return made;
   if (auto made = keep(mark_pass_, MarkPass::create(dir)); !made) return made;
   return keep(shade_pass_, ShadePass::create(dir, info_.software));
 }
 
-// Pages that no layer uses go first, then depth buffers of cameras that no view has, then the layer and at last the buffers
-// of the view that were not used for the longest time.
+// Pages that no layer uses go first, then depth buffers of cameras that no view has, then the layer
+// and at last the buffers of the view that were not used for the longest time.
 bool GpuScene::evict_one() {
   for (PagePool* pool : {&pool_1_, &pool_2_, &pool_4_}) {
     if (pool->drop_empty_chunk()) return true;
@@ -109,7 +113,8 @@ bool GpuScene::evict_one() {
   if (let_a_layer_leave()) return true;
   View* oldest = nullptr;
   for (auto& [handle, view] : views_) {
-    if (view.has_buffers() && !view.drawing && (!oldest || view.last_used < oldest->last_used)) oldest = &view;
+    if (view.has_buffers() && !view.drawing && (!oldest || view.last_used < oldest->last_used))
+      oldest = &view;
   }
   if (!oldest) return false;
   oldest->drop_buffers();
@@ -129,10 +134,11 @@ bool GpuScene::let_a_layer_leave(const PagePool* pool) {
 
 Problem GpuScene::unknown(const char* what, std::uint64_t handle) const {
   const bool old = handle != 0 && handle >> 40 != generation_;
-  return {404, std::string("Unknown ") + what,
-          old ? std::string("The handle is of a GPU context that was lost. Add the ") + what + " again."
-              : std::string("There is no such ") + what + " on the GPU; it may have been removed.",
-          what};
+  return {
+      404, std::string("Unknown ") + what,
+      old ? std::string("The handle is of a GPU context that was lost. Add the ") + what + " again."
+          : std::string("There is no such ") + what + " on the GPU; it may have been removed.",
+      what};
 }
 
 ModelHandle GpuScene::add(Model model) {
@@ -152,8 +158,8 @@ Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type
   if (auto found = model(model_handle); !found) return tl::unexpected(found.error());
   if (resolution < kLowestResolution || resolution > kHighestResolution ||
       !std::has_single_bit(static_cast<unsigned>(resolution))) {
-    return fail(422, "Resolution out of range", "A layer's resolution is a power of two from 128 to 16384.",
-                "resolution");
+    return fail(422, "Resolution out of range",
+                "A layer's resolution is a power of two from 128 to 16384.", "resolution");
   }
   const int bytes = strata::bytes_per_texel(type);
   auto textures = LayerTextures::create(type, resolution, tables_,

@@ -17,8 +17,8 @@
 
 namespace strata::render {
 
-// Everything that lives in one GL context: passes, pools, models, layers, views. Made and destroyed as a whole, so that
-// nothing of a lost context is left over. GPU thread only.
+// Everything that lives in one GL context: passes, pools, models, layers, views. Made and destroyed
+// as a whole, so that nothing of a lost context is left over. GPU thread only.
 class GpuScene {
  public:
   struct Model {
@@ -32,8 +32,9 @@ class GpuScene {
   };
 
   // `generation` goes into handles; `memory` and `messages` must outlive the scene.
-  static Result<std::unique_ptr<GpuScene>> create(const RendererOptions& options, std::uint64_t generation,
-                                                  GpuMemory& memory, gl::DebugMessages& messages);
+  static Result<std::unique_ptr<GpuScene>> create(const RendererOptions& options,
+                                                  std::uint64_t generation, GpuMemory& memory,
+                                                  gl::DebugMessages& messages);
   GpuScene(const GpuScene&) = delete;
   GpuScene& operator=(const GpuScene&) = delete;
   ~GpuScene();
@@ -55,7 +56,9 @@ class GpuScene {
   MarkPass& mark_pass() { return *mark_pass_; }
   DetailBudget& detail_budget() { return detail_budget_; }
   // How much of a picture is shaded in a step, in pixels of one layer.
-  int pixels_per_band() const { return info_.software ? kPixelsPerBandSoftware : kPixelsPerBandHardware; }
+  int pixels_per_band() const {
+    return info_.software ? kPixelsPerBandSoftware : kPixelsPerBandHardware;
+  }
   std::uint64_t next_use() { return ++uses_; }
 
   ModelHandle add(Model model);

@@ -9,17 +9,22 @@
 namespace strata::render {
 namespace {
 
-// Polls so long without sleeping while the GPU works: what an edit reads back is usually there within microseconds.
+// Polls so long without sleeping while the GPU works: what an edit reads back is usually there
+// within microseconds.
 constexpr auto kBusyPolling = std::chrono::microseconds(200);
 constexpr auto kPollPause = std::chrono::microseconds(100);
 constexpr auto kRecoveryPause = std::chrono::seconds(1);
 // Frames that were drawn and wait for their read-back; more would only hold memory.
 constexpr std::size_t kMaxActiveFrames = 4;
-// Of edits before frames: a stroke is some milliseconds, so that only a flood of them takes as long.
+// Of edits before frames: a stroke is some milliseconds, so that only a flood of them takes as
+// long.
 constexpr std::chrono::milliseconds kMostAhead{30};
 
 Problem lost_problem() {
-  return {503, "GPU lost", "The GPU context was lost and is being rebuilt. The work was not done; send it again.", {}};
+  return {503,
+          "GPU lost",
+          "The GPU context was lost and is being rebuilt. The work was not done; send it again.",
+          {}};
 }
 
 }  // namespace
@@ -96,12 +101,13 @@ void GpuThread::run() {
     if (broken_) abort_all(lost_problem());
     std::unique_lock lock(mutex_);
     const auto has_news = [&] {
-      return stopping_ || !replies_.empty() || frame_queued_ || (!current_[0] && !ordered_.empty()) ||
-             (!current_[1] && !background_.empty());
+      return stopping_ || !replies_.empty() || frame_queued_ ||
+             (!current_[0] && !ordered_.empty()) || (!current_[1] && !background_.empty());
     };
     if (current_[0] || current_[1] || !frames_.empty()) {
       // Something waits for the GPU.
-      if (Clock::now() - last_progress > kBusyPolling) changed_.wait_for(lock, kPollPause, has_news);
+      if (Clock::now() - last_progress > kBusyPolling)
+        changed_.wait_for(lock, kPollPause, has_news);
     } else if (broken_) {
       changed_.wait_for(lock, kRecoveryPause, has_news);
     } else {
@@ -155,7 +161,8 @@ std::optional<Step> GpuThread::step_lane(Lane lane) {
   return step;
 }
 
-// The first frame that can go on does; a new one starts when all others wait for the GPU, or when it is a small one whose turn it is.
+// The first frame that can go on does; a new one starts when all others wait for the GPU, or when
+// it is a small one whose turn it is.
 bool GpuThread::step_frames() {
   if (!frames_.empty() && frames_.size() < kMaxActiveFrames)
     if (auto part = hooks_.next_part()) frames_.push_front(std::move(*part));

@@ -14,7 +14,8 @@
 
 namespace strata::render {
 
-// What a job's step tells the GPU thread. A step takes a few milliseconds at most; long work is many steps.
+// What a job's step tells the GPU thread. A step takes a few milliseconds at most; long work is
+// many steps.
 enum class Step {
   more,     // call again
   yield,    // call again, after a step of the lanes behind: a long job whose own lane waits for it
@@ -29,22 +30,25 @@ struct Job {
 };
 
 enum class Lane {
-  ordered,     // edits and layer changes: one after the other, first of all
-  background,  // uploads of models, surface maps and layers that are opened: one after the other, last of all
+  ordered,  // edits and layer changes: one after the other, first of all
+  // uploads of models, surface maps and layers that are opened: one after the other, last of all
+  background,
 };
 
-// The thread that owns the GPU. Ordered jobs go before frames, frames before background; a waiting job lets the next
-// kind run meanwhile, but nothing overtakes it in its own lane. Frames wait while an ordered job can go on, unless it
-// yields, or ordered jobs have been at it for a while: then both have the same time, so that a flood of edits is seen while it lasts.
+// The thread that owns the GPU. Ordered jobs go before frames, frames before background; a waiting
+// job lets the next kind run meanwhile, but nothing overtakes it in its own lane. Frames wait while
+// an ordered job can go on, unless it yields, or ordered jobs have been at it for a while: then
+// both have the same time, so that a flood of edits is seen while it lasts.
 class GpuThread {
  public:
   struct Hooks {
-    std::function<Result<void>()> start;               // makes the context; its error ends `start`
-    std::function<void()> stop;                        // destroys it
-    std::function<bool()> lost;                        // asked before each step
-    std::function<Result<void>()> recover;             // after a loss: all jobs were aborted
-    std::function<std::optional<Job>()> next_frame;    // takes a waiting frame, if any may start
-    std::function<std::optional<Job>()> next_part;     // the same, if it should go before those under way
+    std::function<Result<void>()> start;             // makes the context; its error ends `start`
+    std::function<void()> stop;                      // destroys it
+    std::function<bool()> lost;                      // asked before each step
+    std::function<Result<void>()> recover;           // after a loss: all jobs were aborted
+    std::function<std::optional<Job>()> next_frame;  // takes a waiting frame, if any may start
+    // the same, if it should go before those under way
+    std::function<std::optional<Job>()> next_part;
     std::function<void(const Problem&)> abort_frames;  // answers those still waiting
   };
 
@@ -57,11 +61,13 @@ class GpuThread {
   // Aborts what waits and joins. Called by the owner, not on the GPU thread.
   void stop();
 
-  // False when the lane is full (unless `always`) or the thread has stopped: the caller answers. `always` is for
-  // removals, one at most for each handle that was given out, and for the one who waits until a lane is done.
+  // False when the lane is full (unless `always`) or the thread has stopped: the caller answers.
+  // `always` is for removals, one at most for each handle that was given out, and for the one who
+  // waits until a lane is done.
   bool post(Lane lane, Job job, bool always = false);
-  // Runs `reply` on the GPU thread before any other work; on this thread when it has stopped. Replies have no capacity
-  // of their own: what waits is one for each request that was refused or replaced during a step.
+  // Runs `reply` on the GPU thread before any other work; on this thread when it has stopped.
+  // Replies have no capacity of their own: what waits is one for each request that was refused or
+  // replaced during a step.
   void post_reply(std::function<void()> reply);
   void wake();  // a frame was queued
   bool ready() const { return !broken_; }
@@ -94,8 +100,10 @@ class GpuThread {
   // Of the GPU thread alone.
   std::optional<Job> current_[2];
   std::list<Job> frames_;
-  Clock::duration ahead_{};  // ordered jobs ran for so much longer than frames since frames last had nothing to do
-  std::atomic<bool> broken_ = false;  // a lost context that could not be replaced yet; others may read
+  // ordered jobs ran for so much longer than frames since frames last had nothing to do
+  Clock::duration ahead_{};
+  // a lost context that could not be replaced yet; others may read
+  std::atomic<bool> broken_ = false;
   Clock::time_point next_recovery_{};
 };
 

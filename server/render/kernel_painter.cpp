@@ -31,7 +31,8 @@ Result<Step> KernelPainter::step(GpuScene& scene, const PaintTarget& target) {
   }
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed_ms = [&] {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
+        .count();
   };
   const KernelResult written = find_written(target);
   const double found_ms = elapsed_ms();
@@ -50,9 +51,9 @@ KernelResult KernelPainter::find_written(const PaintTarget& target) {
   const auto at = path_pixels();
   std::vector<float> depths;
   for (const glm::ivec2 pixel : at.pixels)
-    depths.push_back(
-        depth_->copy->depth[static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(depth_->copy->width) +
-                            static_cast<std::size_t>(pixel.x)]);
+    depths.push_back(depth_->copy->depth[static_cast<std::size_t>(pixel.y) *
+                                             static_cast<std::size_t>(depth_->copy->width) +
+                                         static_cast<std::size_t>(pixel.x)]);
   const ToolPath path = make_path(geometry, at, depths);
   BlockTest test;
   test.clip_from_model = strata::clip_from_model(stroke_.camera, geometry.origin);
@@ -62,17 +63,19 @@ KernelResult KernelPainter::find_written(const PaintTarget& target) {
   test.height = stroke_.camera.height;
   test.shape = stroke_.shape;
   test.texture = stroke_.texture.get();
-  if (stroke_.max_angle_deg) test.facing = make_facing_limit(stroke_.camera, *stroke_.max_angle_deg);
+  if (stroke_.max_angle_deg)
+    test.facing = make_facing_limit(stroke_.camera, *stroke_.max_angle_deg);
   test.bias = depth_bias(geometry);
   const SectionPlanes section = section_in_model(stroke_.camera, geometry.origin);
   test.section = std::span(section).first(stroke_.camera.section.size());
-  const BlockCuller culler(target.map.map(), clip_from_model(geometry), test.width, test.height, path, test.bias,
-                           test.depth ? grid_of(*test.depth) : DepthGrid{});
+  const BlockCuller culler(target.map.map(), clip_from_model(geometry), test.width, test.height,
+                           path, test.bias, test.depth ? grid_of(*test.depth) : DepthGrid{});
   static const TestBlock test_block = test_block_on(best_vector_unit());
   return run_edit_kernel(target.map.map(), culler, test, test_block, mesh::hardware_threads());
 }
 
-Result<std::vector<PageId>> KernelPainter::find_pages(const KernelResult& written, LayerTextures& layer) const {
+Result<std::vector<PageId>> KernelPainter::find_pages(const KernelResult& written,
+                                                      LayerTextures& layer) const {
   std::vector<PageId> pages, fresh;
   for (const auto& tile : written.tiles) {
     pages.push_back(layer.page(tile.address));
@@ -88,14 +91,16 @@ Result<std::vector<PageId>> KernelPainter::find_pages(const KernelResult& writte
   return pages;
 }
 
-void KernelPainter::write(const KernelResult& written, std::span<const PageId> pages, LayerTextures& layer) {
+void KernelPainter::write(const KernelResult& written, std::span<const PageId> pages,
+                          LayerTextures& layer) {
   PagePool& pool = layer.pool();
   outcome_.written_min = written.written_min;
   outcome_.written_max = written.written_max;
   outcome_.tiles.reserve(written.tiles.size());
   for (std::size_t i = 0; i < pages.size(); ++i) {
     const auto& [address, mask] = written.tiles[i];
-    TileData& tile = outcome_.tiles.emplace_back(WrittenTile{address, mask, TileData(layer.type())}).after;
+    TileData& tile =
+        outcome_.tiles.emplace_back(WrittenTile{address, mask, TileData(layer.type())}).after;
     if (pages[i] == shader::kNoPage) continue;
     const bool fresh = layer.page(address) == shader::kNoPage;
     if (!fresh) {

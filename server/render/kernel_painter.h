@@ -6,8 +6,9 @@
 
 namespace strata::render {
 
-// The depth in main memory, once a camera → the kernel says which texels are written → pages for tiles that have none → each
-// tile is read where it holds something, changed, and uploaded whole. Once pages are had nothing can fail but the context.
+// The depth in main memory, once a camera → the kernel says which texels are written → pages for
+// tiles that have none → each tile is read where it holds something, changed, and uploaded whole.
+// Once pages are had nothing can fail but the context.
 class KernelPainter : public StrokePainter {
  public:
   using StrokePainter::StrokePainter;

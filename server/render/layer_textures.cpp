@@ -6,8 +6,8 @@
 
 namespace strata::render {
 
-Result<std::unique_ptr<LayerTextures>> LayerTextures::create(ValueType type, int resolution, PageTables& tables,
-                                                             PagePool& pool) {
+Result<std::unique_ptr<LayerTextures>> LayerTextures::create(ValueType type, int resolution,
+                                                             PageTables& tables, PagePool& pool) {
   const int tiles = resolution / kTileSize;
   auto offset = tables.allocate(static_cast<std::uint32_t>(tiles * tiles));
   if (!offset) return tl::unexpected(offset.error());
@@ -22,7 +22,8 @@ LayerTextures::LayerTextures(ValueType type, int resolution, PageTables& tables,
       tables_(tables),
       pool_(pool),
       table_offset_(table_offset),
-      bytes_(std::make_shared<std::atomic<std::uint64_t>>(std::uint64_t{table_entries()} * sizeof(PageId))) {}
+      bytes_(std::make_shared<std::atomic<std::uint64_t>>(std::uint64_t{table_entries()} *
+                                                          sizeof(PageId))) {}
 
 LayerTextures::~LayerTextures() {
   free_pages();
@@ -56,7 +57,8 @@ void LayerTextures::free_page(TileAddress tile) {
 
 void LayerTextures::free_pages() {
   for (int y = 0; y < tiles_per_side_; ++y)
-    for (int x = 0; x < tiles_per_side_; ++x) free_page({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
+    for (int x = 0; x < tiles_per_side_; ++x)
+      free_page({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
 }
 
 std::size_t LayerTextures::page_count() const {

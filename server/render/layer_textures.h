@@ -10,12 +10,12 @@
 
 namespace strata::render {
 
-// One layer on the GPU: its range of the page tables and its pages in the pool of its texel width. Costs 4 bytes a tile
-// while empty. GPU thread only, except `bytes`.
+// One layer on the GPU: its range of the page tables and its pages in the pool of its texel width.
+// Costs 4 bytes a tile while empty. GPU thread only, except `bytes`.
 class LayerTextures {
  public:
-  static Result<std::unique_ptr<LayerTextures>> create(ValueType type, int resolution, PageTables& tables,
-                                                       PagePool& pool);
+  static Result<std::unique_ptr<LayerTextures>> create(ValueType type, int resolution,
+                                                       PageTables& tables, PagePool& pool);
   ~LayerTextures();  // frees all pages
   LayerTextures(const LayerTextures&) = delete;
   LayerTextures& operator=(const LayerTextures&) = delete;
@@ -27,7 +27,9 @@ class LayerTextures {
   bool has_page_in(std::uint32_t chunk) const { return pages_in_chunk_[chunk] > 0; }
 
   std::size_t page_count() const;
-  bool contains(TileAddress tile) const { return tile.x < tiles_per_side_ && tile.y < tiles_per_side_; }
+  bool contains(TileAddress tile) const {
+    return tile.x < tiles_per_side_ && tile.y < tiles_per_side_;
+  }
   PageId page(TileAddress tile) const { return tables_.at(index(tile)); }  // kNoPage when empty
   // An empty page where there is none.
   Result<PageId> ensure_page(TileAddress tile);
@@ -40,11 +42,14 @@ class LayerTextures {
   const std::shared_ptr<std::atomic<std::uint64_t>>& bytes() const { return bytes_; }
 
  private:
-  LayerTextures(ValueType type, int resolution, PageTables& tables, PagePool& pool, std::uint32_t table_offset);
+  LayerTextures(ValueType type, int resolution, PageTables& tables, PagePool& pool,
+                std::uint32_t table_offset);
   std::uint32_t index(TileAddress t) const {
     return table_offset_ + t.y * static_cast<std::uint32_t>(tiles_per_side_) + t.x;
   }
-  std::uint32_t table_entries() const { return static_cast<std::uint32_t>(tiles_per_side_ * tiles_per_side_); }
+  std::uint32_t table_entries() const {
+    return static_cast<std::uint32_t>(tiles_per_side_ * tiles_per_side_);
+  }
 
   const ValueType type_;
   const int resolution_, tiles_per_side_;

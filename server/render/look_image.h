@@ -6,9 +6,9 @@
 
 namespace strata::render {
 
-// A picture of a model's surface as the GPU takes it: RGBA8, lowest row first (v = 0), with every mipmap down to one
-// texel. Coarser levels average light, not sRGB codes, and are weighted by alpha, so that fine detail keeps its brightness
-// and what is clear does not darken edges.
+// A picture of a model's surface as the GPU takes it: RGBA8, lowest row first (v = 0), with every
+// mipmap down to one texel. Coarser levels average light, not sRGB codes, and are weighted by
+// alpha, so that fine detail keeps its brightness and what is clear does not darken edges.
 struct LookImage {
   struct Level {
     int width = 0, height = 0;
@@ -19,8 +19,8 @@ struct LookImage {
   std::size_t bytes() const;
 };
 
-// From width x height RGBA8 texels, top row first. Levels with a side above `largest_side` are left out. Takes about a second
-// for 8192² on one core.
+// From width x height RGBA8 texels, top row first. Levels with a side above `largest_side` are left
+// out. Takes about a second for 8192² on one core.
 LookImage make_look_image(std::vector<std::uint8_t> rgba, int width, int height, int largest_side);
 
 }  // namespace strata::render

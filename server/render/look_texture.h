@@ -8,11 +8,12 @@
 
 namespace strata::render {
 
-// A picture of a model's surface on the GPU, filled in slices. Filtered between texels and between mipmaps.
+// A picture of a model's surface on the GPU, filled in slices. Filtered between texels and between
+// mipmaps.
 class LookTexture {
  public:
-  static Result<std::unique_ptr<LookTexture>> create(std::shared_ptr<const LookImage> image, bool software,
-                                                     GpuMemory& memory);
+  static Result<std::unique_ptr<LookTexture>> create(std::shared_ptr<const LookImage> image,
+                                                     bool software, GpuMemory& memory);
 
   // Uploads the next few megabytes; true when everything is there, after which the image is let go.
   bool upload_slice();

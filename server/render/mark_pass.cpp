@@ -7,7 +7,8 @@ Result<MarkPass> MarkPass::create(const std::filesystem::path& shader_dir) {
   auto program = gl::Program::load(shader_dir, {"mark_pass.vert", "mark_pass.frag"}, {});
   if (!program) return tl::unexpected(program.error());
   pass.program_ = std::move(*program);
-  for (auto [phase, made] : {std::pair{"CLOSE_GAPS 0", &pass.sight_}, {"CLOSE_GAPS 1", &pass.gaps_}}) {
+  for (auto [phase, made] :
+       {std::pair{"CLOSE_GAPS 0", &pass.sight_}, {"CLOSE_GAPS 1", &pass.gaps_}}) {
     auto built = gl::Program::load(shader_dir, {"mark_sight_pass.comp"}, {phase});
     if (!built) return tl::unexpected(built.error());
     *made = std::move(*built);
@@ -15,8 +16,8 @@ Result<MarkPass> MarkPass::create(const std::filesystem::path& shader_dir) {
   return pass;
 }
 
-Result<void> MarkPass::look(std::span<const shader::MarkSegment> segments, const gl::Texture& depth, bool cut_open,
-                            MarkBuffer& marks) const {
+Result<void> MarkPass::look(std::span<const shader::MarkSegment> segments, const gl::Texture& depth,
+                            bool cut_open, MarkBuffer& marks) const {
   marks.count = 0;
   if (segments.empty()) return {};
   if (auto sent = marks.segments.replace(segments); !sent) return sent;
@@ -33,8 +34,8 @@ Result<void> MarkPass::look(std::span<const shader::MarkSegment> segments, const
   return {};
 }
 
-Result<void> MarkPass::draw(const MarkBuffer& marks, const gl::Framebuffer& target, int width, int height,
-                            const PixelRect& rect) {
+Result<void> MarkPass::draw(const MarkBuffer& marks, const gl::Framebuffer& target, int width,
+                            int height, const PixelRect& rect) {
   if (marks.count == 0 || rect.width == 0 || rect.height == 0) return {};
   marks.segments.bind_storage(0);
   program_.use();
@@ -45,7 +46,8 @@ Result<void> MarkPass::draw(const MarkBuffer& marks, const gl::Framebuffer& targ
   glDisable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
-  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // the picture stays opaque
+  // the picture stays opaque
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.x, height - rect.y - rect.height, rect.width, rect.height);
   Result<void> sent;

@@ -21,7 +21,8 @@ glm::vec4 corner_of(const mesh::ClusterBox& box, unsigned corner) {
           (corner & 4) != 0 ? box.max.z : box.min.z, 1};
 }
 
-// Whether all corners lie beyond one side of the clip volume. The slack covers the rounding of the vertex stage.
+// Whether all corners lie beyond one side of the clip volume. The slack covers the rounding of the
+// vertex stage.
 bool outside(const mesh::ClusterBox& box, const glm::mat4& clip_from_model) {
   constexpr float kSlack = 1e-5f;
   unsigned beyond = 0x3f;  // a bit a side
@@ -43,7 +44,8 @@ constexpr std::array<gl::VertexAttribute, 4> kAttributes{{
     {3, 4, GL_UNSIGNED_BYTE, true, offsetof(mesh::Vertex, color)},
 }};
 
-// Of some thousand triangles all over the mesh. By area: a few large ones may be most of what is seen.
+// Of some thousand triangles all over the mesh. By area: a few large ones may be most of what is
+// seen.
 float side_of_triangles(const mesh::Geometry& geometry) {
   const auto corner = [&](std::size_t i) -> const glm::vec3& {
     return geometry.vertices[geometry.indices[i]].position;
@@ -61,8 +63,8 @@ float side_of_triangles(const mesh::Geometry& geometry) {
 
 }  // namespace
 
-Result<std::unique_ptr<MeshBuffers>> MeshBuffers::create(std::shared_ptr<const mesh::Geometry> geometry,
-                                                         GpuMemory& memory) {
+Result<std::unique_ptr<MeshBuffers>> MeshBuffers::create(
+    std::shared_ptr<const mesh::Geometry> geometry, GpuMemory& memory) {
   auto mesh = std::make_unique<MeshBuffers>();
   mesh->geometry_ = std::move(geometry);
   mesh->triangle_side_ = side_of_triangles(*mesh->geometry_);
@@ -80,13 +82,15 @@ Result<std::unique_ptr<MeshBuffers>> MeshBuffers::create(std::shared_ptr<const m
   mesh->cluster_boxes_ = std::move(*cluster_boxes);
   mesh->vertices_ = std::move(*vertices);
   mesh->indices_ = std::move(*indices);
-  mesh->vertex_array_ = gl::VertexArray(mesh->vertices_, sizeof(mesh::Vertex), kAttributes, mesh->indices_, "mesh");
+  mesh->vertex_array_ =
+      gl::VertexArray(mesh->vertices_, sizeof(mesh::Vertex), kAttributes, mesh->indices_, "mesh");
   return mesh;
 }
 
 std::size_t MeshBuffers::visible_triangles(const glm::mat4& clip_from_model) const {
-  const auto clusters = std::count_if(geometry_->clusters.begin(), geometry_->clusters.end(),
-                                      [&](const mesh::ClusterBox& box) { return !outside(box, clip_from_model); });
+  const auto clusters =
+      std::count_if(geometry_->clusters.begin(), geometry_->clusters.end(),
+                    [&](const mesh::ClusterBox& box) { return !outside(box, clip_from_model); });
   return static_cast<std::size_t>(clusters) * mesh::Geometry::kTrianglesPerCluster;
 }
 
@@ -100,7 +104,8 @@ float MeshBuffers::triangle_pixels(const glm::mat4& clip_from_model, int height)
   return triangle_side_ * glm::length(upwards) / nearest * 0.5f * static_cast<float>(height);
 }
 
-std::vector<std::uint32_t> MeshBuffers::visible_clusters(const glm::mat4& clip_from_model, const glm::vec4& eye) const {
+std::vector<std::uint32_t> MeshBuffers::visible_clusters(const glm::mat4& clip_from_model,
+                                                         const glm::vec4& eye) const {
   std::vector<std::pair<float, std::uint32_t>> by_distance;
   for (std::size_t i = 0; i < geometry_->clusters.size(); ++i) {
     const mesh::ClusterBox& box = geometry_->clusters[i];
@@ -119,8 +124,8 @@ std::vector<std::uint32_t> MeshBuffers::visible_clusters(const glm::mat4& clip_f
 
 bool MeshBuffers::upload_slice() {
   const bool in_vertices = uploaded_ < vertex_bytes();
-  const auto source =
-      in_vertices ? std::as_bytes(std::span(geometry_->vertices)) : std::as_bytes(std::span(geometry_->indices));
+  const auto source = in_vertices ? std::as_bytes(std::span(geometry_->vertices))
+                                  : std::as_bytes(std::span(geometry_->indices));
   const std::size_t offset = in_vertices ? uploaded_ : uploaded_ - vertex_bytes();
   const std::size_t count = std::min(kSliceBytes, source.size() - offset);
   (in_vertices ? vertices_ : indices_).upload(offset, source.subspan(offset, count));

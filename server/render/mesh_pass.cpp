@@ -22,10 +22,12 @@ const char* light_define(LightMode mode) {
 // A plane that faces the viewer is shown in middle grey, however low the light stands.
 constexpr double kRakingOnPlane = 0.5, kMostRaking = 3;
 
-// Smaller triangles are lit at their vertices: who looks sees no difference, and a software renderer draws a thirteenth faster.
+// Smaller triangles are lit at their vertices: who looks sees no difference, and a software
+// renderer draws a thirteenth faster.
 constexpr float kPixelsLitAtVertices = 10;
 
-// A part of the clusters that are left is drawn before the others are looked at; a few are drawn sooner than looked at.
+// A part of the clusters that are left is drawn before the others are looked at; a few are drawn
+// sooner than looked at.
 constexpr std::size_t kCullAfter = 4, kFewClusters = 256;
 
 std::size_t next_culling(const MeshProgress& progress) {
@@ -35,8 +37,10 @@ std::size_t next_culling(const MeshProgress& progress) {
 
 }  // namespace
 
-Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader_dir, std::size_t triangles_per_slice) {
-  auto uniforms = gl::Buffer::create(sizeof(shader::MeshUniforms), gl::Buffer::Use::fixed, "mesh uniforms");
+Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader_dir,
+                                  std::size_t triangles_per_slice) {
+  auto uniforms =
+      gl::Buffer::create(sizeof(shader::MeshUniforms), gl::Buffer::Use::fixed, "mesh uniforms");
   if (!uniforms) return tl::unexpected(uniforms.error());
   auto culler = ClusterCuller::create(shader_dir);
   if (!culler) return tl::unexpected(culler.error());
@@ -45,7 +49,8 @@ Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader
   pass.kind_ = kind;
   pass.shader_dir_ = shader_dir;
   pass.uniforms_ = std::move(*uniforms);
-  pass.clusters_per_slice_ = std::max<std::size_t>(1, triangles_per_slice / mesh::Geometry::kTrianglesPerCluster);
+  pass.clusters_per_slice_ =
+      std::max<std::size_t>(1, triangles_per_slice / mesh::Geometry::kTrianglesPerCluster);
   if (auto built = pass.program({}, false); !built) return tl::unexpected(built.error());
   return pass;
 }
@@ -60,13 +65,14 @@ Result<const gl::Program*> MeshPass::program(const MeshView& view, bool lit_at_v
   }
   if (const auto built = programs_.find(defines); built != programs_.end()) return &built->second;
   auto program = gl::Program::load(
-      shader_dir_, {"mesh.vert", kind_ == Kind::depth ? "depth_pass.frag" : "gbuffer_pass.frag"}, defines);
+      shader_dir_, {"mesh.vert", kind_ == Kind::depth ? "depth_pass.frag" : "gbuffer_pass.frag"},
+      defines);
   if (!program) return tl::unexpected(program.error());
   return &programs_.emplace(std::move(defines), std::move(*program)).first->second;
 }
 
-Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target,
-                             MeshProgress& progress) {
+Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view,
+                             const MeshTarget& target, MeshProgress& progress) {
   const GLuint framebuffer = target.framebuffer.id();
   const float farthest = 1;
   glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &farthest);
@@ -77,10 +83,12 @@ Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view, cons
     glClearNamedFramebufferfv(framebuffer, GL_COLOR, 1, dark.data());
   }
   std::vector<shader::DrawCommand> commands;
-  for (const auto cluster : mesh.visible_clusters(view.uniforms.clip_from_model, view.uniforms.eye)) {
+  for (const auto cluster :
+       mesh.visible_clusters(view.uniforms.clip_from_model, view.uniforms.eye)) {
     constexpr std::size_t kTriangles = mesh::Geometry::kTrianglesPerCluster;
     const std::size_t first = cluster * kTriangles;
-    const auto count = static_cast<std::uint32_t>(3 * std::min(kTriangles, mesh.triangle_count() - first));
+    const auto count =
+        static_cast<std::uint32_t>(3 * std::min(kTriangles, mesh.triangle_count() - first));
     commands.push_back({count, 1, static_cast<std::uint32_t>(3 * first), 0, 0});
   }
   progress.clusters = commands.size();
@@ -95,21 +103,22 @@ Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view, cons
   return {};
 }
 
-Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target,
-                                  MeshProgress& progress) {
-  const bool lit_at_vertices =
-      kind_ == Kind::gbuffer && view.light == LightMode::museum &&
-      mesh.triangle_pixels(view.uniforms.clip_from_model, target.depth.height()) <= kPixelsLitAtVertices;
+Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view,
+                                  const MeshTarget& target, MeshProgress& progress) {
+  const bool lit_at_vertices = kind_ == Kind::gbuffer && view.light == LightMode::museum &&
+                               mesh.triangle_pixels(view.uniforms.clip_from_model,
+                                                    target.depth.height()) <= kPixelsLitAtVertices;
   auto built = program(view, lit_at_vertices);
   if (!built) return tl::unexpected(built.error());
   if (!progress.cleared) {
-    if (auto begun = begin(mesh, view, target, progress); !begun) return tl::unexpected(begun.error());
+    if (auto begun = begin(mesh, view, target, progress); !begun)
+      return tl::unexpected(begun.error());
   }
   if (progress.clusters == 0) return true;
   const std::size_t rest = progress.clusters - progress.next_cluster;
   if (progress.next_cluster == progress.next_culling) {
-    auto hidden =
-        culler_.hide(target.depth, mesh, view.uniforms.clip_from_model, progress.commands, progress.next_cluster, rest);
+    auto hidden = culler_.hide(target.depth, mesh, view.uniforms.clip_from_model, progress.commands,
+                               progress.next_cluster, rest);
     if (!hidden) return tl::unexpected(hidden.error());
     progress.next_culling = next_culling(progress);
   }
@@ -125,16 +134,20 @@ Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view,
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
   glFrontFace(view.is_mirrored ? GL_CW : GL_CCW);
-  for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i) glEnable(GL_CLIP_DISTANCE0 + i);
-  const std::size_t count = std::min(
-      {clusters_per_slice_, progress.clusters - progress.next_cluster, progress.next_culling - progress.next_cluster});
+  for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i)
+    glEnable(GL_CLIP_DISTANCE0 + i);
+  const std::size_t count =
+      std::min({clusters_per_slice_, progress.clusters - progress.next_cluster,
+                progress.next_culling - progress.next_cluster});
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, progress.commands.id());
-  glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT,
-                              reinterpret_cast<const void*>(progress.next_cluster * sizeof(shader::DrawCommand)),
-                              static_cast<GLsizei>(count), 0);
+  glMultiDrawElementsIndirect(
+      GL_TRIANGLES, GL_UNSIGNED_INT,
+      reinterpret_cast<const void*>(progress.next_cluster * sizeof(shader::DrawCommand)),
+      static_cast<GLsizei>(count), 0);
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
   progress.next_cluster += count;
-  for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i) glDisable(GL_CLIP_DISTANCE0 + i);
+  for (GLuint i = 0; view.is_cut && i < shader::kSectionPlanes; ++i)
+    glDisable(GL_CLIP_DISTANCE0 + i);
   glFlush();  // lets the driver draw this slice while the next is prepared
   return progress.next_cluster == progress.clusters;
 }
@@ -147,13 +160,14 @@ MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& 
   MeshView view;
   shader::MeshUniforms& uniforms = view.uniforms;
   uniforms.clip_from_model = clip_from_model(camera, origin);
-  uniforms.eye =
-      is_orthographic(camera) ? direction({0, 0, 1}) : glm::vec4(glm::vec3(eye_in_world(camera) - origin), 1);
+  uniforms.eye = is_orthographic(camera) ? direction({0, 0, 1})
+                                         : glm::vec4(glm::vec3(eye_in_world(camera) - origin), 1);
   uniforms.key_light = direction({-0.45, 0.60, 0.75});
   if (light.mode == LightMode::raking) {
     const glm::dvec3 towards = glm::normalize(light.direction);
     uniforms.key_light = direction(towards);
-    uniforms.key_light.w = static_cast<float>(std::min(kRakingOnPlane / std::max(towards.z, 1e-3), kMostRaking));
+    uniforms.key_light.w =
+        static_cast<float>(std::min(kRakingOnPlane / std::max(towards.z, 1e-3), kMostRaking));
   }
   view.light = light.mode;
   uniforms.fill_light = direction({0.80, 0.05, 0.45});

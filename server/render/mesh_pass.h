@@ -21,16 +21,19 @@ namespace strata::render {
 // What a mesh is drawn with.
 struct MeshView {
   shader::MeshUniforms uniforms;
-  bool is_cut = false;       // by section planes
-  bool is_mirrored = false;  // the camera swaps left and right: triangles that face it turn clockwise
+  bool is_cut = false;  // by section planes
+  // the camera swaps left and right: triangles that face it turn clockwise
+  bool is_mirrored = false;
   // For the g-buffer.
   LightMode light = LightMode::museum;
-  std::vector<const gl::Texture*> looks;  // bottom to top, kMaxLooks at most, with their opacity in the uniforms
+  // bottom to top, kMaxLooks at most, with their opacity in the uniforms
+  std::vector<const gl::Texture*> looks;
 };
 // For a model whose coordinates are relative to `origin`; without looks.
 MeshView mesh_view(const Camera& camera, const glm::dvec3& origin, const Light& light = {});
 
-// What a mesh is drawn into. The depth texture belongs to the framebuffer and has the window's size.
+// What a mesh is drawn into. The depth texture belongs to the framebuffer and has the window's
+// size.
 struct MeshTarget {
   const gl::Framebuffer& framebuffer;
   const gl::Texture& depth;
@@ -47,13 +50,14 @@ struct MeshProgress {
   std::size_t triangles() const { return clusters * mesh::Geometry::kTrianglesPerCluster; }
 };
 
-// Draws a mesh, near parts first, and leaves out clusters that lie behind them: depth alone, or the g-buffer. Both use
-// one vertex stage, so their depths are equal. Each call sets all state it needs: other passes may run between slices.
-// Nothing is culled by facing, because scans are open.
+// Draws a mesh, near parts first, and leaves out clusters that lie behind them: depth alone, or the
+// g-buffer. Both use one vertex stage, so their depths are equal. Each call sets all state it
+// needs: other passes may run between slices. Nothing is culled by facing, because scans are open.
 class MeshPass {
  public:
   enum class Kind { depth, gbuffer };
-  static Result<MeshPass> create(Kind kind, const std::filesystem::path& shader_dir, std::size_t triangles_per_slice);
+  static Result<MeshPass> create(Kind kind, const std::filesystem::path& shader_dir,
+                                 std::size_t triangles_per_slice);
 
   // Draws the next slice into `target` (cleared before the first); true when the mesh is complete.
   Result<bool> draw_slice(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target,
@@ -62,7 +66,8 @@ class MeshPass {
  private:
   // Built when it is first needed.
   Result<const gl::Program*> program(const MeshView& view, bool lit_at_vertices);
-  Result<void> begin(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target, MeshProgress& progress);
+  Result<void> begin(const MeshBuffers& mesh, const MeshView& view, const MeshTarget& target,
+                     MeshProgress& progress);
 
   Kind kind_ = Kind::depth;
   std::filesystem::path shader_dir_;

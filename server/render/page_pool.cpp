@@ -24,7 +24,8 @@ struct Place {
 
 Place place_of(PageId page) {
   const auto cell = page & shader::kPageCellMask;
-  return {page >> shader::kPageChunkShift, static_cast<int>((page >> shader::kPageCellBits) & shader::kPageSliceMask),
+  return {page >> shader::kPageChunkShift,
+          static_cast<int>((page >> shader::kPageCellBits) & shader::kPageSliceMask),
           static_cast<int>(cell % shader::kCellsPerSide) * kTileSize,
           static_cast<int>(cell / shader::kCellsPerSide) * kTileSize};
 }
@@ -49,8 +50,8 @@ void PagePool::free(PageId page) {
 }
 
 bool PagePool::drop_empty_chunk() {
-  const auto empty =
-      std::find_if(chunks_.begin(), chunks_.end(), [](const Chunk& c) { return c.values && c.used_pages == 0; });
+  const auto empty = std::find_if(chunks_.begin(), chunks_.end(),
+                                  [](const Chunk& c) { return c.values && c.used_pages == 0; });
   if (empty == chunks_.end()) return false;
   const auto number = static_cast<std::uint32_t>(empty - chunks_.begin());
   std::erase_if(free_, [&](PageId page) { return page >> shader::kPageChunkShift == number; });
@@ -61,10 +62,10 @@ bool PagePool::drop_empty_chunk() {
 void PagePool::clear(PageId page) {
   const Place p = place_of(page);
   const std::uint32_t zero = 0;
-  glClearTexSubImage(values(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
-                     texel_component(texel_bytes_), &zero);
-  glClearTexSubImage(valid(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
-                     GL_UNSIGNED_BYTE, &zero);
+  glClearTexSubImage(values(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1,
+                     GL_RED_INTEGER, texel_component(texel_bytes_), &zero);
+  glClearTexSubImage(valid(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1,
+                     GL_RED_INTEGER, GL_UNSIGNED_BYTE, &zero);
 }
 
 void PagePool::upload(PageId page, const TileData& data) {
@@ -73,37 +74,44 @@ void PagePool::upload(PageId page, const TileData& data) {
   TileFlags flags;
   flags_of(data.valid, flags);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage3D(values(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
-                      texel_component(texel_bytes_), data.values.data());
-  glTextureSubImage3D(valid(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
-                      GL_UNSIGNED_BYTE, flags.data());
+  glTextureSubImage3D(values(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1,
+                      GL_RED_INTEGER, texel_component(texel_bytes_), data.values.data());
+  glTextureSubImage3D(valid(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1,
+                      GL_RED_INTEGER, GL_UNSIGNED_BYTE, flags.data());
 }
 
 void PagePool::read(PageId page, TileData& data) const {
   assert(data.values.size() == static_cast<std::size_t>(kTexelsPerTile * texel_bytes_));
   const Place p = place_of(page);
   TileFlags flags;
-  glGetTextureSubImage(values(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
-                       texel_component(texel_bytes_), static_cast<GLsizei>(data.values.size()), data.values.data());
-  glGetTextureSubImage(valid(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1, GL_RED_INTEGER,
-                       GL_UNSIGNED_BYTE, static_cast<GLsizei>(flags.size()), flags.data());
+  glGetTextureSubImage(values(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1,
+                       GL_RED_INTEGER, texel_component(texel_bytes_),
+                       static_cast<GLsizei>(data.values.size()), data.values.data());
+  glGetTextureSubImage(valid(p.chunk).id(), 0, p.x, p.y, p.slice, kTileSize, kTileSize, 1,
+                       GL_RED_INTEGER, GL_UNSIGNED_BYTE, static_cast<GLsizei>(flags.size()),
+                       flags.data());
   data.valid = mask_of(flags);
 }
 
 std::uint64_t PagePool::chunk_bytes(int slices) const {
-  return std::uint64_t{kSliceSize} * kSliceSize * static_cast<unsigned>(slices * (texel_bytes_ + 1));
+  return std::uint64_t{kSliceSize} * kSliceSize *
+         static_cast<unsigned>(slices * (texel_bytes_ + 1));
 }
 
 Result<void> PagePool::add_chunk() {
-  const auto unused = std::find_if(chunks_.begin(), chunks_.end(), [](const Chunk& chunk) { return !chunk.values; });
+  const auto unused = std::find_if(chunks_.begin(), chunks_.end(),
+                                   [](const Chunk& chunk) { return !chunk.values; });
   const auto number = static_cast<std::size_t>(unused - chunks_.begin());
   if (number >= kMaxChunks) {
-    return fail(503, "GPU memory used up", "No more than 16 texture chunks of one value width can be used.");
+    return fail(503, "GPU memory used up",
+                "No more than 16 texture chunks of one value width can be used.");
   }
-  const int present = std::accumulate(chunks_.begin(), chunks_.end(), 0,
-                                      [](int sum, const Chunk& chunk) { return sum + chunk.values.layers(); });
+  const int present =
+      std::accumulate(chunks_.begin(), chunks_.end(), 0,
+                      [](int sum, const Chunk& chunk) { return sum + chunk.values.layers(); });
   // 1, 2, 4 … where none was dropped.
-  int slices = static_cast<int>(std::min(std::bit_floor(static_cast<unsigned>(present) + 1), kMaxSlicesPerChunk));
+  int slices = static_cast<int>(
+      std::min(std::bit_floor(static_cast<unsigned>(present) + 1), kMaxSlicesPerChunk));
   auto chunk = make_chunk(number, slices);
   // Near the budget fewer may still fit.
   while (!chunk && slices > 1) chunk = make_chunk(number, slices /= 2);
@@ -120,8 +128,10 @@ Result<void> PagePool::add_chunk() {
 Result<PagePool::Chunk> PagePool::make_chunk(std::size_t number, int slices) {
   auto share = memory_.reserve(chunk_bytes(slices), "layer tiles");
   if (!share) return tl::unexpected(share.error());
-  const std::string name = "pages of " + std::to_string(texel_bytes_) + " bytes, chunk " + std::to_string(number);
-  auto values = gl::Texture::create_array(texel_format(texel_bytes_), kSliceSize, kSliceSize, slices, name);
+  const std::string name =
+      "pages of " + std::to_string(texel_bytes_) + " bytes, chunk " + std::to_string(number);
+  auto values =
+      gl::Texture::create_array(texel_format(texel_bytes_), kSliceSize, kSliceSize, slices, name);
   if (!values) return tl::unexpected(values.error());
   auto valid = gl::Texture::create_array(GL_R8UI, kSliceSize, kSliceSize, slices, name + ", valid");
   if (!valid) return tl::unexpected(valid.error());

@@ -13,10 +13,11 @@ namespace strata::render {
 
 using PageId = std::uint32_t;  // chunk, slice and cell: shaders/shared/pages.h
 
-// Storage of tiles of one texel width, whatever layer they belong to: the paper's texture manager with pages instead of
-// whole textures. Chunks are texture arrays of 2048 x 2048 slices of 16 x 16 pages, beside them a plane of valid flags;
-// each chunk holds twice as many slices as the one before, and none is ever copied or moved. A chunk without pages can
-// be dropped, so that pools lend each other memory; its number then serves a later one.
+// Storage of tiles of one texel width, whatever layer they belong to: the paper's texture manager
+// with pages instead of whole textures. Chunks are texture arrays of 2048 x 2048 slices of 16 x 16
+// pages, beside them a plane of valid flags; each chunk holds twice as many slices as the one
+// before, and none is ever copied or moved. A chunk without pages can be dropped, so that pools
+// lend each other memory; its number then serves a later one.
 class PagePool {
  public:
   PagePool(int texel_bytes, GpuMemory& memory) : texel_bytes_(texel_bytes), memory_(memory) {}
@@ -26,11 +27,14 @@ class PagePool {
     return std::uint64_t{kTexelsPerTile} * static_cast<unsigned>(texel_bytes_ + 1);
   }
   static constexpr std::size_t kMaxChunks = 16;  // 4 bits in a shade layer's units
-  bool has_chunk(std::uint32_t chunk) const { return chunk < chunks_.size() && chunks_[chunk].values; }
+  bool has_chunk(std::uint32_t chunk) const {
+    return chunk < chunks_.size() && chunks_[chunk].values;
+  }
   const gl::Texture& values(std::uint32_t chunk) const { return chunks_[chunk].values; }
   const gl::Texture& valid(std::uint32_t chunk) const { return chunks_[chunk].valid; }
 
-  // Frees pages of this pool that are not needed for now; false when it has none to free. Asked before others must give way.
+  // Frees pages of this pool that are not needed for now; false when it has none to free. Asked
+  // before others must give way.
   void set_evictor(std::function<bool()> free_some) { free_some_ = std::move(free_some); }
 
   // A page whose content is undefined. A Problem 503 when no chunk can be added.

@@ -41,7 +41,8 @@ void PageTables::set(std::uint32_t index, PageId page) {
 }
 
 Result<void> PageTables::flush() {
-  const std::size_t needed = std::bit_ceil(std::max(entries_.size(), kSmallestTable)) * sizeof(PageId);
+  const std::size_t needed =
+      std::bit_ceil(std::max(entries_.size(), kSmallestTable)) * sizeof(PageId);
   if (buffer_.size() < needed) {
     auto share = memory_.reserve(needed, "page tables");
     if (!share) return tl::unexpected(share.error());
@@ -58,8 +59,8 @@ Result<void> PageTables::flush() {
     std::size_t last = first;
     while (last + 1 < changed_.size() && changed_[last + 1] - changed_[last] <= kJoinGap) ++last;
     const auto begin = changed_[first];
-    buffer_.upload_values(begin * sizeof(PageId),
-                          std::span<const PageId>(entries_).subspan(begin, changed_[last] + 1 - begin));
+    buffer_.upload_values(begin * sizeof(PageId), std::span<const PageId>(entries_).subspan(
+                                                      begin, changed_[last] + 1 - begin));
     first = last + 1;
   }
   changed_.clear();

@@ -10,8 +10,8 @@
 
 namespace strata::render {
 
-// The page tables of all layers in one storage buffer, so that a dispatch over many layers binds one. Entries are page ids
-// or kNoPage. Changes are kept on the CPU until `flush`.
+// The page tables of all layers in one storage buffer, so that a dispatch over many layers binds
+// one. Entries are page ids or kNoPage. Changes are kept on the CPU until `flush`.
 class PageTables {
  public:
   explicit PageTables(GpuMemory& memory) : memory_(memory) {}

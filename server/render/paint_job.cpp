@@ -18,31 +18,39 @@ Result<void> validate(const StrokeBatch& stroke) {
   if (auto camera = validate(stroke.camera); !camera) return camera;
   if (stroke.path.empty() || stroke.path.size() > kMaxPathPoints) {
     return fail(422, "Path length out of range",
-                "A stroke has 1 to " + std::to_string(kMaxPathPoints) + " points; send a longer one in parts.", "path");
+                "A stroke has 1 to " + std::to_string(kMaxPathPoints) +
+                    " points; send a longer one in parts.",
+                "path");
   }
   for (const auto& point : stroke.path) {
     if (!std::isfinite(point.x) || !std::isfinite(point.y)) {
-      return fail(422, "Path not finite", "Every coordinate of the path must be a finite number.", "path");
+      return fail(422, "Path not finite", "Every coordinate of the path must be a finite number.",
+                  "path");
     }
   }
   if (!stroke.widths.empty() && stroke.widths.size() != stroke.path.size())
-    return fail(422, "Widths do not fit", "Give one width for each point of the path, or none.", "widths");
+    return fail(422, "Widths do not fit", "Give one width for each point of the path, or none.",
+                "widths");
   for (const double width : stroke.widths)
     if (!(width > 0 && width <= 1))
-      return fail(422, "Width out of range", "A width is a share of the radius: above 0, 1 at most.", "widths");
+      return fail(422, "Width out of range",
+                  "A width is a share of the radius: above 0, 1 at most.", "widths");
   const double radius = stroke.radius_px > 0 ? stroke.radius_px : stroke.radius_world;
   if (!std::isfinite(radius) || radius <= 0) {
-    return fail(422, "Radius out of range", "Give radius_px or radius_world as a number above 0.", "radius");
+    return fail(422, "Radius out of range", "Give radius_px or radius_world as a number above 0.",
+                "radius");
   }
   if (stroke.shape == ToolShape::texture && !stroke.texture)
-    return fail(422, "Shape missing", "A stroke with a shape of its own needs the shape's texture.", "shape");
+    return fail(422, "Shape missing", "A stroke with a shape of its own needs the shape's texture.",
+                "shape");
   if (const auto angle = stroke.max_angle_deg) {
     if (!(*angle > 0 && *angle <= 90))
-      return fail(422, "Angle out of range", "Give the largest angle in degrees: above 0, 90 at most.",
-                  "max_angle_deg");
+      return fail(422, "Angle out of range",
+                  "Give the largest angle in degrees: above 0, 90 at most.", "max_angle_deg");
     if (stroke.through)
       return fail(422, "Angle of what is hidden",
-                  "What is hidden is seen at no angle: leave out `through` or `max_angle_deg`.", "max_angle_deg");
+                  "What is hidden is seen at no angle: leave out `through` or `max_angle_deg`.",
+                  "max_angle_deg");
   }
   if (const auto bias = stroke.fixed_depth_bias; bias && !(*bias >= 0 && *bias <= 1)) {
     return fail(
@@ -134,10 +142,11 @@ Result<void> PaintJob::find_depth(GpuScene& scene) {
 void PaintJob::finish(GpuScene& scene) {
   // A reset between dispatch and read-back leaves rubbish in the mapped memory.
   if (scene.lost()) {
-    abort({503,
-           "GPU lost",
-           "The GPU context was lost and is being rebuilt. The stroke was not painted; send it again.",
-           {}});
+    abort(
+        {503,
+         "GPU lost",
+         "The GPU context was lost and is being rebuilt. The stroke was not painted; send it again.",
+         {}});
     return;
   }
   done_(painter_->take_outcome());

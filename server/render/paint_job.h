@@ -4,8 +4,8 @@
 
 namespace strata::render {
 
-// One stroke batch: the layer where it left the GPU, depth of the mesh where no view has it, then what the StrokePainter does. A refused stroke has painted
-// nothing.
+// One stroke batch: the layer where it left the GPU, depth of the mesh where no view has it, then
+// what the StrokePainter does. A refused stroke has painted nothing.
 class PaintJob {
  public:
   PaintJob(LayerHandle layer, StrokeBatch stroke, Renderer::Done<StrokeOutcome> done)

@@ -13,8 +13,9 @@ namespace strata::render {
 
 std::uint32_t packed(const Rgba& color);  // red in the low byte
 
-// Palettes on the GPU: linear ones as rows of one texture; the points of stepped and categorical ones in one storage buffer,
-// because thresholds and keys must hit exactly. Entries are kept as long as there is room.
+// Palettes on the GPU: linear ones as rows of one texture; the points of stepped and categorical
+// ones in one storage buffer, because thresholds and keys must hit exactly. Entries are kept as
+// long as there is room.
 class PaletteTextures {
  public:
   static Result<PaletteTextures> create();
@@ -25,12 +26,13 @@ class PaletteTextures {
     std::uint32_t row = 0, points = 0, point_count = 0;
     bool patterned = false;  // some point is not solid
   };
-  // Forgets old entries when these might not fit beside them; entries found after it stay until the next call. A Problem 503
-  // when the driver has no memory.
+  // Forgets old entries when these might not fit beside them; entries found after it stay until the
+  // next call. A Problem 503 when the driver has no memory.
   Result<void> make_room(std::span<const std::shared_ptr<const Palette>> palettes);
   Entry find(const std::shared_ptr<const Palette>& palette, ValueType type);
 
-  static constexpr std::size_t kMaxPalettes = shader::kMaxShadeLayers;  // that there can be room for
+  // that there can be room for
+  static constexpr std::size_t kMaxPalettes = shader::kMaxShadeLayers;
 
   void bind(GLuint texture_unit, GLuint points_binding) const;
 

@@ -18,7 +18,10 @@ namespace strata::render {
 
 struct Renderer::Impl {
   explicit Impl(RendererOptions given)
-      : options(std::move(given)), thread(options.queue_capacity), frames(options.queue_capacity), memory(0) {}
+      : options(std::move(given)),
+        thread(options.queue_capacity),
+        frames(options.queue_capacity),
+        memory(0) {}
 
   RendererOptions options;
   gl::DebugMessages messages;
@@ -30,7 +33,8 @@ struct Renderer::Impl {
   std::vector<std::weak_ptr<const FrameJob>> under_way;  // GPU thread
   std::atomic<bool> lose_context{false};
 
-  std::mutex lost_callback_mutex;  // held during the call, so that whoever takes the callback away waits for it
+  // held during the call, so that whoever takes the callback away waits for it
+  std::mutex lost_callback_mutex;
   std::function<void()> lost_callback;
 
   mutable std::mutex mutex;  // guards what follows
@@ -84,11 +88,14 @@ struct Renderer::Impl {
   // Posts a job object with `step(GpuScene&)` and `abort`; answers it when the queue is full.
   template <class JobType>
   void post(Lane lane, std::shared_ptr<JobType> job) {
-    Job posted{[this, job] { return job->step(*scene); }, [job](const Problem& problem) { job->abort(problem); }};
+    Job posted{[this, job] { return job->step(*scene); },
+               [job](const Problem& problem) { job->abort(problem); }};
     if (thread.post(lane, std::move(posted))) return;
     thread.post_reply([job] {
-      job->abort(
-          {503, "GPU queue full", "More work waits for the GPU than its queue holds. Try again in a moment.", {}});
+      job->abort({503,
+                  "GPU queue full",
+                  "More work waits for the GPU than its queue holds. Try again in a moment.",
+                  {}});
     });
   }
 
@@ -107,20 +114,22 @@ struct Renderer::Impl {
     post(Lane::ordered, std::make_shared<Simple>(Simple{std::move(done), std::move(work)}));
   }
 
-  void add_layer(ModelHandle model, ValueType type, int resolution, std::shared_ptr<const TileMirror> mirror,
-                 Done<LayerHandle> done) {
-    post_simple<LayerHandle>(std::move(done), [this, model, type, resolution, mirror](GpuScene& at) {
-      auto handle = at.add_layer(model, type, resolution, mirror);
-      if (handle) {
-        const auto layer = at.layer(*handle);
-        std::lock_guard lock(mutex);
-        layer_bytes[*handle] = (*layer)->textures().bytes();
-      }
-      return handle;
-    });
+  void add_layer(ModelHandle model, ValueType type, int resolution,
+                 std::shared_ptr<const TileMirror> mirror, Done<LayerHandle> done) {
+    post_simple<LayerHandle>(std::move(done),
+                             [this, model, type, resolution, mirror](GpuScene& at) {
+                               auto handle = at.add_layer(model, type, resolution, mirror);
+                               if (handle) {
+                                 const auto layer = at.layer(*handle);
+                                 std::lock_guard lock(mutex);
+                                 layer_bytes[*handle] = (*layer)->textures().bytes();
+                               }
+                               return handle;
+                             });
   }
 
-  // Removals are never refused: a full queue must not keep memory. A lost context has removed all by itself.
+  // Removals are never refused: a full queue must not keep memory. A lost context has removed all
+  // by itself.
   void post_removal(std::function<void(GpuScene&)> work) {
     Job job{[this, work = std::move(work)] {
               work(*scene);
@@ -151,7 +160,8 @@ Result<std::unique_ptr<Renderer>> Renderer::start(RendererOptions options) {
   hooks.abort_frames = [impl](const Problem& problem) {
     for (FrameTask& task : impl->frames.take_all()) FrameJob(std::move(task)).abort(problem);
   };
-  if (auto started = impl->thread.start(std::move(hooks)); !started) return tl::unexpected(started.error());
+  if (auto started = impl->thread.start(std::move(hooks)); !started)
+    return tl::unexpected(started.error());
   return renderer;
 }
 
@@ -173,23 +183,28 @@ std::uint64_t Renderer::layer_bytes_used(LayerHandle layer) const {
 int Renderer::debug_errors() const { return impl_->messages.errors(); }
 
 void Renderer::add_model(ModelGeometry geometry, Done<ModelHandle> done) {
-  impl_->post(Lane::background, std::make_shared<ModelUpload>(std::move(geometry), std::move(done)));
+  impl_->post(Lane::background,
+              std::make_shared<ModelUpload>(std::move(geometry), std::move(done)));
 }
 
 void Renderer::remove_model(ModelHandle model) {
   impl_->post_removal([model](GpuScene& scene) { scene.remove_model(model); });
 }
 
-void Renderer::add_look(ModelHandle model, std::shared_ptr<const LookImage> image, Done<LookHandle> done) {
-  impl_->post(Lane::background, std::make_shared<LookUpload>(model, std::move(image), std::move(done)));
+void Renderer::add_look(ModelHandle model, std::shared_ptr<const LookImage> image,
+                        Done<LookHandle> done) {
+  impl_->post(Lane::background,
+              std::make_shared<LookUpload>(model, std::move(image), std::move(done)));
 }
 
 void Renderer::remove_look(LookHandle look) {
   impl_->post_removal([look](GpuScene& scene) { scene.remove_look(look); });
 }
 
-void Renderer::add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map, Done<void> done) {
-  impl_->post(Lane::background, std::make_shared<SurfaceMapUpload>(model, std::move(map), std::move(done)));
+void Renderer::add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map,
+                               Done<void> done) {
+  impl_->post(Lane::background,
+              std::make_shared<SurfaceMapUpload>(model, std::move(map), std::move(done)));
 }
 
 void Renderer::remove_surface_map(ModelHandle model, int resolution) {
@@ -198,13 +213,15 @@ void Renderer::remove_surface_map(ModelHandle model, int resolution) {
   });
 }
 
-void Renderer::add_layer(ModelHandle model, std::shared_ptr<const TileMirror> mirror, Done<LayerHandle> done) {
+void Renderer::add_layer(ModelHandle model, std::shared_ptr<const TileMirror> mirror,
+                         Done<LayerHandle> done) {
   const ValueType type = mirror->type();
   const int resolution = mirror->resolution();
   impl_->add_layer(model, type, resolution, std::move(mirror), std::move(done));
 }
 
-void Renderer::add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done) {
+void Renderer::add_layer(ModelHandle model, ValueType type, int resolution,
+                         Done<LayerHandle> done) {
   impl_->add_layer(model, type, resolution, nullptr, std::move(done));
 }
 
@@ -217,7 +234,8 @@ void Renderer::remove_layer(LayerHandle layer) {
 }
 
 void Renderer::write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done) {
-  impl_->post(Lane::ordered, std::make_shared<TilesUpload>(layer, std::move(tiles), std::move(done)));
+  impl_->post(Lane::ordered,
+              std::make_shared<TilesUpload>(layer, std::move(tiles), std::move(done)));
 }
 
 void Renderer::paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done) {
@@ -225,7 +243,8 @@ void Renderer::paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> 
 }
 
 void Renderer::add_view(ModelHandle model, Done<ViewHandle> done) {
-  impl_->post_simple<ViewHandle>(std::move(done), [model](GpuScene& scene) { return scene.add_view(model); });
+  impl_->post_simple<ViewHandle>(std::move(done),
+                                 [model](GpuScene& scene) { return scene.add_view(model); });
 }
 
 void Renderer::remove_view(ViewHandle view) {
@@ -237,10 +256,15 @@ void Renderer::draw(FrameRequest request, Done<SharedFrame> done) {
   auto pushed = impl_->frames.push(std::move(request), std::move(done));
   if (pushed.displaced) {
     const Problem problem =
-        pushed.accepted ? Problem{409, "Superseded", "A newer request of the same view took its place.", {}}
-                        : Problem{503, "GPU queue full", "Too many views wait for a frame. Try again in a moment.", {}};
-    impl_->thread.post_reply(
-        [displaced = std::move(*pushed.displaced), problem] { displaced(tl::unexpected(problem)); });
+        pushed.accepted
+            ? Problem{409, "Superseded", "A newer request of the same view took its place.", {}}
+            : Problem{503,
+                      "GPU queue full",
+                      "Too many views wait for a frame. Try again in a moment.",
+                      {}};
+    impl_->thread.post_reply([displaced = std::move(*pushed.displaced), problem] {
+      displaced(tl::unexpected(problem));
+    });
   }
   impl_->thread.wake();
 }

@@ -23,13 +23,15 @@
 
 namespace strata::render {
 
-// Handles stay valid until removed or until the context is lost; 0 is none. A handle of another generation is refused.
+// Handles stay valid until removed or until the context is lost; 0 is none. A handle of another
+// generation is refused.
 using ModelHandle = std::uint64_t;
 using LayerHandle = std::uint64_t;
 using ViewHandle = std::uint64_t;
 using LookHandle = std::uint64_t;
 
-// Where strokes are painted: a compute pass, or a kernel on the CPU, which is several times faster where the GPU is a CPU.
+// Where strokes are painted: a compute pass, or a kernel on the CPU, which is several times faster
+// where the GPU is a CPU.
 enum class EditPath { automatic, compute, kernel };
 
 struct RendererOptions {
@@ -55,29 +57,35 @@ struct WrittenTile {
 };
 struct StrokeOutcome {
   std::vector<WrittenTile> tiles;
-  glm::vec3 written_min{0}, written_max{0};  // model-space box of the written blocks; for changed screen rectangles
-  double edit_ms =
-      0;  // from choosing the blocks until the texels are written; with EditPath::compute until that is known
-  double gpu_ms =
-      0;  // of it, EditPath::compute: both passes, by timer queries; kernel: tiles read, changed and uploaded
+  // model-space box of the written blocks; for changed screen rectangles
+  glm::vec3 written_min{0}, written_max{0};
+  // from choosing the blocks until the texels are written; with EditPath::compute until that is
+  // known
+  double edit_ms = 0;
+  // of it, EditPath::compute: both passes, by timer queries; kernel: tiles read, changed and
+  // uploaded
+  double gpu_ms = 0;
   std::size_t bytes_up = 0, bytes_down = 0;  // between CPU and GPU
 };
 
 struct TileUpload {
   TileAddress address;
-  std::shared_ptr<const TileData> data;  // null or empty: the tile becomes empty and its page is freed
+  // null or empty: the tile becomes empty and its page is freed
+  std::shared_ptr<const TileData> data;
 };
 
 struct LayerStyle {  // one layer in a view, bottom to top
   LayerHandle layer = 0;
   std::shared_ptr<const Palette> palette;  // told apart by the object: nothing of it may change
   float opacity = 1;
-  bool bare =
-      false;  // its hatch and dots have neither tint nor border: a sign over another layer, which is no class of its own
+  // its hatch and dots have neither tint nor border: a sign over another layer, which is no class
+  // of its own
+  bool bare = false;
   bool operator==(const LayerStyle&) const = default;
 };
 
-struct LookStyle {  // one picture of the surface in a view, bottom to top, over the colours of the vertices
+struct LookStyle {
+  // one picture of the surface in a view, bottom to top, over the colours of the vertices
   LookHandle look = 0;
   float opacity = 1;
   bool operator==(const LookStyle&) const = default;
@@ -104,11 +112,14 @@ struct PixelRect {
 
 struct FrameRequest {
   ViewHandle view = 0;
-  // Of the view. Given: views of this model that ask for the same picture are served with one, which any of them may draw.
+  // Of the view. Given: views of this model that ask for the same picture are served with one,
+  // which any of them may draw.
   ModelHandle model = 0;
   Camera camera;
-  bool moving = false;  // a coarser copy of the model may be shown, so that the picture comes in time
-  bool large = false;   // a band of a large picture: others' smaller pictures go before it, also when it is half done
+  // a coarser copy of the model may be shown, so that the picture comes in time
+  bool moving = false;
+  // a band of a large picture: others' smaller pictures go before it, also when it is half done
+  bool large = false;
   bool acting = false;  // for someone who is doing something, so that onlookers do not hold it up
   int width = 0, height = 0;  // pixels of the picture (the camera's window scaled to this size)
   std::vector<LayerStyle> layers;
@@ -116,8 +127,9 @@ struct FrameRequest {
   MarksShown marks;              // over the layers, the last ones on top
   Light light;
   double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
-  // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's last frame: the
-  // rectangles they cover are shaded and returned. A changed camera, size or style shades everything anyway.
+  // Empty: everything is shaded. Otherwise only these model-space boxes changed since this view's
+  // last frame: the rectangles they cover are shaded and returned. A changed camera, size or style
+  // shades everything anyway.
   struct Box {
     glm::vec3 min, max;
     bool operator==(const Box&) const = default;
@@ -129,7 +141,8 @@ struct FrameRequest {
   bool align_to_16 = true;  // grow the rectangles to multiples of 16 for JPEG parts
 };
 struct Frame {
-  std::vector<PixelRect> rects;      // what `pixels` covers: all of it, or what changed; none: nothing did
+  // what `pixels` covers: all of it, or what changed; none: nothing did
+  std::vector<PixelRect> rects;
   int width = 0, height = 0;         // of the whole picture
   std::vector<std::uint8_t> pixels;  // RGBA8 of one rectangle after the other, top row first
   double render_ms = 0;
@@ -143,11 +156,13 @@ struct ModelGeometry {
   std::vector<std::shared_ptr<const mesh::Geometry>> coarser;
 };
 
-// Owns the GPU: one thread with the EGL context and a bounded queue (invariant 1 of ARCHITECTURE.md). All functions are
-// thread-safe and return at once; callbacks run on the GPU thread and must be quick. Order: edits and layer changes in
-// the order given, before frames, before background work (uploads of models and surface maps, in slices). A full queue or
-// a stopped renderer answers with a Problem 503; a lost context answers pending work with a Problem 503 titled "GPU lost".
-// (Only a stopped renderer calls back on the caller's thread: there is no other left.)
+// Owns the GPU: one thread with the EGL context and a bounded queue (invariant 1 of
+// ARCHITECTURE.md). All functions are thread-safe and return at once; callbacks run on the GPU
+// thread and must be quick. Order: edits and layer changes in the order given, before frames,
+// before background work (uploads of models and surface maps, in slices). A full queue or a stopped
+// renderer answers with a Problem 503; a lost context answers pending work with a Problem 503
+// titled "GPU lost". (Only a stopped renderer calls back on the caller's thread: there is no other
+// left.)
 class Renderer {
  public:
   // Starts the thread and waits for the context. The error says what was tried and how to mend it.
@@ -155,9 +170,11 @@ class Renderer {
   ~Renderer();  // asks to stop and joins
 
   GpuInfo info() const;
-  bool ready() const;  // false while a lost context cannot be replaced: what is asked for meanwhile is refused
+  // false while a lost context cannot be replaced: what is asked for meanwhile is refused
+  bool ready() const;
   std::uint64_t gpu_bytes_used() const;
-  std::uint64_t layer_bytes_used(LayerHandle layer) const;  // page table and pages that are on the GPU
+  // page table and pages that are on the GPU
+  std::uint64_t layer_bytes_used(LayerHandle layer) const;
   int debug_errors() const;
 
   template <class T>
@@ -168,24 +185,28 @@ class Renderer {
   void add_look(ModelHandle model, std::shared_ptr<const LookImage> image, Done<LookHandle> done);
   void remove_look(LookHandle look);
   // Needed before strokes at this resolution; baked by the caller, uploaded in slices.
-  void add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map, Done<void> done);
+  void add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map,
+                       Done<void> done);
 
-  void remove_surface_map(ModelHandle model, int resolution);  // strokes at it are refused (409) from then on
+  // strokes at it are refused (409) from then on
+  void remove_surface_map(ModelHandle model, int resolution);
 
-  // A layer that holds what `mirror` does, now and later: it is brought to the GPU when it is first shown or painted, and may leave it
-  // again while `mirror` is not held (TileMirror::hold) and no frame shows it.
-  void add_layer(ModelHandle model, std::shared_ptr<const TileMirror> mirror, Done<LayerHandle> done);
+  // A layer that holds what `mirror` does, now and later: it is brought to the GPU when it is first
+  // shown or painted, and may leave it again while `mirror` is not held (TileMirror::hold) and no
+  // frame shows it.
+  void add_layer(ModelHandle model, std::shared_ptr<const TileMirror> mirror,
+                 Done<LayerHandle> done);
   // An empty layer that is known to the GPU alone.
   void add_layer(ModelHandle model, ValueType type, int resolution, Done<LayerHandle> done);
   void remove_layer(LayerHandle layer);
-  // Sets whole tiles (fill, undo, import); done after the GPU has them. In order with strokes. Frames that are drawn before
-  // `done` may show some of the tiles as they were.
+  // Sets whole tiles (fill, undo, import); done after the GPU has them. In order with strokes.
+  // Frames that are drawn before `done` may show some of the tiles as they were.
   void write_tiles(LayerHandle layer, std::vector<TileUpload> tiles, Done<void> done);
   void paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done);
 
-  // Views keep a g-buffer and the last picture. Requests of one view replace each other while they wait ("latest wins"):
-  // the replaced request's callback gets a Problem 409 titled "Superseded". Views take turns by what drawing for them has taken
-  // (render/frame_queue).
+  // Views keep a g-buffer and the last picture. Requests of one view replace each other while they
+  // wait ("latest wins"): the replaced request's callback gets a Problem 409 titled "Superseded".
+  // Views take turns by what drawing for them has taken (render/frame_queue).
   void add_view(ModelHandle model, Done<ViewHandle> done);
   void remove_view(ViewHandle view);
   void draw(FrameRequest request, Done<SharedFrame> done);
@@ -193,8 +214,9 @@ class Renderer {
   // Returns when all that was asked before, frames excepted, is answered. Blocks.
   void finish();
 
-  // Called on the GPU thread after a lost context was replaced: every handle given before is void. There is one callback: a new
-  // one takes the place of the last, an empty one removes it. The last is not running any more when this returns.
+  // Called on the GPU thread after a lost context was replaced: every handle given before is void.
+  // There is one callback: a new one takes the place of the last, an empty one removes it. The last
+  // is not running any more when this returns.
   void on_context_lost(std::function<void()> callback);
   void lose_context_for_test();  // destroys the context, as a driver reset would
   // Runs `work` with the context current, in order with edits, and returns after it.

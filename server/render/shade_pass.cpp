@@ -33,7 +33,8 @@ void set_unit(shader::ShadeLayer& layer, std::uint32_t chunk, std::uint32_t unit
 
 }  // namespace
 
-Result<ShadePass> ShadePass::create(const std::filesystem::path& shader_dir, bool program_per_kinds) {
+Result<ShadePass> ShadePass::create(const std::filesystem::path& shader_dir,
+                                    bool program_per_kinds) {
   ShadePass pass;
   pass.shader_dir_ = shader_dir;
   pass.program_per_kinds_ = program_per_kinds;
@@ -68,7 +69,8 @@ Result<const gl::Program*> ShadePass::program(const Batch& batch) {
 
 bool ShadePass::can_take(const Batch& batch, const Chunk& chunk, bool listed) const {
   if (program_per_kinds_ && !listed && batch.layers.size() >= kLayersPerProgram) return false;
-  const bool bound = std::find(batch.chunks.begin(), batch.chunks.end(), chunk) != batch.chunks.end();
+  const bool bound =
+      std::find(batch.chunks.begin(), batch.chunks.end(), chunk) != batch.chunks.end();
   return bound || batch.chunks.size() < kChunksPerDraw;
 }
 
@@ -76,8 +78,8 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
   const auto entry = palettes_.find(layer.palette, layer.textures->type());
   shader::ShadeLayer out{};
   out.table = layer.textures->table_offset();
-  out.resolution_bits =
-      static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(layer.textures->resolution())));
+  out.resolution_bits = static_cast<std::uint32_t>(
+      std::countr_zero(static_cast<unsigned>(layer.textures->resolution())));
   out.type = static_cast<std::uint32_t>(layer.textures->type());
   out.mode = mode_of(layer.palette->mode);
   out.row = entry.row;
@@ -99,7 +101,8 @@ shader::ShadeLayer ShadePass::describe(const ShadeInput::Layer& layer) {
   return out;
 }
 
-// Batches in drawing order. A layer whose chunks do not all fit spans several: each of its texels is in one of them.
+// Batches in drawing order. A layer whose chunks do not all fit spans several: each of its texels
+// is in one of them.
 std::vector<ShadePass::Batch> ShadePass::plan(std::span<const ShadeInput::Layer> layers) {
   std::vector<Batch> batches(1);
   for (const ShadeInput::Layer& layer : layers) {
@@ -166,9 +169,10 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
   return drawn;
 }
 
-Result<void> ShadePass::draw(const ShadeInput& input, const gl::Program& program, const PixelRect& rect,
-                             const shader::ShadeUniforms& uniforms) {
-  if (auto sent = uniforms_.replace(std::span<const shader::ShadeUniforms>(&uniforms, 1)); !sent) return sent;
+Result<void> ShadePass::draw(const ShadeInput& input, const gl::Program& program,
+                             const PixelRect& rect, const shader::ShadeUniforms& uniforms) {
+  if (auto sent = uniforms_.replace(std::span<const shader::ShadeUniforms>(&uniforms, 1)); !sent)
+    return sent;
   uniforms_.bind_uniform(0);
   program.use();
   glScissor(rect.x, input.uv.height() - rect.y - rect.height, rect.width, rect.height);
@@ -190,7 +194,8 @@ Result<void> ShadePass::draw_surface(const ShadeInput& input, const Batch& batch
   if (input.surface_rect.width == 0) return {};
   auto built = program(batch);
   if (!built) return tl::unexpected(built.error());
-  if (auto sent = layers_.replace(std::span<const shader::ShadeLayer>(batch.layers)); !sent) return sent;
+  if (auto sent = layers_.replace(std::span<const shader::ShadeLayer>(batch.layers)); !sent)
+    return sent;
   layers_.bind_uniform(1);
   tables.bind(0);
   palettes_.bind(kPaletteUnit, 1);
@@ -204,7 +209,8 @@ Result<void> ShadePass::draw_surface(const ShadeInput& input, const Batch& batch
   shader::ShadeUniforms uniforms{};
   uniforms.layer_count = static_cast<std::uint32_t>(batch.layers.size());
   uniforms.first_pass = first ? 1 : 0;
-  uniforms.patterns = {input.patterns.origin, input.patterns.mm_per_pixel, input.patterns.pixel_scale};
+  uniforms.patterns = {input.patterns.origin, input.patterns.mm_per_pixel,
+                       input.patterns.pixel_scale};
   return draw(input, **built, input.surface_rect, uniforms);
 }
 

@@ -26,7 +26,8 @@ struct ShadeInput {
   };
   // How patterns lie on the picture's plane.
   struct Patterns {
-    glm::vec2 origin{0};     // pixel that they are measured from, origin bottom left: the model's middle
+    // pixel that they are measured from, origin bottom left: the model's middle
+    glm::vec2 origin{0};
     float mm_per_pixel = 1;  // at the distance of the model's middle
     float pixel_scale = 1;   // pixels of the picture in one of the camera's window
   };
@@ -41,16 +42,19 @@ struct ShadeInput {
   Patterns patterns{};
 };
 
-// Colours a rectangle of a view's picture from its g-buffer (shaders/shade_pass.frag): the background, then the surface, which
-// the depth test finds. Layers share a draw as long as the chunks that hold them fit into the texture units; else there are
-// several, each over the last. Sets all state it needs, and leaves neither scissor nor blending behind.
+// Colours a rectangle of a view's picture from its g-buffer (shaders/shade_pass.frag): the
+// background, then the surface, which the depth test finds. Layers share a draw as long as the
+// chunks that hold them fit into the texture units; else there are several, each over the last.
+// Sets all state it needs, and leaves neither scissor nor blending behind.
 class ShadePass {
  public:
-  static constexpr std::size_t kChunksPerDraw = 6;  // pairs; with 3 more, 15 of the 16 units every driver has
+  // pairs; with 3 more, 15 of the 16 units every driver has
+  static constexpr std::size_t kChunksPerDraw = 6;
   static constexpr std::size_t kLayersPerProgram = 4;
 
-  // `program_per_kinds`: a program for each combination of the layers' palettes, types and chunks, which are then constants in
-  // it. CPUs run every side of a branch in every lane; GPUs are better off with one program.
+  // `program_per_kinds`: a program for each combination of the layers' palettes, types and chunks,
+  // which are then constants in it. CPUs run every side of a branch in every lane; GPUs are better
+  // off with one program.
   static Result<ShadePass> create(const std::filesystem::path& shader_dir, bool program_per_kinds);
   Result<void> shade(const ShadeInput& input, const PageTables& tables);
 
@@ -69,7 +73,8 @@ class ShadePass {
   Result<const gl::Program*> program(const Batch& batch);
   std::vector<Batch> plan(std::span<const ShadeInput::Layer> layers);
   Result<void> draw_background(const ShadeInput& input);
-  Result<void> draw_surface(const ShadeInput& input, const Batch& batch, bool first, const PageTables& tables);
+  Result<void> draw_surface(const ShadeInput& input, const Batch& batch, bool first,
+                            const PageTables& tables);
   Result<void> draw(const ShadeInput& input, const gl::Program& program, const PixelRect& rect,
                     const shader::ShadeUniforms& uniforms);
   shader::ShadeLayer describe(const ShadeInput::Layer& layer);
@@ -77,7 +82,8 @@ class ShadePass {
   std::filesystem::path shader_dir_;
   bool program_per_kinds_ = false;
   gl::Program background_;
-  std::map<std::pair<std::size_t, std::string>, gl::Program> programs_;  // by chunks and kinds, built when first used
+  // by chunks and kinds, built when first used
+  std::map<std::pair<std::size_t, std::string>, gl::Program> programs_;
   gl::VertexArray no_vertices_{"picture"};
   PaletteTextures palettes_;
   StreamBuffer uniforms_{"shade uniforms"}, layers_{"shade layers"};

@@ -28,7 +28,8 @@ class StreamBuffer {
       if (!buffer) return tl::unexpected(buffer.error());
       buffer_ = std::move(*buffer);
     } else {
-      glInvalidateBufferData(buffer_.id());  // the driver need not wait for those who read the old content
+      // the driver need not wait for those who read the old content
+      glInvalidateBufferData(buffer_.id());
     }
     return {};
   }

@@ -5,15 +5,17 @@
 
 namespace strata::render {
 
-// What a stroke is painted on; looked up anew for each step, because a layer may be removed between two.
+// What a stroke is painted on; looked up anew for each step, because a layer may be removed between
+// two.
 struct PaintTarget {
   const MeshBuffers& mesh;
   const SurfaceMapTextures& map;
   LayerTextures& layer;
 };
 
-// Paints one stroke batch once the depth of the full mesh is there. Two of them: ComputePainter on the GPU, KernelPainter on
-// the CPU, where the "GPU" is one (GpuScene::edits_on_cpu). They write the same surface texels but for rounding.
+// Paints one stroke batch once the depth of the full mesh is there. Two of them: ComputePainter on
+// the GPU, KernelPainter on the CPU, where the "GPU" is one (GpuScene::edits_on_cpu). They write
+// the same surface texels but for rounding.
 class StrokePainter {
  public:
   // `depth` is null where nothing asks for it.
@@ -28,14 +30,16 @@ class StrokePainter {
   StrokeOutcome take_outcome() { return std::move(outcome_); }  // once done
 
  protected:
-  // Points of the path whose depth a radius in model units needs: those inside the window. Origin lower left.
+  // Points of the path whose depth a radius in model units needs: those inside the window. Origin
+  // lower left.
   struct PathPixels {
     std::vector<glm::ivec2> pixels;
     std::vector<std::size_t> points;
   };
   PathPixels path_pixels() const;
   // `depths` is one a pixel of `at`.
-  ToolPath make_path(const mesh::Geometry& geometry, const PathPixels& at, std::span<const float> depths) const;
+  ToolPath make_path(const mesh::Geometry& geometry, const PathPixels& at,
+                     std::span<const float> depths) const;
   DepthBias depth_bias(const mesh::Geometry& geometry) const;
   glm::dmat4 clip_from_model(const mesh::Geometry& geometry) const;
 

@@ -9,8 +9,8 @@
 
 namespace strata::render {
 
-// Values are kept as bits in pools of 1, 2 and 4 bytes a texel, and each program that reads or writes them is built for
-// each.
+// Values are kept as bits in pools of 1, 2 and 4 bytes a texel, and each program that reads or
+// writes them is built for each.
 
 // GL names of a texel width.
 GLenum texel_format(int texel_bytes);
@@ -21,8 +21,9 @@ class ProgramPerWidth {
  public:
   // `define_of` gives the width's define; `others` go to all.
   template <class DefineOf>
-  static Result<ProgramPerWidth> load(const std::filesystem::path& shader_dir, const std::string& file,
-                                      DefineOf define_of, const std::vector<std::string>& others = {}) {
+  static Result<ProgramPerWidth> load(const std::filesystem::path& shader_dir,
+                                      const std::string& file, DefineOf define_of,
+                                      const std::vector<std::string>& others = {}) {
     ProgramPerWidth programs;
     for (const int texel_bytes : {1, 2, 4}) {
       std::vector<std::string> defines = others;

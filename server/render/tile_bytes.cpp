@@ -31,7 +31,8 @@ void fill_texels(const TileMask& mask, Texel value, std::uint8_t* values) {
       continue;
     }
     for (; bits != 0; bits &= bits - 1)
-      std::memcpy(first + static_cast<std::size_t>(std::countr_zero(bits)) * sizeof value, &value, sizeof value);
+      std::memcpy(first + static_cast<std::size_t>(std::countr_zero(bits)) * sizeof value, &value,
+                  sizeof value);
   }
 }
 

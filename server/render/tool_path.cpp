@@ -15,7 +15,8 @@ PixelBox join(const PixelBox& a, const PixelBox& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
 
-shader::EditSegment make_segment(glm::dvec2 a, glm::dvec2 b, double ra, double rb, ToolShape shape) {
+shader::EditSegment make_segment(glm::dvec2 a, glm::dvec2 b, double ra, double rb,
+                                 ToolShape shape) {
   double length = glm::length(b - a);
   double shift = 0;
   if (shape == ToolShape::disc && length > 0 && ra != rb) {
@@ -53,7 +54,8 @@ ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii
   std::size_t from = 0;
   for (std::size_t i = 1; i < stroke.path.size(); ++i) {
     if (point(i) == point(from) && radius(i) == radius(from)) continue;
-    path.segments.push_back(make_segment(point(from), point(i), radius(from), radius(i), stroke.shape));
+    path.segments.push_back(
+        make_segment(point(from), point(i), radius(from), radius(i), stroke.shape));
     from = i;
   }
   if (path.segments.empty())
@@ -66,7 +68,9 @@ ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii
   return path;
 }
 
-double view_scale(const Camera& camera) { return std::cbrt(std::abs(glm::determinant(glm::dmat3(camera.view)))); }
+double view_scale(const Camera& camera) {
+  return std::cbrt(std::abs(glm::determinant(glm::dmat3(camera.view))));
+}
 
 double w_at_depth(const Camera& camera, double depth) {
   const auto& p = camera.projection;
@@ -75,10 +79,11 @@ double w_at_depth(const Camera& camera, double depth) {
   return p[2][3] * z_in_view + p[3][3];
 }
 
-std::vector<double> radii_from_depths(const StrokeBatch& stroke, std::span<const float> depths, double fallback_w) {
+std::vector<double> radii_from_depths(const StrokeBatch& stroke, std::span<const float> depths,
+                                      double fallback_w) {
   const std::size_t count = stroke.path.size();
-  const double scale =
-      view_scale(stroke.camera) * 0.5 * stroke.camera.height * std::abs(stroke.camera.projection[1][1]);
+  const double scale = view_scale(stroke.camera) * 0.5 * stroke.camera.height *
+                       std::abs(stroke.camera.projection[1][1]);
   std::vector<double> ws(count, 0);
   std::vector<std::size_t> distance(count, count);  // to the path point the depth is from
   const auto spread = [&](std::size_t i, std::size_t from) {

@@ -22,8 +22,8 @@ struct ToolPath {
   std::vector<shader::EditSegment> segments;
   std::vector<PixelBox> boxes;  // of each segment with its tool
   PixelBox box;                 // of all
-  double inner_radius =
-      1;  // of the disc about the tool's centre that lies in the tool wholly, as a share of its radius
+  // of the disc about the tool's centre that lies in the tool wholly, as a share of its radius
+  double inner_radius = 1;
 };
 
 // `radii_px` is one a point, before the stroke's widths. Points that do not move are joined.
@@ -32,12 +32,15 @@ ToolPath make_tool_path(const StrokeBatch& stroke, std::span<const double> radii
 // How many units of view space one of the model's is: 1 unless the view matrix scales.
 double view_scale(const Camera& camera);
 
-// The camera's w (distance along its axis; 1 for orthographic) where the window depth (0…1) is `depth`.
+// The camera's w (distance along its axis; 1 for orthographic) where the window depth (0…1) is
+// `depth`.
 double w_at_depth(const Camera& camera, double depth);
 
-// Radius in window pixels under each path point for a radius in model units: radius_world · view scale · projection
-// scale / w, w from the depth under the point (1: nothing there). A point beside the surface takes the depth of the
-// nearest path point that is on it, and if none is, `fallback_w`.
-std::vector<double> radii_from_depths(const StrokeBatch& stroke, std::span<const float> depths, double fallback_w);
+// Radius in window pixels under each path point for a radius in model units: radius_world · view
+// scale · projection scale / w, w from the depth under the point (1: nothing there). A point beside
+// the surface takes the depth of the nearest path point that is on it, and if none is,
+// `fallback_w`.
+std::vector<double> radii_from_depths(const StrokeBatch& stroke, std::span<const float> depths,
+                                      double fallback_w);
 
 }  // namespace strata::render

@@ -9,7 +9,9 @@ namespace {
 
 constexpr std::size_t kTilesPreparedPerStep = 4096, kTilesWrittenPerStep = 64;
 
-bool is_empty(const TileUpload& tile) { return !tile.data || tile.data->values.empty() || !tile.data->valid.any(); }
+bool is_empty(const TileUpload& tile) {
+  return !tile.data || tile.data->values.empty() || !tile.data->valid.any();
+}
 
 }  // namespace
 
@@ -52,7 +54,8 @@ Result<bool> LookUpload::advance(GpuScene& scene) {
   if (auto model = scene.model(model_); !model) return tl::unexpected(model.error());
   if (!texture_) {
     if (!image_ || image_->levels.empty())
-      return fail(422, "Look is empty", "A look needs a picture that is no larger than the GPU takes.", "look");
+      return fail(422, "Look is empty",
+                  "A look needs a picture that is no larger than the GPU takes.", "look");
     auto texture = LookTexture::create(std::move(image_), scene.info().software, scene.memory());
     if (!texture) return tl::unexpected(texture.error());
     texture_ = std::move(*texture);
@@ -114,13 +117,15 @@ Result<bool> TilesUpload::advance(GpuScene& scene) {
   if (prepared_ < tiles_.size()) {
     const std::size_t end = std::min(prepared_ + kTilesPreparedPerStep, tiles_.size());
     for (; prepared_ < end; ++prepared_) {
-      if (auto prepared = prepare(textures, tiles_[prepared_]); !prepared) return tl::unexpected(prepared.error());
+      if (auto prepared = prepare(textures, tiles_[prepared_]); !prepared)
+        return tl::unexpected(prepared.error());
     }
     return false;
   }
   const std::size_t end = std::min(written_ + kTilesWrittenPerStep, tiles_.size());
   for (; written_ < end; ++written_) {
-    if (auto written = write(textures, tiles_[written_]); !written) return tl::unexpected(written.error());
+    if (auto written = write(textures, tiles_[written_]); !written)
+      return tl::unexpected(written.error());
   }
   if (written_ < tiles_.size()) return false;
   if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
@@ -133,7 +138,8 @@ Result<void> TilesUpload::prepare(LayerTextures& layer, const TileUpload& tile) 
   }
   if (is_empty(tile)) return {};
   if (tile.data->values.size() != static_cast<std::size_t>(kTexelsPerTile * pool_->texel_bytes())) {
-    return fail(422, "Tile of another type", "A tile must hold 128 x 128 values of the layer's type.", "tiles");
+    return fail(422, "Tile of another type",
+                "A tile must hold 128 x 128 values of the layer's type.", "tiles");
   }
   if (layer.page(tile.address) != shader::kNoPage) return {};
   auto page = pool_->allocate();

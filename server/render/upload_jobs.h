@@ -24,7 +24,8 @@ class ModelUpload {
 
 class LookUpload {
  public:
-  LookUpload(ModelHandle model, std::shared_ptr<const LookImage> image, Renderer::Done<LookHandle> done)
+  LookUpload(ModelHandle model, std::shared_ptr<const LookImage> image,
+             Renderer::Done<LookHandle> done)
       : model_(model), image_(std::move(image)), done_(std::move(done)) {}
   Step step(GpuScene& scene);
   void abort(const Problem& problem) { done_(tl::unexpected(problem)); }
@@ -40,7 +41,8 @@ class LookUpload {
 
 class SurfaceMapUpload {
  public:
-  SurfaceMapUpload(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map, Renderer::Done<void> done)
+  SurfaceMapUpload(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map,
+                   Renderer::Done<void> done)
       : model_(model), map_(std::move(map)), done_(std::move(done)) {}
   Step step(GpuScene& scene);
   void abort(const Problem& problem) { done_(tl::unexpected(problem)); }
@@ -52,8 +54,8 @@ class SurfaceMapUpload {
   std::unique_ptr<SurfaceMapTextures> textures_;
 };
 
-// All pages are had before the first tile is written: a Problem leaves the layer as it was. A page is seen only once it
-// holds its tile, so that frames may be drawn between the steps.
+// All pages are had before the first tile is written: a Problem leaves the layer as it was. A page
+// is seen only once it holds its tile, so that frames may be drawn between the steps.
 class TilesUpload {
  public:
   TilesUpload(LayerHandle layer, std::vector<TileUpload> tiles, Renderer::Done<void> done)

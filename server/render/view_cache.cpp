@@ -18,12 +18,15 @@ void View::drop_buffers() {
 
 bool View::shows(const FrameRequest& request) const {
   return picture_complete && unit_mm == request.unit_mm && background == request.background &&
-         background_rows == request.background_rows && layers == request.layers && marks == request.marks;
+         background_rows == request.background_rows && layers == request.layers &&
+         marks == request.marks;
 }
 
-Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths, GpuMemory& memory) {
+Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths,
+                             GpuMemory& memory) {
   view.gbuffer_complete = view.picture_complete = false;
-  if (view.has_buffers() && (view.picture.width() != key.width || view.picture.height() != key.height))
+  if (view.has_buffers() &&
+      (view.picture.width() != key.width || view.picture.height() != key.height))
     view.drop_buffers();
   if (!view.has_buffers()) {
     const auto pixels = static_cast<std::uint64_t>(key.width) * static_cast<unsigned>(key.height);
@@ -43,7 +46,8 @@ Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& dept
   if (!view.depth || view.depth.use_count() > 1) {
     auto depth = depths.make(key);
     if (!depth) return tl::unexpected(depth.error());
-    auto gbuffer = gl::Framebuffer::create({&view.uv, &view.light}, &(*depth)->texture, "view g-buffer");
+    auto gbuffer =
+        gl::Framebuffer::create({&view.uv, &view.light}, &(*depth)->texture, "view g-buffer");
     if (!gbuffer) return tl::unexpected(gbuffer.error());
     auto shading = gl::Framebuffer::create({&view.picture}, &(*depth)->texture, "view shading");
     if (!shading) return tl::unexpected(shading.error());

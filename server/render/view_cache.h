@@ -8,8 +8,8 @@
 
 namespace strata::render {
 
-// What a view keeps between frames: the g-buffer of its camera and its last picture, which partial frames add to. Without
-// buffers (new, or evicted) it is only a name.
+// What a view keeps between frames: the g-buffer of its camera and its last picture, which partial
+// frames add to. Without buffers (new, or evicted) it is only a name.
 struct View {
   ModelHandle model = 0;
   bool drawing = false;  // a frame is under way: not to be evicted
@@ -39,7 +39,9 @@ struct View {
   bool shows(const FrameRequest& request) const;
 };
 
-// Makes `view`'s buffers fit the size and the camera of `key`, as new: a depth buffer that an edit uses is left to it.
-Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths, GpuMemory& memory);
+// Makes `view`'s buffers fit the size and the camera of `key`, as new: a depth buffer that an edit
+// uses is left to it.
+Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& depths,
+                             GpuMemory& memory);
 
 }  // namespace strata::render

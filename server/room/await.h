@@ -18,15 +18,16 @@ Result<T> await(Start start) {
   return future.get();
 }
 
-// The same, but the current question may end meanwhile (QuestionEnded): the answer then comes to nobody, so it must be nothing that anyone
-// has to give back.
+// The same, but the current question may end meanwhile (QuestionEnded): the answer then comes to
+// nobody, so it must be nothing that anyone has to give back.
 template <class T, class Start>
 Result<T> await_for_question(Start start) {
   constexpr std::chrono::milliseconds kBetweenChecks{20};
   auto promise = std::make_shared<std::promise<Result<T>>>();
   auto future = promise->get_future();
   start([promise](Result<T> result) { promise->set_value(std::move(result)); });
-  while (Question::current() && future.wait_for(kBetweenChecks) != std::future_status::ready) check_question();
+  while (Question::current() && future.wait_for(kBetweenChecks) != std::future_status::ready)
+    check_question();
   return future.get();
 }
 

@@ -23,8 +23,8 @@ struct Turn {
   std::optional<bool> in_force, provisional;
 };
 
-Result<TileChange> turn_in_tile(const store::Store::WrittenTiles& written, const Turn& turn, const Layer& layer,
-                                const TileMap& tiles, store::Store& store) {
+Result<TileChange> turn_in_tile(const store::Store::WrittenTiles& written, const Turn& turn,
+                                const Layer& layer, const TileMap& tiles, store::Store& store) {
   auto before = tile_or_empty(tiles, written.tile, layer.type);
   TileResolver resolver(*before, written.written);
   const auto walked = walk_back(resolver, layer, written.tile, store, [&](PastRevision& revision) {
@@ -36,10 +36,12 @@ Result<TileChange> turn_in_tile(const store::Store::WrittenTiles& written, const
   const TileMask provisional = resolver.provisional();
   TileData resolved = std::move(resolver).finish();
   auto after = resolved == *before ? before : std::make_shared<const TileData>(std::move(resolved));
-  return TileChange{written.tile, std::move(before), std::move(after), written.written, provisional};
+  return TileChange{written.tile, std::move(before), std::move(after), written.written,
+                    provisional};
 }
 
-Result<ComputedEdit> compute_turn(const Turn& turn, const Layer& layer, const TileMap& tiles, store::Store& store) {
+Result<ComputedEdit> compute_turn(const Turn& turn, const Layer& layer, const TileMap& tiles,
+                                  store::Store& store) {
   auto written = store.written_by(layer, turn.edits);
   if (!written) return tl::unexpected(written.error());
   ComputedEdit computed;
@@ -52,26 +54,29 @@ Result<ComputedEdit> compute_turn(const Turn& turn, const Layer& layer, const Ti
   return computed;
 }
 
-Result<ComputedEdit> compute_undo(const EditRequest& request, const Layer& layer, const TileMap& tiles,
-                                  store::Store& store, bool redo) {
+Result<ComputedEdit> compute_undo(const EditRequest& request, const Layer& layer,
+                                  const TileMap& tiles, store::Store& store, bool redo) {
   // What was accepted stays until a curator changes it.
   const bool pending_only = layer.review && request.author.role < Role::curator;
   auto sequences = redo ? store.redoable(layer.id, request.author.user, pending_only)
                         : store.undoable(layer.id, request.author.user, pending_only);
   if (!sequences) return tl::unexpected(sequences.error());
   if (sequences->empty() && pending_only)
-    return fail(409, redo ? "Nothing to redo" : "Nothing to undo",
-                redo ? "You have no undone stroke on this layer that waits for review."
-                     : "You have no stroke on this layer that still waits for review; what was accepted a curator can "
-                       "take back.");
+    return fail(
+        409, redo ? "Nothing to redo" : "Nothing to undo",
+        redo
+            ? "You have no undone stroke on this layer that waits for review."
+            : "You have no stroke on this layer that still waits for review; what was accepted a curator can "
+              "take back.");
   if (sequences->empty())
-    return redo ? fail(409, "Nothing to redo", "You have no undone stroke on this layer that could come back.")
+    return redo ? fail(409, "Nothing to redo",
+                       "You have no undone stroke on this layer that could come back.")
                 : fail(409, "Nothing to undo", "You have no stroke in force on this layer.");
   return compute_turn({std::move(*sequences), redo, std::nullopt}, layer, tiles, store);
 }
 
-Result<ComputedEdit> compute_review(const ReviewEdit& review, const Layer& layer, const TileMap& tiles,
-                                    store::Store& store) {
+Result<ComputedEdit> compute_review(const ReviewEdit& review, const Layer& layer,
+                                    const TileMap& tiles, store::Store& store) {
   const auto found = store.under_review(layer.id, review.decision, review.which);
   if (!found) return tl::unexpected(found.error());
   const bool reopens = review.decision == Decision::reopen;
@@ -86,10 +91,12 @@ Result<ComputedEdit> compute_review(const ReviewEdit& review, const Layer& layer
       return fail(
           409, reopens ? "Not reviewed" : "Not waiting for review",
           "Edit " + std::to_string(named) +
-              (reopens ? " was neither accepted nor rejected, or was taken back since."
-                       : " of this layer does not wait for review: it was taken back, or somebody has decided."),
+              (reopens
+                   ? " was neither accepted nor rejected, or was taken back since."
+                   : " of this layer does not wait for review: it was taken back, or somebody has decided."),
           "edits");
-  if (turn.edits.empty()) return fail(409, "Nothing to review", "Nothing of this waits for review on this layer.");
+  if (turn.edits.empty())
+    return fail(409, "Nothing to review", "Nothing of this waits for review on this layer.");
   if (review.decision != Decision::accept) turn.in_force = reopens;
   turn.provisional = reopens;
   auto computed = compute_turn(turn, layer, tiles, store);
@@ -104,29 +111,36 @@ Result<ComputedEdit> only_changes(Result<std::vector<TileChange>> changes) {
   return ComputedEdit{std::move(*changes), {}, {}, {}, {}};
 }
 
-Result<TileMap> computed_content(const ComputeEdit& compute, const Layer& layer, const RegionContext& context) {
+Result<TileMap> computed_content(const ComputeEdit& compute, const Layer& layer,
+                                 const RegionContext& context) {
   std::vector<query::LayerView> layers = context.layers;
   layers.insert(layers.end(), compute.shapes.begin(), compute.shapes.end());
-  const auto bound =
-      bind_for_layer(compute.expression, layers, context.store, context.author, layer.visibility, "expression");
+  const auto bound = bind_for_layer(compute.expression, layers, context.store, context.author,
+                                    layer.visibility, "expression");
   if (!bound) return tl::unexpected(bound.error());
   return query::compute_tiles(bound->expression, bound->layers, context.map,
-                              {context.surface.geometry().origin, context.metres}, layer.type, "expression",
-                              mesh::background_threads());
+                              {context.surface.geometry().origin, context.metres}, layer.type,
+                              "expression", mesh::background_threads());
 }
 
 }  // namespace
 
-Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer, const RegionContext& context) {
+Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer,
+                                  const RegionContext& context) {
   store::Store& store = context.store;
   const TileMap& tiles = context.tiles;
   return std::visit(
       Overloaded{
-          [&](const FillEdit& fill) { return only_changes(fill_changes(fill, layer.type, context)); },
-          [&](const PolygonEdit& polygon) { return only_changes(polygon_changes(polygon, layer.type, context)); },
+          [&](const FillEdit& fill) {
+            return only_changes(fill_changes(fill, layer.type, context));
+          },
+          [&](const PolygonEdit& polygon) {
+            return only_changes(polygon_changes(polygon, layer.type, context));
+          },
           [&](const ImportEdit& import) {
-            return only_changes(import.over ? paint_over(tiles, import.tiles, layer.type, context.map)
-                                            : replace_content(tiles, import.tiles, layer.type, context.map));
+            return only_changes(
+                import.over ? paint_over(tiles, import.tiles, layer.type, context.map)
+                            : replace_content(tiles, import.tiles, layer.type, context.map));
           },
           [&](const ComputeEdit& compute) -> Result<ComputedEdit> {
             auto content = computed_content(compute, layer, context);

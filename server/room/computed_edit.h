@@ -8,7 +8,8 @@
 
 namespace strata::room {
 
-// An edit that is computed from mirrors rather than painted by the GPU: fill, polygon, import, undo, redo, restore, review.
+// An edit that is computed from mirrors rather than painted by the GPU: fill, polygon, import,
+// undo, redo, restore, review.
 struct ComputedEdit {
   std::vector<TileChange> changes;
   std::vector<std::int64_t> disable, enable;  // edits that are no longer in force, or are again
@@ -17,6 +18,7 @@ struct ComputedEdit {
 };
 
 // Blocks: for worker threads. `layer` is the edited one.
-Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer, const RegionContext& context);
+Result<ComputedEdit> compute_edit(const EditRequest& request, const Layer& layer,
+                                  const RegionContext& context);
 
 }  // namespace strata::room

@@ -30,9 +30,11 @@ Result<LayerState> read_layer_state(store::Store& store, Layer layer) {
   return state;
 }
 
-Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id, const std::vector<LayerState>& held) {
+Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
+                                     const std::vector<LayerState>& held) {
   JournalContents contents;
-  // Before the tiles: were they to hold more, the next commit would find out and have everything read again.
+  // Before the tiles: were they to hold more, the next commit would find out and have everything
+  // read again.
   auto last = store.last_sequence(model_id);
   if (!last) return tl::unexpected(last.error());
   contents.last_sequence = *last;
@@ -43,9 +45,11 @@ Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
     if (!state) return tl::unexpected(state.error());
     for (const LayerState& old : held) {
       if (old.layer.id != state->layer.id) continue;
-      auto differing = differing_tiles(old.mirror->snapshot().tiles, state->mirror->snapshot().tiles);
-      std::ranges::move(differing_tiles(old.provisional->snapshot().tiles, state->provisional->snapshot().tiles),
-                        std::back_inserter(differing));
+      auto differing =
+          differing_tiles(old.mirror->snapshot().tiles, state->mirror->snapshot().tiles);
+      std::ranges::move(
+          differing_tiles(old.provisional->snapshot().tiles, state->provisional->snapshot().tiles),
+          std::back_inserter(differing));
       if (!differing.empty()) contents.differing[old.layer.id] = std::move(differing);
     }
     contents.layers.push_back(std::move(*state));
@@ -80,7 +84,8 @@ Result<std::vector<Level>> read_coarser_levels(store::Store& store, std::int64_t
 
 Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t model_id) {
   // Together the coarser levels are about as much work as the full one.
-  auto coarser_later = std::async(std::launch::async, [&] { return read_coarser_levels(store, model_id); });
+  auto coarser_later =
+      std::async(std::launch::async, [&] { return read_coarser_levels(store, model_id); });
   auto bytes = store.geometry(model_id);
   if (!bytes) return tl::unexpected(bytes.error());
   auto full = decode(*bytes);
@@ -92,10 +97,12 @@ Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t mo
 
 Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model,
                                       std::shared_ptr<const TileMirror> mirror) {
-  return await<render::LayerHandle>([&](auto done) { renderer.add_layer(model, std::move(mirror), std::move(done)); });
+  return await<render::LayerHandle>(
+      [&](auto done) { renderer.add_layer(model, std::move(mirror), std::move(done)); });
 }
 
-Result<LayerHandles> add_layer(render::Renderer& renderer, render::ModelHandle model, const LayerState& layer) {
+Result<LayerHandles> add_layer(render::Renderer& renderer, render::ModelHandle model,
+                               const LayerState& layer) {
   auto content = add_layer(renderer, model, layer.mirror);
   if (!content) return tl::unexpected(content.error());
   auto provisional = add_layer(renderer, model, layer.provisional);
@@ -113,7 +120,8 @@ void remove_layer(render::Renderer& renderer, const LayerHandles& handles) {
 
 Result<GpuContents> fill_gpu(render::Renderer& renderer, const render::ModelGeometry& geometry,
                              const std::vector<LayerState>& layers) {
-  auto model = await<render::ModelHandle>([&](auto done) { renderer.add_model(geometry, std::move(done)); });
+  auto model =
+      await<render::ModelHandle>([&](auto done) { renderer.add_model(geometry, std::move(done)); });
   if (!model) return tl::unexpected(model.error());
   GpuContents contents{*model, {}};
   for (const LayerState& layer : layers) {

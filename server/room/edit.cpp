@@ -30,8 +30,10 @@ std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit
   };
   if (const auto* stroke = std::get_if<StrokeEdit>(&edit.edit))
     return one(stroke->batch.erase, stroke->batch.value_bits);
-  if (const auto* fill = std::get_if<FillEdit>(&edit.edit)) return one(fill->erase, fill->value_bits);
-  if (const auto* polygon = std::get_if<PolygonEdit>(&edit.edit)) return one(polygon->erase, polygon->value_bits);
+  if (const auto* fill = std::get_if<FillEdit>(&edit.edit))
+    return one(fill->erase, fill->value_bits);
+  if (const auto* polygon = std::get_if<PolygonEdit>(&edit.edit))
+    return one(polygon->erase, polygon->value_bits);
   if (const auto* import = std::get_if<ImportEdit>(&edit.edit)) {
     const auto keys = keys_in(import->tiles);
     return {keys.begin(), keys.end()};
@@ -40,7 +42,8 @@ std::vector<std::int64_t> painted_by(const Layer& layer, const EditRequest& edit
 }
 
 bool paints(const EditRequest& edit) {
-  return !std::holds_alternative<UndoEdit>(edit.edit) && !std::holds_alternative<RedoEdit>(edit.edit) &&
+  return !std::holds_alternative<UndoEdit>(edit.edit) &&
+         !std::holds_alternative<RedoEdit>(edit.edit) &&
          !std::holds_alternative<ReviewEdit>(edit.edit);
 }
 
@@ -58,22 +61,25 @@ Result<void> check_not_locked(const Layer& layer, Role role, bool computing) {
   if (is_as_computed(layer) && !computing)
     return fail(
         403, "Layer locked",
-        "The layer " + layer.name + " is locked: its values were computed. A curator can unlock it to edit it by hand.",
+        "The layer " + layer.name +
+            " is locked: its values were computed. A curator can unlock it to edit it by hand.",
         "layer");
   if (!layer.locked || role >= Role::curator) return {};
-  return fail(403, "Layer locked", "The layer " + layer.name + " is locked: a curator can unlock it.", "layer");
+  return fail(403, "Layer locked",
+              "The layer " + layer.name + " is locked: a curator can unlock it.", "layer");
 }
 
 nlohmann::json to_json(const EditAnswer& answer) {
-  nlohmann::json json{
-      {"sequence", answer.sequence}, {"texels_changed", answer.texels_changed}, {"area_m2", answer.area_m2}};
+  nlohmann::json json{{"sequence", answer.sequence},
+                      {"texels_changed", answer.texels_changed},
+                      {"area_m2", answer.area_m2}};
   if (answer.provisional) json["provisional"] = true;
   return json;
 }
 
 EditAnswer first_answer(const store::JournalRow& row) {
-  return {row.sequence, row.answer.value("texels_changed", std::uint64_t{0}), row.answer.value("area_m2", 0.0), true,
-          row.answer.value("provisional", false)};
+  return {row.sequence, row.answer.value("texels_changed", std::uint64_t{0}),
+          row.answer.value("area_m2", 0.0), true, row.answer.value("provisional", false)};
 }
 
 }  // namespace strata::room

@@ -30,8 +30,10 @@ struct PixelPlace {  // what the camera shows there
   Camera camera;
   double x = 0, y = 0;
 };
-using Place = std::variant<PixelPlace, glm::dvec3>;  // or the surface point nearest to a point of the world
-struct Outline {                                     // what is seen inside it in the camera's window (even-odd rule)
+// or the surface point nearest to a point of the world
+using Place = std::variant<PixelPlace, glm::dvec3>;
+struct Outline {
+  // what is seen inside it in the camera's window (even-odd rule)
   Camera camera;
   std::vector<glm::dvec2> path;  // window pixels, origin top left; 3…4096 points
   bool through = false;          // what is hidden, too
@@ -46,8 +48,9 @@ struct FillEdit {
   struct Island {  // the connected piece of the surface, across the seams of its atlas
     Place at;
   };
-  struct
-      Connected {  // what holds the same as the place, or like it nothing, and is connected with it across the surface
+  struct Connected {
+    // what holds the same as the place, or like it nothing, and is connected with it across the
+    // surface
     Place at;
   };
   std::variant<Everywhere, Where, Island, Connected> region = Everywhere{};
@@ -59,13 +62,16 @@ struct PolygonEdit {
 };
 struct ImportEdit {
   TileMap tiles;
-  bool over = false;  // what is valid in the tiles is painted over the layer; otherwise they replace its whole content
+  // what is valid in the tiles is painted over the layer; otherwise they replace its whole content
+  bool over = false;
   bool computed = false;  // what a layer is made with, from the shape
 };
-struct ComputeEdit {  // a computed layer's content, from the layers and records as they are when the edit's turn comes
+struct ComputeEdit {
+  // a computed layer's content, from the layers and records as they are when the edit's turn comes
   Expression expression;
-  std::vector<query::LayerView> shapes;  // what it reads of the mesh (kShapeNames), as layers `surface.…`
-  bool overwrites = false;               // also what was edited by hand since
+  // what it reads of the mesh (kShapeNames), as layers `surface.…`
+  std::vector<query::LayerView> shapes;
+  bool overwrites = false;  // also what was edited by hand since
 };
 struct UndoEdit {};  // the author's newest stroke in force on the layer
 struct RedoEdit {};
@@ -82,10 +88,12 @@ struct EditRequest {
   Uuid id;  // of the message: a repeat gets the first answer and paints nothing
   Author author;
   std::int64_t layer_id = 0;
-  std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit, RestoreEdit, ReviewEdit>
+  std::variant<StrokeEdit, FillEdit, PolygonEdit, ImportEdit, ComputeEdit, UndoEdit, RedoEdit,
+               RestoreEdit, ReviewEdit>
       edit{};
-  nlohmann::json record{};               // the edit as asked, for the journal
-  std::shared_ptr<Question> question{};  // it is part of its answer; none: it has the limits of its author
+  nlohmann::json record{};  // the edit as asked, for the journal
+  // it is part of its answer; none: it has the limits of its author
+  std::shared_ptr<Question> question{};
 };
 
 // The keys that an edit of the layer paints: none where it erases, undoes or brings back what was.
@@ -98,8 +106,9 @@ bool waits_for_review(const Layer& layer, const EditRequest& edit);
 
 // Whether the edit writes what a layer's values are computed to be, and is no change by hand.
 bool computes(const EditRequest& edit);
-// Refused (403, `layer`): a locked layer, to who is no curator; one that is as it was computed, to everybody who is not `computing` it. The pipeline asks before it begins an edit; others only where they
-// would change something else before that.
+// Refused (403, `layer`): a locked layer, to who is no curator; one that is as it was computed, to
+// everybody who is not `computing` it. The pipeline asks before it begins an edit; others only
+// where they would change something else before that.
 Result<void> check_not_locked(const Layer& layer, Role role, bool computing = false);
 
 struct EditAnswer {

@@ -26,12 +26,14 @@ template <class... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 const char* op_name(const EditRequest& request) {
-  return std::visit(Overloaded{[](const StrokeEdit&) { return "stroke"; }, [](const FillEdit&) { return "fill"; },
-                               [](const PolygonEdit&) { return "polygon"; }, [](const ImportEdit&) { return "import"; },
-                               [](const ComputeEdit&) { return "compute"; }, [](const UndoEdit&) { return "undo"; },
-                               [](const RedoEdit&) { return "redo"; }, [](const RestoreEdit&) { return "restore"; },
-                               [](const ReviewEdit& review) { return name(review.decision).data(); }},
-                    request.edit);
+  return std::visit(
+      Overloaded{
+          [](const StrokeEdit&) { return "stroke"; }, [](const FillEdit&) { return "fill"; },
+          [](const PolygonEdit&) { return "polygon"; }, [](const ImportEdit&) { return "import"; },
+          [](const ComputeEdit&) { return "compute"; }, [](const UndoEdit&) { return "undo"; },
+          [](const RedoEdit&) { return "redo"; }, [](const RestoreEdit&) { return "restore"; },
+          [](const ReviewEdit& review) { return name(review.decision).data(); }},
+      request.edit);
 }
 
 // Undo, redo, reviews and restore read the journal, so everything before them must be in it.
@@ -47,12 +49,14 @@ bool reads_layers(const EditRequest& request) {
 }
 
 // The part of the surface that changed tiles lie on.
-std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& changes, const mesh::SurfaceMap& map) {
+std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& changes,
+                                                const mesh::SurfaceMap& map) {
   render::FrameRequest::Box box{glm::vec3(std::numeric_limits<float>::max()),
                                 glm::vec3(std::numeric_limits<float>::lowest())};
   const int tiles_per_side = map.resolution / kTileSize;
   for (const TileChange& change : changes) {
-    const auto& bounds = map.bounds_of_tile[std::size_t(change.address.y) * tiles_per_side + change.address.x];
+    const auto& bounds =
+        map.bounds_of_tile[std::size_t(change.address.y) * tiles_per_side + change.address.x];
     if (bounds.radius < 0) continue;
     box.min = glm::min(box.min, bounds.center - bounds.radius);
     box.max = glm::max(box.max, bounds.center + bounds.radius);
@@ -63,24 +67,28 @@ std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& c
 
 // Who repeats an edit is told what became of it; nobody else is.
 Problem taken_id() {
-  return {422, "Id used for another edit", "Another edit of this model has this id; every edit has an id of its own.",
-          "id"};
+  return {422, "Id used for another edit",
+          "Another edit of this model has this id; every edit has an id of its own.", "id"};
 }
 
-// What a layer's expression says is written by computing alone, until the layer is unlocked to be edited by hand; from then on what was painted is
-// not computed away.
+// What a layer's expression says is written by computing alone, until the layer is unlocked to be
+// edited by hand; from then on what was painted is not computed away.
 Result<void> check_formula(const Layer& layer, const EditRequest& request) {
   const auto* compute = std::get_if<ComputeEdit>(&request.edit);
   if (compute && !layer.formula)
-    return fail(409, "No expression", "This layer has no expression that it could be computed from.", "layer");
+    return fail(409, "No expression",
+                "This layer has no expression that it could be computed from.", "layer");
   if (compute && layer.edited_by_hand && !compute->overwrites)
-    return fail(409, "Edited by hand",
-                "This layer was unlocked and edited by hand. Computing it again would overwrite that; "
-                "ask for it with overwrite=true.",
-                "layer");
+    return fail(
+        409, "Edited by hand",
+        "This layer was unlocked and edited by hand. Computing it again would overwrite that; "
+        "ask for it with overwrite=true.",
+        "layer");
   if (!compute && layer.formula && !layer.edited_by_hand)
-    return fail(409, "Computed layer",
-                "The values of this layer follow from its expression. Unlock it to edit them by hand.", "layer");
+    return fail(
+        409, "Computed layer",
+        "The values of this layer follow from its expression. Unlock it to edit them by hand.",
+        "layer");
   return {};
 }
 
@@ -96,10 +104,11 @@ EditPipeline::EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_se
 template <class Handler>
 auto EditPipeline::then(Handler handler) {
   return [self = shared_from_this(), handler = std::move(handler)](auto value) mutable {
-    boost::asio::post(self->parts_.strand, [self, handler = std::move(handler), value = std::move(value)]() mutable {
-      handler(std::move(value));
-      self->step();
-    });
+    boost::asio::post(self->parts_.strand,
+                      [self, handler = std::move(handler), value = std::move(value)]() mutable {
+                        handler(std::move(value));
+                        self->step();
+                      });
   };
 }
 
@@ -110,9 +119,11 @@ void EditPipeline::edit(EditRequest request, Room::Applied applied, Room::Saved 
     return found->second.followers.push_back(std::move(saved));
   }
   if (!parts_.writer.accepting())
-    return saved(
-        fail(503, "Not saved", "The database does not take edits at the moment. Viewing goes on; try again shortly."));
-  if (parts_.memory.exceeded()) return saved(tl::unexpected(parts_.memory.used_up(0, "what an edit may add")));
+    return saved(fail(
+        503, "Not saved",
+        "The database does not take edits at the moment. Viewing goes on; try again shortly."));
+  if (parts_.memory.exceeded())
+    return saved(tl::unexpected(parts_.memory.used_up(0, "what an edit may add")));
   running_[request.id].user = request.author.user;
   waiting_.push_back({std::move(request), std::move(applied), std::move(saved), {}});
   step();
@@ -124,10 +135,12 @@ void EditPipeline::when_idle(Work work) {
   step();
 }
 
-// ---------------------------------------------------------------------------------------------------- looking up
+// ----------------------------------------------------------------------------------------------------
+// looking up
 
-// One question at a time, about all that came meanwhile. Where `verify_` is set, also: is the journal where the room thinks it is?
-// When the last question had no answer, that one is asked only where somebody waits for it.
+// One question at a time, about all that came meanwhile. Where `verify_` is set, also: is the
+// journal where the room thinks it is? When the last question had no answer, that one is asked only
+// where somebody waits for it.
 void EditPipeline::ask_journal() {
   if (asking_) return;
   const bool settled = in_flight_ == 0 && !busy_ && !paused_ && pending_.empty();
@@ -142,15 +155,17 @@ void EditPipeline::ask_journal() {
   if (ids.empty() && !verifying) return;
   asking_ = true;
   using State = Result<store::Store::JournalState>;
-  boost::asio::post(parts_.readers, [&store = parts_.store, model_id = host_->pipeline_model().id, ids = std::move(ids),
-                                     was_away = journal_away_, done = then([this, verifying](const State& state) {
-                                                                 on_journal(verifying, state);
-                                                               })]() mutable {
-    // The pool waits for a database that restarts. Once is enough: those who come later hear at once that it is away.
+  boost::asio::post(parts_.readers, [&store = parts_.store, model_id = host_->pipeline_model().id,
+                                     ids = std::move(ids), was_away = journal_away_,
+                                     done = then([this, verifying](const State& state) {
+                                       on_journal(verifying, state);
+                                     })]() mutable {
+    // The pool waits for a database that restarts. Once is enough: those who come later hear at
+    // once that it is away.
     if (was_away && !store.ready())
-      return done(
-          State(fail(503, "Database unavailable",
-                     "The database does not answer, so nothing can be saved. Viewing goes on; try again shortly.")));
+      return done(State(fail(
+          503, "Database unavailable",
+          "The database does not answer, so nothing can be saved. Viewing goes on; try again shortly.")));
     done(store.journal_state(model_id, ids));
   });
 }
@@ -160,7 +175,8 @@ void EditPipeline::on_journal(bool verifying, const Result<store::Store::Journal
   if (closed_) return;
   journal_away_ = !state;
   if (!state) {
-    // All that wait for the journal, not only those it was asked about: edits of one stroke must not change places.
+    // All that wait for the journal, not only those it was asked about: edits of one stroke must
+    // not change places.
     std::deque<Waiting> all = std::exchange(waiting_, {});
     for (Waiting& item : all) {
       if (!verify_ && (item.work || item.lookup == Waiting::Lookup::is_new))
@@ -170,9 +186,9 @@ void EditPipeline::on_journal(bool verifying, const Result<store::Store::Journal
     }
     return;
   }
-  // A commit whose answer was lost may have happened after all: the journal is right, the room is not. Until the room holds what
-  // the journal has, no repeat may hear that its edit is there, so all is asked again then. (And a question from before
-  // `verify_` was set tells nothing.)
+  // A commit whose answer was lost may have happened after all: the journal is right, the room is
+  // not. Until the room holds what the journal has, no repeat may hear that its edit is there, so
+  // all is asked again then. (And a question from before `verify_` was set tells nothing.)
   if (verifying && state->last_sequence == durable_) verify_ = false;
   const auto is_beyond = [&](const store::JournalRow& row) { return row.sequence > durable_; };
   if (std::any_of(state->known.begin(), state->known.end(), is_beyond)) verify_ = true;
@@ -185,10 +201,10 @@ void EditPipeline::on_journal(bool verifying, const Result<store::Store::Journal
 void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
   std::deque<Waiting> all = std::exchange(waiting_, {});
   for (Waiting& item : all) {
-    const auto row =
-        item.lookup == Waiting::Lookup::asked
-            ? std::find_if(known.begin(), known.end(), [&](const auto& r) { return r.id == item.request.id; })
-            : known.end();
+    const auto row = item.lookup == Waiting::Lookup::asked
+                         ? std::find_if(known.begin(), known.end(),
+                                        [&](const auto& r) { return r.id == item.request.id; })
+                         : known.end();
     if (row != known.end() && row->user != item.request.author.user) {
       refuse(item, taken_id());
       continue;
@@ -204,7 +220,8 @@ void EditPipeline::on_known(const std::vector<store::JournalRow>& known) {
   }
 }
 
-// ------------------------------------------------------------------------------------------------------ starting
+// ------------------------------------------------------------------------------------------------------
+// starting
 
 void EditPipeline::step() {
   roll_back_when_answered();
@@ -240,7 +257,8 @@ bool EditPipeline::start_front() {
     refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
     return true;
   }
-  if (auto may = check_not_locked(layer->layer, front.request.author.role, computes(front.request)); !may) {
+  if (auto may = check_not_locked(layer->layer, front.request.author.role, computes(front.request));
+      !may) {
     Waiting item = take();
     refuse(item, may.error());
     return true;
@@ -263,7 +281,8 @@ bool EditPipeline::start_front() {
 
 void EditPipeline::start_work(Work work) {
   busy_ = true;
-  boost::asio::post(parts_.workers, [work = std::move(work), done = then([this](bool) { busy_ = false; })]() mutable {
+  boost::asio::post(parts_.workers, [work = std::move(work),
+                                     done = then([this](bool) { busy_ = false; })]() mutable {
     work({});
     done(true);
   });
@@ -302,48 +321,55 @@ void EditPipeline::stroke_done(Waiting& item, Result<render::StrokeOutcome> outc
   for (const auto& tile : outcome->tiles) {
     auto before = layer->mirror->tile(tile.address);
     if (!before) before = std::make_shared<const TileData>(layer->layer.type);
-    computed.changes.push_back(painted_change(tile.address, std::move(before), tile.written, tile.after));
+    computed.changes.push_back(
+        painted_change(tile.address, std::move(before), tile.written, tile.after));
   }
   std::optional<render::FrameRequest::Box> box;
-  if (!computed.changes.empty()) box = render::FrameRequest::Box{outcome->written_min, outcome->written_max};
+  if (!computed.changes.empty())
+    box = render::FrameRequest::Box{outcome->written_min, outcome->written_max};
   commit(item, *layer, std::move(computed), box);
 }
 
 void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
   busy_ = true;
   auto item = std::make_shared<Waiting>(std::move(taken));
-  auto done = then([this, item](Result<ComputedEdit> computed) { upload_computed(item, std::move(computed)); });
+  auto done = then(
+      [this, item](Result<ComputedEdit> computed) { upload_computed(item, std::move(computed)); });
   std::vector<query::LayerView> layers;
   if (reads_layers(item->request)) layers = host_->layer_snapshots();
-  boost::asio::post(parts_.workers, [this, self = shared_from_this(), item, meta = layer.layer,
-                                     tiles = layer.mirror->snapshot().tiles, layers = std::move(layers),
-                                     metres = host_->pipeline_model().metres(), model = host_->model_handle(),
-                                     done = std::move(done)]() mutable {
-    const auto map = parts_.maps->get(meta.resolution);
-    if (!map)
-      return done(
-          Result<ComputedEdit>(fail(503, "GPU lost", "The graphics context is being restored; send the edit again.")));
-    auto question = item->request.question;
-    const Author& author = item->request.author;
-    if (!question) question = std::make_shared<Question>(author.user, limits_of(author.role), nullptr);
-    question->skip_turns();
-    const Question::Scope scope(question);
-    try {
-      question->check();
-      done(compute_edit(item->request, meta,
-                        {*map, tiles, layers, metres, parts_.store, *parts_.surface, parts_.renderer, model,
-                         meta.visibility, item->request.author.role}));
-    } catch (const QuestionEnded& ended) {
-      done(Result<ComputedEdit>(tl::unexpected(ended.problem())));
-    } catch (const std::bad_alloc&) {
-      done(Result<ComputedEdit>(
-          fail(503, "Out of memory", "The server lacks the memory for this edit at the moment; try again later.")));
-    }
-  });
+  boost::asio::post(
+      parts_.workers, [this, self = shared_from_this(), item, meta = layer.layer,
+                       tiles = layer.mirror->snapshot().tiles, layers = std::move(layers),
+                       metres = host_->pipeline_model().metres(), model = host_->model_handle(),
+                       done = std::move(done)]() mutable {
+        const auto map = parts_.maps->get(meta.resolution);
+        if (!map)
+          return done(Result<ComputedEdit>(fail(
+              503, "GPU lost", "The graphics context is being restored; send the edit again.")));
+        auto question = item->request.question;
+        const Author& author = item->request.author;
+        if (!question)
+          question = std::make_shared<Question>(author.user, limits_of(author.role), nullptr);
+        question->skip_turns();
+        const Question::Scope scope(question);
+        try {
+          question->check();
+          done(compute_edit(item->request, meta,
+                            {*map, tiles, layers, metres, parts_.store, *parts_.surface,
+                             parts_.renderer, model, meta.visibility, item->request.author.role}));
+        } catch (const QuestionEnded& ended) {
+          done(Result<ComputedEdit>(tl::unexpected(ended.problem())));
+        } catch (const std::bad_alloc&) {
+          done(Result<ComputedEdit>(
+              fail(503, "Out of memory",
+                   "The server lacks the memory for this edit at the moment; try again later.")));
+        }
+      });
 }
 
 // Applied only once the GPU has it: a stroke that comes next is painted over what the mirror holds.
-void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item, Result<ComputedEdit> computed) {
+void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item,
+                                   Result<ComputedEdit> computed) {
   busy_ = false;
   if (!computed) return refuse(*item, computed.error());
   if (closed_) return refuse(*item, *closed_);
@@ -354,14 +380,16 @@ void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item, Result<
     if (change.after != change.before) uploads.push_back({change.address, change.after});
   busy_ = true;
   item->hold = layer->mirror->hold();
-  parts_.renderer.write_tiles(layer->handles.content, std::move(uploads),
-                              then([this, item, computed = std::move(*computed)](const Result<void>& uploaded) mutable {
-                                busy_ = false;
-                                computed_uploaded(*item, std::move(computed), uploaded);
-                              }));
+  parts_.renderer.write_tiles(
+      layer->handles.content, std::move(uploads),
+      then([this, item, computed = std::move(*computed)](const Result<void>& uploaded) mutable {
+        busy_ = false;
+        computed_uploaded(*item, std::move(computed), uploaded);
+      }));
 }
 
-void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed, const Result<void>& uploaded) {
+void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed,
+                                     const Result<void>& uploaded) {
   if (closed_) return refuse(item, *closed_);
   LayerState* layer = host_->find_layer(item.request.layer_id);
   if (!layer) return refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
@@ -374,7 +402,8 @@ void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed, const
   commit(item, *layer, std::move(computed), box);
 }
 
-// ------------------------------------------------------------------------------------ making durable, or taking back
+// ------------------------------------------------------------------------------------ making
+// durable, or taking back
 
 void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit computed,
                           const std::optional<render::FrameRequest::Box>& box) {
@@ -402,9 +431,11 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
     tiles[change.address] = change.after;
     store::JournalEntry::Revision revision{
         change.address,
-        encode_revision(make_revision(change.address, *change.before, *change.after, change.written)),
+        encode_revision(
+            make_revision(change.address, *change.before, *change.after, change.written)),
         {}};
-    // The first revision in this room is stored whole: chains stay short however often rooms open and close.
+    // The first revision in this room is stored whole: chains stay short however often rooms open
+    // and close.
     auto [since, first] = since_key_tile.try_emplace(change.address, 0);
     if (first || ++since->second >= kKeyTileEvery) {
       revision.key_tile = encode_tile(*change.after);
@@ -413,8 +444,11 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
     entry.revisions.push_back(std::move(revision));
   }
   if (map) {
-    std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>> after(tiles.begin(), tiles.end());
-    entry.sum_tiles = [map, about = layer.layer, after = std::move(after)] { return sum_tiles(about, *map, after); };
+    std::vector<std::pair<TileAddress, std::shared_ptr<const TileData>>> after(tiles.begin(),
+                                                                               tiles.end());
+    entry.sum_tiles = [map, about = layer.layer, after = std::move(after)] {
+      return sum_tiles(about, *map, after);
+    };
   }
   const std::int64_t sequence_before = layer.layer.sequence;
   layer.mirror->put(tiles, sequence);
@@ -437,25 +471,31 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
   if (is_provisional) entry.review = Review::pending;
   entry.reviewed = std::move(computed.reviewed);
 
-  Listener::Edit event{
-      layer.layer.id,    layer.layer.slug,         sequence, entry.id, entry.stroke, stroke ? stroke->n : 0,
-      stroke != nullptr, item.request.author.user, entry.op, answer};
+  Listener::Edit event{layer.layer.id,    layer.layer.slug,
+                       sequence,          entry.id,
+                       entry.stroke,      stroke ? stroke->n : 0,
+                       stroke != nullptr, item.request.author.user,
+                       entry.op,          answer};
   if (auto* review = std::get_if<ReviewEdit>(&item.request.edit))
     event.review = {review->decision, std::move(review->reason), std::move(computed.authors)};
   if (!tiles.empty() || !provisional.empty()) host_->content_changed(layer, box, sequence);
   host_->edit_applied(event);
   if (item.applied) item.applied(answer);
 
-  pending_.push_back({event, std::move(computed.changes), std::move(provisional_before), sequence_before,
-                      std::move(item.saved), false});
+  pending_.push_back({event, std::move(computed.changes), std::move(provisional_before),
+                      sequence_before, std::move(item.saved), false});
   if (failure_) {
     pending_.back().answered = true;
     return;
   }
   const bool taken = parts_.writer.submit(
-      std::move(entry), then([this, sequence](const Result<void>& result) { on_saved(sequence, result); }));
+      std::move(entry),
+      then([this, sequence](const Result<void>& result) { on_saved(sequence, result); }));
   if (!taken) {
-    failure_ = Problem{503, "Not saved", "The database does not keep up with the edits; they were taken back.", {}};
+    failure_ = Problem{503,
+                       "Not saved",
+                       "The database does not keep up with the edits; they were taken back.",
+                       {}};
     pending_.back().answered = true;
   }
 }
@@ -468,8 +508,10 @@ void EditPipeline::put_provisional(LayerState& layer, const TileMap& tiles, std:
   std::set<TileAddress> addresses = std::exchange(stale_marks_[layer.layer.id], {});
   for (const auto& [address, tile] : tiles) addresses.insert(address);
   std::vector<render::TileUpload> uploads;
-  for (const TileAddress address : addresses) uploads.push_back({address, layer.provisional->tile(address)});
-  const auto failed = [this, id = layer.layer.id, addresses = std::move(addresses)](const Result<void>& uploaded) {
+  for (const TileAddress address : addresses)
+    uploads.push_back({address, layer.provisional->tile(address)});
+  const auto failed = [this, id = layer.layer.id,
+                       addresses = std::move(addresses)](const Result<void>& uploaded) {
     if (!uploaded) stale_marks_[id].insert(addresses.begin(), addresses.end());
   };
   parts_.renderer.write_tiles(layer.handles.provisional, std::move(uploads), then(failed));
@@ -485,8 +527,9 @@ TileMap EditPipeline::durable_provisional(const LayerState& layer) const {
 }
 
 void EditPipeline::on_saved(std::int64_t sequence, const Result<void>& result) {
-  auto found = std::find_if(pending_.begin(), pending_.end(),
-                            [&](const Pending& pending) { return pending.event.sequence == sequence; });
+  auto found = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& pending) {
+    return pending.event.sequence == sequence;
+  });
   if (found == pending_.end()) return;
   if (!result) {
     found->answered = true;
@@ -500,7 +543,8 @@ void EditPipeline::on_saved(std::int64_t sequence, const Result<void>& result) {
   answer(pending.event.id, pending.saved, pending.event.answer);
 }
 
-// Nothing is taken back while the room is paused: what it reads or puts on the GPU then must not change under it.
+// Nothing is taken back while the room is paused: what it reads or puts on the GPU then must not
+// change under it.
 void EditPipeline::roll_back_when_answered() {
   if (!failure_ || in_flight_ > 0 || busy_ || (paused_ && !closed_)) return;
   for (const Pending& pending : pending_)
@@ -534,14 +578,14 @@ void EditPipeline::roll_back_when_answered() {
   if (!closed_) repair();  // on its way before anybody hears of it
   std::vector<Listener::Edit> events;
   for (const auto& pending : taken_back) events.push_back(pending.event);
-  log::warning("took back " + std::to_string(events.size()) + " edits that could not be saved: " + why.title + ": " +
-               why.detail);
+  log::warning("took back " + std::to_string(events.size()) +
+               " edits that could not be saved: " + why.title + ": " + why.detail);
   if (!closed_) host_->edits_unsaved(events, why);
   for (auto& pending : taken_back) answer(pending.event.id, pending.saved, tl::unexpected(why));
 }
 
-// Writes what the mirrors hold where the GPU may hold something else. First the tiles that are empty: that frees the pages
-// which the others may need.
+// Writes what the mirrors hold where the GPU may hold something else. First the tiles that are
+// empty: that frees the pages which the others may need.
 bool EditPipeline::repair() {
   std::erase_if(stale_, [&](const auto& entry) { return !host_->find_layer(entry.first); });
   if (stale_.empty()) return false;
@@ -549,12 +593,14 @@ bool EditPipeline::repair() {
   busy_ = true;
   auto left = std::make_shared<std::size_t>(4 * stale_.size());
   auto failure = std::make_shared<std::optional<Problem>>();
-  const auto write = [&](render::LayerHandle handle, const TileMirror& mirror, const std::set<TileAddress>& tiles,
-                         bool empty_ones) {
+  const auto write = [&](render::LayerHandle handle, const TileMirror& mirror,
+                         const std::set<TileAddress>& tiles, bool empty_ones) {
     std::vector<render::TileUpload> uploads;
     for (const TileAddress address : tiles)
-      if (auto tile = mirror.tile(address); !tile == empty_ones) uploads.push_back({address, std::move(tile)});
-    parts_.renderer.write_tiles(handle, std::move(uploads), then([this, left, failure](const Result<void>& uploaded) {
+      if (auto tile = mirror.tile(address); !tile == empty_ones)
+        uploads.push_back({address, std::move(tile)});
+    parts_.renderer.write_tiles(handle, std::move(uploads),
+                                then([this, left, failure](const Result<void>& uploaded) {
                                   if (!uploaded && !*failure) *failure = uploaded.error();
                                   if (--*left == 0) repaired(*failure);
                                 }));
@@ -600,7 +646,8 @@ void EditPipeline::refuse_waiting(const Problem& why) {
   for (Waiting& item : all) refuse(item, why);
 }
 
-void EditPipeline::answer(const Uuid& id, const Room::Saved& saved, const Result<EditAnswer>& result) {
+void EditPipeline::answer(const Uuid& id, const Room::Saved& saved,
+                          const Result<EditAnswer>& result) {
   std::vector<Room::Saved> followers;
   if (auto found = running_.find(id); found != running_.end()) {
     followers = std::move(found->second.followers);
@@ -614,7 +661,8 @@ void EditPipeline::answer(const Uuid& id, const Room::Saved& saved, const Result
   }
 }
 
-// ----------------------------------------------------------------------------------------------- pausing, closing
+// -----------------------------------------------------------------------------------------------
+// pausing, closing
 
 void EditPipeline::pause() {
   paused_ = tell_paused_ = true;

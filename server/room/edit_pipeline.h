@@ -28,33 +28,43 @@ class PipelineHost {
  public:
   virtual ~PipelineHost() = default;
   virtual LayerState* find_layer(std::int64_t id) = 0;
-  virtual std::vector<query::LayerView> layer_snapshots() = 0;  // of all layers, as their mirrors are now
+  // of all layers, as their mirrors are now
+  virtual std::vector<query::LayerView> layer_snapshots() = 0;
   virtual const Model& pipeline_model() const = 0;
   virtual render::ModelHandle model_handle() const = 0;
-  virtual void styles_changed() = 0;  // a layer has begun to wait for review, or nothing of it does any more
-  virtual void set_sequence(LayerState& layer, std::int64_t sequence) = 0;  // other threads may be reading it
-  virtual void content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,
+  // a layer has begun to wait for review, or nothing of it does any more
+  virtual void styles_changed() = 0;
+  // other threads may be reading it
+  virtual void set_sequence(LayerState& layer, std::int64_t sequence) = 0;
+  virtual void content_changed(const LayerState& layer,
+                               const std::optional<render::FrameRequest::Box>& box,
                                std::int64_t sequence) = 0;  // no box: everywhere
   virtual void edit_applied(const Listener::Edit& edit) = 0;
   virtual void edit_saved(const Listener::Edit& edit) = 0;
   virtual void edits_unsaved(const std::vector<Listener::Edit>& edits, const Problem& why) = 0;
-  virtual void journal_differs() = 0;  // from what the room holds: read it anew. The host pauses the pipeline
-  virtual void paused() = 0;           // the pipeline was asked to pause, and nothing is under way any more
+  // from what the room holds: read it anew. The host pauses the pipeline
+  virtual void journal_differs() = 0;
+  // the pipeline was asked to pause, and nothing is under way any more
+  virtual void paused() = 0;
 };
 
-// The order of edits of one room. An edit is first looked up in the journal, which may hold it from an earlier connection. Then
-// strokes go to the GPU several at a time, in sequence order; edits that are computed from the tile mirror (fill, polygon, import,
-// undo, restore) wait until the strokes before them are read back, and are applied once the GPU has them. What was read back
-// is compared with the mirror once: that difference becomes the journal's revision, the counts and the change on screen.
+// The order of edits of one room. An edit is first looked up in the journal, which may hold it from
+// an earlier connection. Then strokes go to the GPU several at a time, in sequence order; edits
+// that are computed from the tile mirror (fill, polygon, import, undo, restore) wait until the
+// strokes before them are read back, and are applied once the GPU has them. What was read back is
+// compared with the mirror once: that difference becomes the journal's revision, the counts and the
+// change on screen.
 //
-// The mirrors are right at every moment: they hold what the journal has and what is on its way there. The GPU may fall
-// behind them (`stale_`); it is brought up to date before anything else starts.
+// The mirrors are right at every moment: they hold what the journal has and what is on its way
+// there. The GPU may fall behind them (`stale_`); it is brought up to date before anything else
+// starts.
 //
-// A locked layer is left alone here, and only here: whatever way an edit came, and whenever the lock fell, the layer is looked at once
-// more when the edit would begin. What the journal knows keeps its first answer, and what has begun is brought to its end.
+// A locked layer is left alone here, and only here: whatever way an edit came, and whenever the
+// lock fell, the layer is looked at once more when the edit would begin. What the journal knows
+// keeps its first answer, and what has begun is brought to its end.
 //
-// Lives on the room's strand: every method is called there, and nothing there waits. What blocks (journal, history) is done by
-// `readers` and `workers`, whose answers are posted to the strand.
+// Lives on the room's strand: every method is called there, and nothing there waits. What blocks
+// (journal, history) is done by `readers` and `workers`, whose answers are posted to the strand.
 class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
  public:
   struct Parts {
@@ -71,24 +81,28 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   EditPipeline(Parts parts, PipelineHost& host, std::int64_t last_sequence);
 
   void edit(EditRequest request, Room::Applied applied, Room::Saved saved);
-  bool is_still() const { return in_flight_ == 0 && !busy_; }  // nothing is being painted or computed
-  // Calls `work` on a worker, where it may block, when every edit before it is durable; nothing else runs meanwhile. Where that
-  // will never be, calls it with the reason, on the strand.
+  // nothing is being painted or computed
+  bool is_still() const { return in_flight_ == 0 && !busy_; }
+  // Calls `work` on a worker, where it may block, when every edit before it is durable; nothing
+  // else runs meanwhile. Where that will never be, calls it with the reason, on the strand.
   using Work = std::function<void(const Result<void>&)>;
   void when_idle(Work work);
 
   std::int64_t sequence() const { return sequence_; }
-  // What waits for review on a layer (room/provisional.h) after the last edit that is known to be in the journal.
+  // What waits for review on a layer (room/provisional.h) after the last edit that is known to be
+  // in the journal.
   TileMap durable_provisional(const LayerState& layer) const;
 
-  // Starts nothing more, and tells the host as soon as nothing is under way: then the layers' handles and mirrors may be
-  // changed. Journal entries may still be on their way, but none is taken back before `resume`.
+  // Starts nothing more, and tells the host as soon as nothing is under way: then the layers'
+  // handles and mirrors may be changed. Journal entries may still be on their way, but none is
+  // taken back before `resume`.
   void pause();
   void gpu_filled() {  // while paused: from the mirrors
     stale_.clear();
     stale_marks_.clear();
   }
-  // While paused: the mirrors now hold what the journal has, up to `last_sequence`; the GPU has not got `tiles` of a layer yet.
+  // While paused: the mirrors now hold what the journal has, up to `last_sequence`; the GPU has not
+  // got `tiles` of a layer yet.
   void journal_read(std::int64_t last_sequence);
   void gpu_lacks(std::int64_t layer_id, const std::vector<TileAddress>& tiles);
   void resume();
@@ -101,9 +115,12 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
     EditRequest request;  // nobody's where there is `work`
     Room::Applied applied;
     Room::Saved saved;
-    Work work;                                                        // of `when_idle`, instead of an edit
-    enum class Lookup { none, asked, is_new } lookup = Lookup::none;  // is_new: the journal does not know its id
-    std::shared_ptr<const void> hold = {};                            // of the mirror, while the GPU is ahead of it
+    // of `when_idle`, instead of an edit
+    Work work;
+    // is_new: the journal does not know its id
+    enum class Lookup { none, asked, is_new } lookup = Lookup::none;
+    // of the mirror, while the GPU is ahead of it
+    std::shared_ptr<const void> hold = {};
   };
   // Applied and on its way to the journal; what is needed to take it back.
   struct Pending {
@@ -150,20 +167,24 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   std::int64_t sequence_;  // of the last edit in the mirrors
   std::int64_t durable_;   // of the last edit in the journal
   std::deque<Waiting> waiting_;
-  bool asking_ = false;        // a question to the journal is under way
-  bool journal_away_ = false;  // the last one had no answer: the next does not wait for the database to come back
-  int in_flight_ = 0;          // strokes on the GPU
-  bool busy_ = false;          // a computed edit, `when_idle` work or a repair is under way
+  bool asking_ = false;  // a question to the journal is under way
+  // the last one had no answer: the next does not wait for the database to come back
+  bool journal_away_ = false;
+  int in_flight_ = 0;  // strokes on the GPU
+  bool busy_ = false;  // a computed edit, `when_idle` work or a repair is under way
   bool waits_for_map_ = false;
   bool paused_ = false;
-  bool tell_paused_ = false;        // the host waits for `paused`
-  std::optional<Problem> closed_;   // the answer to later edits
-  bool verify_ = false;             // nothing starts before the room was compared with the journal, which may hold more
-  std::optional<Problem> failure_;  // commits failed: everything pending is taken back once it is answered
-  std::deque<Pending> pending_;     // sequence order
+  bool tell_paused_ = false;       // the host waits for `paused`
+  std::optional<Problem> closed_;  // the answer to later edits
+  // nothing starts before the room was compared with the journal, which may hold more
+  bool verify_ = false;
+  // commits failed: everything pending is taken back once it is answered
+  std::optional<Problem> failure_;
+  std::deque<Pending> pending_;  // sequence order
   std::map<std::int64_t, std::set<TileAddress>>
       stale_;  // by layer: where the GPU may hold something else than the mirror
-  // The same of what waits for review. It is tried again with the next of the layer, and holds back no edit.
+  // The same of what waits for review. It is tried again with the next of the layer, and holds back
+  // no edit.
   std::map<std::int64_t, std::set<TileAddress>> stale_marks_;
   boost::asio::steady_timer repair_timer_;
   bool repair_waits_ = false;  // for the timer

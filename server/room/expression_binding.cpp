@@ -14,30 +14,36 @@ std::size_t first_character(const Expression& e) {
 }
 
 bool has_layer(const std::vector<query::LayerView>& layers, const std::string& slug) {
-  return std::ranges::find(layers, slug, [](const auto& each) { return each.layer.slug; }) != layers.end();
+  return std::ranges::find(layers, slug, [](const auto& each) { return each.layer.slug; }) !=
+         layers.end();
 }
 
 // Names of the surface in place of layers that are not there.
-Result<void> name_surface(Expression& e, const std::vector<query::LayerView>& layers, const std::string& field) {
+Result<void> name_surface(Expression& e, const std::vector<query::LayerView>& layers,
+                          const std::string& field) {
   for (Expression& part : e.parts)
     if (auto done = name_surface(part, layers, field); !done) return done;
-  if ((e.op != Expression::Op::layer && e.op != Expression::Op::valid) || has_layer(layers, e.name)) return {};
+  if ((e.op != Expression::Op::layer && e.op != Expression::Op::valid) || has_layer(layers, e.name))
+    return {};
   using Place = std::pair<std::string_view, Expression::Op>;
-  for (const auto& [name, op] : {Place{"x", Expression::Op::x}, Place{"y", Expression::Op::y},
-                                 Place{"z", Expression::Op::z}, Place{"area", Expression::Op::area}})
+  for (const auto& [name, op] :
+       {Place{"x", Expression::Op::x}, Place{"y", Expression::Op::y}, Place{"z", Expression::Op::z},
+        Place{"area", Expression::Op::area}})
     if (e.name == name) {
       e.op = op;
       e.name.clear();
       return {};
     }
   if (std::ranges::find(kShapeNames, e.name) == kShapeNames.end())
-    return tl::unexpected(expression_problem("This model has no layer '" + e.name.substr(0, 100) +
-                                                 "'; layers are named by their slugs, and a subtraction needs spaces",
-                                             e.position.at, field));
+    return tl::unexpected(
+        expression_problem("This model has no layer '" + e.name.substr(0, 100) +
+                               "'; layers are named by their slugs, and a subtraction needs spaces",
+                           e.position.at, field));
   const std::string given = std::string(kShapePrefix) + e.name;
   if (!has_layer(layers, given))
     return tl::unexpected(expression_problem(
-        "'" + e.name + "' of the surface is for computed layers: compute one of it and name that layer here",
+        "'" + e.name +
+            "' of the surface is for computed layers: compute one of it and name that layer here",
         e.position.at, field));
   e.name = given;
   return {};
@@ -45,37 +51,46 @@ Result<void> name_surface(Expression& e, const std::vector<query::LayerView>& la
 
 }  // namespace
 
-std::vector<std::string> shapes_read(const Expression& expression, const std::vector<query::LayerView>& layers) {
+std::vector<std::string> shapes_read(const Expression& expression,
+                                     const std::vector<query::LayerView>& layers) {
   std::vector<std::string> shapes;
   for (const std::string& name : layers_of(expression))
-    if (std::ranges::find(kShapeNames, name) != kShapeNames.end() && !has_layer(layers, name)) shapes.push_back(name);
+    if (std::ranges::find(kShapeNames, name) != kShapeNames.end() && !has_layer(layers, name))
+      shapes.push_back(name);
   return shapes;
 }
 
-std::vector<query::LayerView> layers_seen_by(const std::vector<query::LayerView>& layers, Role role) {
+std::vector<query::LayerView> layers_seen_by(const std::vector<query::LayerView>& layers,
+                                             Role role) {
   std::vector<query::LayerView> seen;
-  std::ranges::copy_if(layers, std::back_inserter(seen),
-                       [role](const query::LayerView& view) { return sees(role, view.layer.visibility); });
+  std::ranges::copy_if(layers, std::back_inserter(seen), [role](const query::LayerView& view) {
+    return sees(role, view.layer.visibility);
+  });
   return seen;
 }
 
 Result<query::BoundExpression> bind_expression(const Expression& expression,
-                                               const std::vector<query::LayerView>& layers, store::Store& store,
-                                               Role seen_by, std::optional<std::int64_t> at, const std::string& field) {
+                                               const std::vector<query::LayerView>& layers,
+                                               store::Store& store, Role seen_by,
+                                               std::optional<std::int64_t> at,
+                                               const std::string& field) {
   auto split = query::split_records(expression, field);
   if (!split) return tl::unexpected(split.error());
   query::BoundExpression bound{std::move(split->expression), {}};
-  if (auto named = name_surface(bound.expression, layers, field); !named) return tl::unexpected(named.error());
+  if (auto named = name_surface(bound.expression, layers, field); !named)
+    return tl::unexpected(named.error());
   for (const query::RecordPart& part : split->parts) {
-    const auto view = std::ranges::find(layers, part.layer, [](const auto& each) { return each.layer.slug; });
+    const auto view =
+        std::ranges::find(layers, part.layer, [](const auto& each) { return each.layer.slug; });
     const std::size_t character = first_character(part.expression);
     if (view == layers.end())
-      return tl::unexpected(
-          expression_problem("This model has no layer '" + part.layer.substr(0, 100) + "'", character, field));
+      return tl::unexpected(expression_problem(
+          "This model has no layer '" + part.layer.substr(0, 100) + "'", character, field));
     const Layer& layer = view->layer;
     if (!layer.table)
       return tl::unexpected(expression_problem(
-          "'" + layer.slug + "' holds numbers: only database layers have records with columns", character, field));
+          "'" + layer.slug + "' holds numbers: only database layers have records with columns",
+          character, field));
     std::optional<std::int64_t> then;
     if (at) {
       auto sequence = store.table_sequence_when(*layer.table, layer.model_id, *at);
@@ -89,20 +104,24 @@ Result<query::BoundExpression> bind_expression(const Expression& expression,
   return bound;
 }
 
-Result<BoundForLayer> bind_for_layer(const Expression& expression, const std::vector<query::LayerView>& layers,
-                                     store::Store& store, Role author, Visibility layer, const std::string& field) {
+Result<BoundForLayer> bind_for_layer(const Expression& expression,
+                                     const std::vector<query::LayerView>& layers,
+                                     store::Store& store, Role author, Visibility layer,
+                                     const std::string& field) {
   const Role reader = least_role(layer);
   std::vector<query::LayerView> readable = layers_seen_by(layers, reader);
   auto bound = bind_expression(expression, readable, store, reader, std::nullopt, field);
   if (bound) return BoundForLayer{std::move(*bound), std::move(readable)};
   if (sight_of(author) == layer) return tl::unexpected(bound.error());
-  const auto by_author =
-      bind_expression(expression, layers_seen_by(layers, author), store, author, std::nullopt, field);
+  const auto by_author = bind_expression(expression, layers_seen_by(layers, author), store, author,
+                                         std::nullopt, field);
   if (!by_author) return tl::unexpected(by_author.error());
-  return fail(422, "Would show through",
-              "This reads layers or columns that fewer people see than the layer it is for, which is " +
-                  std::string(name(layer)) + ". Let fewer see that layer, or leave out what they do not see.",
-              field);
+  return fail(
+      422, "Would show through",
+      "This reads layers or columns that fewer people see than the layer it is for, which is " +
+          std::string(name(layer)) +
+          ". Let fewer see that layer, or leave out what they do not see.",
+      field);
 }
 
 }  // namespace strata::room

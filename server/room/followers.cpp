@@ -8,9 +8,10 @@ namespace strata::room {
 Result<bool> Followers::follow(const Uuid& follower, const Uuid& leader) {
   for (std::optional<Uuid> ahead = leader; ahead; ahead = leader_of(*ahead))
     if (*ahead == follower)
-      return fail(409, "Follows you already",
-                  "Who is to be followed follows this session, directly or through others, or is this session.",
-                  "follow");
+      return fail(
+          409, "Follows you already",
+          "Who is to be followed follows this session, directly or through others, or is this session.",
+          "follow");
   auto [known, added] = leaders_.try_emplace(follower, leader);
   if (added) return true;
   return std::exchange(known->second, leader) != leader;
@@ -29,7 +30,8 @@ std::optional<Uuid> Followers::leader_of(const Uuid& follower) const {
 }
 
 bool Followers::has_followers(const Uuid& session) const {
-  return std::any_of(leaders_.begin(), leaders_.end(), [&](const auto& each) { return each.second == session; });
+  return std::any_of(leaders_.begin(), leaders_.end(),
+                     [&](const auto& each) { return each.second == session; });
 }
 
 }  // namespace strata::room

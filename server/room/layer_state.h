@@ -14,12 +14,14 @@ struct LayerHandles {
   render::LayerHandle content = 0, provisional = 0;
 };
 
-// One layer of an open room. Copied by any thread under the room's mutex: what the strand changes is changed under it, too.
+// One layer of an open room. Copied by any thread under the room's mutex: what the strand changes
+// is changed under it, too.
 struct LayerState {
   Layer layer;
   LayerHandles handles;
   std::shared_ptr<TileMirror> mirror;
-  std::shared_ptr<TileMirror> provisional;  // what of it waits for review (room/provisional.h), shown over it
+  // what of it waits for review (room/provisional.h), shown over it
+  std::shared_ptr<TileMirror> provisional;
   std::optional<render::LayerHandle> waiting() const {  // the mark of that, where anything does
     return provisional->empty() ? std::nullopt : std::optional(handles.provisional);
   }

@@ -27,9 +27,14 @@ std::vector<LookView> looks_shown(const std::vector<Look>& by_order) {
   return shown;
 }
 
-LookShelf::LookShelf(store::Store& store, render::Renderer& renderer, boost::asio::thread_pool& workers,
-                     MemoryLedger& memory, std::function<void()> ready)
-    : store_(store), renderer_(renderer), workers_(workers), memory_(memory), ready_(std::move(ready)) {}
+LookShelf::LookShelf(store::Store& store, render::Renderer& renderer,
+                     boost::asio::thread_pool& workers, MemoryLedger& memory,
+                     std::function<void()> ready)
+    : store_(store),
+      renderer_(renderer),
+      workers_(workers),
+      memory_(memory),
+      ready_(std::move(ready)) {}
 
 void LookShelf::put(const Look& look) {
   std::lock_guard lock(mutex_);
@@ -46,7 +51,8 @@ void LookShelf::drop(std::int64_t id) {
     slots_.erase(found);
   }
   if (gone.handle) renderer_.remove_look(gone.handle);
-  for (const Loaded& loaded : gone.waiting) loaded(fail(404, "No such look", "The look was deleted."));
+  for (const Loaded& loaded : gone.waiting)
+    loaded(fail(404, "No such look", "The look was deleted."));
 }
 
 std::vector<Look> LookShelf::all() const {
@@ -57,7 +63,8 @@ std::vector<Look> LookShelf::all() const {
 std::vector<Look> LookShelf::by_order() const {
   std::vector<Look> looks;
   for (const auto& [id, slot] : slots_) looks.push_back(slot.look);
-  std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.order < b.order; });
+  std::stable_sort(looks.begin(), looks.end(),
+                   [](const Look& a, const Look& b) { return a.order < b.order; });
   return looks;
 }
 
@@ -84,7 +91,8 @@ std::vector<LookView> LookShelf::shown(const std::optional<std::vector<LookView>
   return wanted ? *wanted : looks_shown(by_order());
 }
 
-std::vector<render::LookStyle> LookShelf::styles(const std::optional<std::vector<LookView>>& wanted) {
+std::vector<render::LookStyle> LookShelf::styles(
+    const std::optional<std::vector<LookView>>& wanted) {
   std::vector<render::LookStyle> styles;
   std::vector<std::int64_t> missing;
   {
@@ -102,7 +110,8 @@ std::vector<render::LookStyle> LookShelf::styles(const std::optional<std::vector
   return styles;
 }
 
-Result<std::vector<render::LookStyle>> LookShelf::wait(const std::optional<std::vector<LookView>>& wanted) {
+Result<std::vector<render::LookStyle>> LookShelf::wait(
+    const std::optional<std::vector<LookView>>& wanted) {
   std::vector<LookView> views;
   {
     std::lock_guard lock(mutex_);
@@ -110,7 +119,8 @@ Result<std::vector<render::LookStyle>> LookShelf::wait(const std::optional<std::
   }
   std::vector<render::LookStyle> styles;
   for (const LookView& view : views) {
-    auto handle = await<render::LookHandle>([&](auto done) { request(view.look_id, std::move(done)); });
+    auto handle =
+        await<render::LookHandle>([&](auto done) { request(view.look_id, std::move(done)); });
     if (!handle) return tl::unexpected(handle.error());
     styles.push_back({*handle, static_cast<float>(view.opacity)});
   }
@@ -164,8 +174,8 @@ Result<LookShelf::Bytes> LookShelf::encoded_bytes(std::int64_t id) {
 Result<int> LookShelf::reserve_pixels(std::int64_t id, const PictureInfo& info) {
   for (int divisor = 1;; divisor *= 2) {
     // Four bytes a pixel, and a third more for the coarser levels.
-    const auto pixels =
-        static_cast<std::uint64_t>(info.width / divisor + 1) * static_cast<std::uint64_t>(info.height / divisor + 1);
+    const auto pixels = static_cast<std::uint64_t>(info.width / divisor + 1) *
+                        static_cast<std::uint64_t>(info.height / divisor + 1);
     auto share = memory_.reserve(pixels * 16 / 3, "a model's picture");
     if (share) {
       std::lock_guard lock(mutex_);
@@ -173,11 +183,13 @@ Result<int> LookShelf::reserve_pixels(std::int64_t id, const PictureInfo& info) 
       if (found != slots_.end() && !stopped_) found->second.memory = std::move(*share);
       return divisor;
     }
-    if (info.format != PictureFormat::jpeg || divisor == kMostDivided) return tl::unexpected(share.error());
+    if (info.format != PictureFormat::jpeg || divisor == kMostDivided)
+      return tl::unexpected(share.error());
   }
 }
 
-Result<std::shared_ptr<const render::LookImage>> LookShelf::read(std::int64_t id, int largest_side) {
+Result<std::shared_ptr<const render::LookImage>> LookShelf::read(std::int64_t id,
+                                                                 int largest_side) {
   const auto bytes = encoded_bytes(id);
   if (!bytes) return tl::unexpected(bytes.error());
   const std::vector<std::uint8_t>& encoded = **bytes;
@@ -185,14 +197,16 @@ Result<std::shared_ptr<const render::LookImage>> LookShelf::read(std::int64_t id
   if (!info) return tl::unexpected(info.error());
   const auto divisor = reserve_pixels(id, *info);
   if (!divisor) return tl::unexpected(divisor.error());
-  auto picture =
-      *divisor == 1 ? decode_picture(encoded) : decode_coarse(encoded, std::max(info->width, info->height) / *divisor);
+  auto picture = *divisor == 1
+                     ? decode_picture(encoded)
+                     : decode_coarse(encoded, std::max(info->width, info->height) / *divisor);
   if (!picture) return tl::unexpected(picture.error());
-  return std::make_shared<const render::LookImage>(
-      render::make_look_image(std::move(picture->rgba), picture->width, picture->height, largest_side));
+  return std::make_shared<const render::LookImage>(render::make_look_image(
+      std::move(picture->rgba), picture->width, picture->height, largest_side));
 }
 
-void LookShelf::add(std::int64_t id, int largest_side, const Result<std::shared_ptr<const render::LookImage>>& image) {
+void LookShelf::add(std::int64_t id, int largest_side,
+                    const Result<std::shared_ptr<const render::LookImage>>& image) {
   if (!image) return finish(id, tl::unexpected(image.error()));
   render::ModelHandle model;
   {
@@ -200,10 +214,11 @@ void LookShelf::add(std::int64_t id, int largest_side, const Result<std::shared_
     if (stopped_) return;
     model = model_;
   }
-  renderer_.add_look(model, *image,
-                     [self = shared_from_this(), id, model, largest_side](Result<render::LookHandle> handle) {
-                       self->on_added(id, model, largest_side, handle);
-                     });
+  renderer_.add_look(
+      model, *image,
+      [self = shared_from_this(), id, model, largest_side](Result<render::LookHandle> handle) {
+        self->on_added(id, model, largest_side, handle);
+      });
 }
 
 void LookShelf::on_added(std::int64_t id, render::ModelHandle model, int largest_side,
@@ -211,9 +226,11 @@ void LookShelf::on_added(std::int64_t id, render::ModelHandle model, int largest
   {
     std::lock_guard lock(mutex_);
     if (stopped_) return;
-    if (model != model_ && slots_.contains(id)) return load(id, largest_side);  // made for a context that is lost
+    // made for a context that is lost
+    if (model != model_ && slots_.contains(id)) return load(id, largest_side);
   }
-  if (!handle && is_memory_used_up(handle.error()) && largest_side > kSmallestSide) return load(id, largest_side / 2);
+  if (!handle && is_memory_used_up(handle.error()) && largest_side > kSmallestSide)
+    return load(id, largest_side / 2);
   finish(id, handle);
 }
 
@@ -234,7 +251,8 @@ void LookShelf::finish(std::int64_t id, const Result<render::LookHandle>& handle
     }
   }
   if (handle && !kept) renderer_.remove_look(*handle);  // deleted meanwhile
-  if (!handle) log::warning("look " + std::to_string(id) + " cannot be shown: " + handle.error().detail);
+  if (!handle)
+    log::warning("look " + std::to_string(id) + " cannot be shown: " + handle.error().detail);
   for (const Loaded& loaded : waiting) loaded(handle);
   if (kept && ready_) ready_();
 }

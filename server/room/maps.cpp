@@ -36,8 +36,8 @@ Camera camera_along(const glm::dvec3& direction, const mesh::Geometry& geometry)
 
 }  // namespace
 
-Result<TileMap> OpenRoom::dabs(const Layer& layer, const std::vector<PlacedValue>& values, double radius,
-                               double tolerance) {
+Result<TileMap> OpenRoom::dabs(const Layer& layer, const std::vector<PlacedValue>& values,
+                               double radius, double tolerance) {
   touch();
   const auto map = maps_->wait(layer.resolution);
   if (!map) return tl::unexpected(gpu_problem(map.error()));
@@ -46,7 +46,8 @@ Result<TileMap> OpenRoom::dabs(const Layer& layer, const std::vector<PlacedValue
   const auto tree = surface_->tree();
   std::vector<query::Dab> dabs;
   for (const PlacedValue& value : values) {
-    const auto hit = tree->nearest(glm::vec3(value.world - geometry_->origin), static_cast<float>(tolerance));
+    const auto hit =
+        tree->nearest(glm::vec3(value.world - geometry_->origin), static_cast<float>(tolerance));
     const auto texel = hit ? mesh::surface_texel_at(**map, hit->uv) : std::nullopt;
     if (!texel)
       return fail(422, "Not on the model",
@@ -61,20 +62,22 @@ Result<TileMap> OpenRoom::dabs(const Layer& layer, const std::vector<PlacedValue
   return as_tile_map(std::move(*painted));
 }
 
-Result<TileMap> OpenRoom::project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) {
+Result<TileMap> OpenRoom::project(const Layer& layer, const glm::dvec3& direction,
+                                  const ValueAt& value_at) {
   touch();
   const auto map = maps_->wait(layer.resolution);
   if (!map) return tl::unexpected(gpu_problem(map.error()));
   const glm::dvec2 window(kProjectionSide_px);
-  const auto seen = seen_texels(parts_.renderer, model_handle(), layer.resolution, camera_along(direction, *geometry_),
-                                glm::dvec2(0), window, false);
+  const auto seen = seen_texels(parts_.renderer, model_handle(), layer.resolution,
+                                camera_along(direction, *geometry_), glm::dvec2(0), window, false);
   if (!seen) return tl::unexpected(gpu_problem(seen.error()));
   std::map<TileAddress, TileData> written;
   for (const auto& [address, mask] : *seen) {
     TileData tile(layer.type);
     for_each_texel(mask, [&, address = address](int texel) {
       const auto place = mesh::slot_texel(**map, address, texel);
-      if (const auto bits = value_at(glm::dvec3((*map)->position(place.slot, place.texel)) + geometry_->origin))
+      if (const auto bits =
+              value_at(glm::dvec3((*map)->position(place.slot, place.texel)) + geometry_->origin))
         tile.write(texel, *bits);
     });
     written.emplace(address, std::move(tile));

@@ -5,8 +5,8 @@
 
 namespace strata::room {
 
-RoomMember::RoomMember(std::shared_ptr<OpenRoom> room, Author who, Portrait portrait, Listener* listener,
-                       stream::Viewer::Send send)
+RoomMember::RoomMember(std::shared_ptr<OpenRoom> room, Author who, Portrait portrait,
+                       Listener* listener, stream::Viewer::Send send)
     : room_(std::move(room)),
       who_(std::move(who)),
       portrait_(std::move(portrait)),
@@ -26,8 +26,8 @@ RoomMember::View* RoomMember::view(std::uint32_t view_id, bool make) {
   stream::Viewer::Options options;
   options.view_id = view_id;
   options.sequence = room_->sequence();
-  made.viewer = stream::Viewer::create(room_->stream_context(), room_->model_handle(), options, send_,
-                                       [listener = listener_, view_id](const Problem& why) {
+  made.viewer = stream::Viewer::create(room_->stream_context(), room_->model_handle(), options,
+                                       send_, [listener = listener_, view_id](const Problem& why) {
                                          if (listener) listener->view_refused(view_id, why);
                                        });
   made.viewer->set_style(style(view_id, made));
@@ -67,9 +67,10 @@ render::ViewStyle RoomMember::style(std::uint32_t view_id, View& view) const {
   return style;
 }
 
-std::shared_ptr<const Palette> RoomMember::palette(std::uint32_t view_id, View& view, const LayerState& state) const {
-  static const auto kUncolored =
-      std::make_shared<const Palette>(Palette{PaletteMode::categorical, 0, 1, {}, {}, kNoValueColor});
+std::shared_ptr<const Palette> RoomMember::palette(std::uint32_t view_id, View& view,
+                                                   const LayerState& state) const {
+  static const auto kUncolored = std::make_shared<const Palette>(
+      Palette{PaletteMode::categorical, 0, 1, {}, {}, kNoValueColor});
   const std::int64_t id = state.layer.id;
   const auto own = view.palettes.find(id);
   const auto& palette = own == view.palettes.end() ? state.palette : own->second;
@@ -79,7 +80,8 @@ std::shared_ptr<const Palette> RoomMember::palette(std::uint32_t view_id, View& 
     view.by_record.erase(id);
     return palette;
   }
-  const auto found = room_->record_colors().find({*state.layer.table, sight_of(role()), palette, highlight});
+  const auto found =
+      room_->record_colors().find({*state.layer.table, sight_of(role()), palette, highlight});
   if (found.problem && view.told.insert(found.problem).second && listener_)
     listener_->view_refused(view_id, *found.problem);
   if (found.palette) view.by_record[id] = found.palette;
@@ -87,7 +89,8 @@ std::shared_ptr<const Palette> RoomMember::palette(std::uint32_t view_id, View& 
   return palette->column.empty() ? palette : kUncolored;
 }
 
-void RoomMember::camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera, bool moving) {
+void RoomMember::camera(std::uint32_t view_id, std::uint64_t seq, const Camera& camera,
+                        bool moving) {
   {
     std::lock_guard lock(mutex_);
     if (View* v = view(view_id, true)) v->viewer->set_camera(seq, camera, moving);
@@ -102,8 +105,8 @@ Result<void> RoomMember::show(std::uint32_t view_id, ViewSettings settings) {
   std::lock_guard lock(mutex_);
   View* v = view(view_id, true);
   if (!v)
-    return fail(422, "Too many views", "One connection has at most " + std::to_string(kMaxViews) + " views.",
-                "view_id");
+    return fail(422, "Too many views",
+                "One connection has at most " + std::to_string(kMaxViews) + " views.", "view_id");
   v->overrides.clear();
   v->palettes.clear();
   const auto before = std::exchange(v->highlights, {});
@@ -116,9 +119,10 @@ Result<void> RoomMember::show(std::uint32_t view_id, ViewSettings settings) {
     if (own.highlight) {
       // The same records as before need not be looked for again.
       const auto known = before.find(own.layer_id);
-      v->highlights[own.layer_id] = known != before.end() && *known->second == *own.highlight
-                                        ? known->second
-                                        : std::make_shared<const Highlight>(std::move(*own.highlight));
+      v->highlights[own.layer_id] =
+          known != before.end() && *known->second == *own.highlight
+              ? known->second
+              : std::make_shared<const Highlight>(std::move(*own.highlight));
     }
     v->overrides[own.layer_id] = std::move(own);
   }
@@ -156,18 +160,21 @@ Result<void> RoomMember::look_together(bool leading, const std::optional<Uuid>& 
 
 Presence RoomMember::presence() const {
   std::lock_guard lock(mutex_);
-  return {session_, who_.user, portrait_.full_name, portrait_.color, pointer_, leading_, std::nullopt, camera_};
+  return {session_, who_.user, portrait_.full_name, portrait_.color,
+          pointer_, leading_,  std::nullopt,        camera_};
 }
 
-void RoomMember::content_changed(std::int64_t layer_id, const std::optional<render::FrameRequest::Box>& box,
+void RoomMember::content_changed(std::int64_t layer_id,
+                                 const std::optional<render::FrameRequest::Box>& box,
                                  std::int64_t sequence) {
   const auto state = room_->layer_state(layer_id);
   if (state && !sees(role(), state->layer.visibility)) return;
   std::lock_guard lock(mutex_);
   for (auto& [id, view] : views_) {
     auto own = view.overrides.find(layer_id);
-    const bool shown =
-        own != view.overrides.end() && own->second.visible ? *own->second.visible : state && state->layer.visible;
+    const bool shown = own != view.overrides.end() && own->second.visible
+                           ? *own->second.visible
+                           : state && state->layer.visible;
     if (!shown) continue;
     box ? view.viewer->changed(*box, sequence) : view.viewer->changed_everywhere(sequence);
   }

@@ -57,7 +57,8 @@ class RoomMember final : public Member {
   };
   View* view(std::uint32_t view_id, bool make);
   render::ViewStyle style(std::uint32_t view_id, View& view) const;
-  std::shared_ptr<const Palette> palette(std::uint32_t view_id, View& view, const LayerState& state) const;
+  std::shared_ptr<const Palette> palette(std::uint32_t view_id, View& view,
+                                         const LayerState& state) const;
 
   const std::shared_ptr<OpenRoom> room_;
   const Uuid session_ = random_uuid();

@@ -17,14 +17,17 @@ namespace {
 
 Result<void> check_layer(const Layer& layer, const Model& model) {
   const int lowest = model.atlas.lowest_resolution;
-  if (layer.resolution < lowest || layer.resolution > 16384 || (layer.resolution & (layer.resolution - 1)) != 0)
+  if (layer.resolution < lowest || layer.resolution > 16384 ||
+      (layer.resolution & (layer.resolution - 1)) != 0)
     return fail(422, "Resolution out of range",
-                "A layer of this model has a power of two from " + std::to_string(lowest) + " to 16384 texels a side.",
+                "A layer of this model has a power of two from " + std::to_string(lowest) +
+                    " to 16384 texels a side.",
                 "resolution");
   if (layer.name.empty() || layer.name.size() > 200)
     return fail(422, "Name missing", "A layer has a name of 1 to 200 bytes.", "name");
   if (!(layer.opacity >= 0 && layer.opacity <= 1))
-    return fail(422, "Opacity out of range", "Opacity goes from 0 (clear) to 1 (opaque).", "opacity");
+    return fail(422, "Opacity out of range", "Opacity goes from 0 (clear) to 1 (opaque).",
+                "opacity");
   return {};
 }
 
@@ -60,7 +63,8 @@ OpenRoom::OpenRoom(const RoomParts& parts, Model model, render::ModelGeometry ge
 
 OpenRoom::~OpenRoom() = default;
 
-Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const std::string& model_ref) {
+Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts,
+                                                 const std::string& model_ref) {
   auto model = parts.store.model(model_ref);
   if (!model) return tl::unexpected(model.error());
   auto geometry = read_geometry(parts.store, model->id);
@@ -93,22 +97,26 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts, const s
     const Strand strand = open->strand_;  // not on the GPU thread
     boost::asio::post(strand, [open = std::move(open)] { open->sort_layers_changed(); });
   };
-  room->look_shelf_ = std::make_shared<LookShelf>(parts.store, parts.renderer, parts.workers, parts.memory, restyle);
+  room->look_shelf_ = std::make_shared<LookShelf>(parts.store, parts.renderer, parts.workers,
+                                                  parts.memory, restyle);
   room->record_colors_ = std::make_shared<RecordColors>(parts.store, parts.workers, restyle);
-  room->record_marks_ = std::make_shared<RecordMarks>(parts.store, parts.workers, room->id(), restyle);
+  room->record_marks_ =
+      std::make_shared<RecordMarks>(parts.store, parts.workers, room->id(), restyle);
   room->look_shelf_->set_model(gpu->model);
   for (const Look& look : *looks) room->look_shelf_->put(look);
   room->sequence_ = room->durable_ = journal->last_sequence;
   room->pipeline_ = std::make_shared<EditPipeline>(
-      EditPipeline::Parts{parts.store, parts.writer, parts.renderer, parts.workers, parts.readers, room->strand_,
-                          room->maps_, room->surface_, parts.memory},
+      EditPipeline::Parts{parts.store, parts.writer, parts.renderer, parts.workers, parts.readers,
+                          room->strand_, room->maps_, room->surface_, parts.memory},
       *room, journal->last_sequence);
   // Painting needs the maps of the layers there are; bake them while people look around.
-  for (const auto& state : room->layer_states()) room->maps_->request(state.layer.resolution, [](auto) {});
+  for (const auto& state : room->layer_states())
+    room->maps_->request(state.layer.resolution, [](auto) {});
   return room;
 }
 
-// ---------------------------------------------------------------------------------------------------- metadata
+// ----------------------------------------------------------------------------------------------------
+// metadata
 
 Model OpenRoom::model() const {
   std::lock_guard lock(mutex_);
@@ -123,8 +131,9 @@ std::vector<LayerState> OpenRoom::layer_states() const {
     std::lock_guard lock(mutex_);
     for (const auto& [id, state] : layers_) states.push_back(state);
   }
-  std::stable_sort(states.begin(), states.end(),
-                   [](const LayerState& a, const LayerState& b) { return a.layer.order < b.layer.order; });
+  std::stable_sort(states.begin(), states.end(), [](const LayerState& a, const LayerState& b) {
+    return a.layer.order < b.layer.order;
+  });
   return states;
 }
 
@@ -227,11 +236,13 @@ Result<Layer> OpenRoom::update_layer(Layer layer, const store::FirstAnswer<Layer
     lock_falls = updated->locked && before && !before->layer.locked;
     return replace_layer(*updated);
   });
-  // Who locks a layer hears so when what was being painted on it is there: from then on nothing comes. A database that is away
-  // keeps the edits under way from being saved, which does not take the lock back.
+  // Who locks a layer hears so when what was being painted on it is there: from then on nothing
+  // comes. A database that is away keeps the edits under way from being saved, which does not take
+  // the lock back.
   if (lock_falls)
     if (const auto still = settle(); !still)
-      log::warning("a layer was locked while its edits could not be saved: " + still.error().detail);
+      log::warning("a layer was locked while its edits could not be saved: " +
+                   still.error().detail);
   return now;
 }
 
@@ -253,7 +264,8 @@ Layer OpenRoom::replace_layer(const Layer& stored) {
   return now;
 }
 
-Result<Layer> OpenRoom::layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
+Result<Layer> OpenRoom::layer_computed(std::int64_t id, const std::string& expression,
+                                       std::int64_t sequence,
                                        const std::map<std::int64_t, std::int64_t>& tables) {
   auto stored = parts_.store.layer_computed(id, expression, sequence, tables);
   if (!stored) return stored;
@@ -265,7 +277,8 @@ void OpenRoom::outdate(const std::function<bool(const LayerFormula&)>& reads) {
   {
     std::lock_guard lock(mutex_);
     for (auto& [id, state] : layers_) {
-      if (!state.layer.formula || state.layer.formula->stale || !reads(*state.layer.formula)) continue;
+      if (!state.layer.formula || state.layer.formula->stale || !reads(*state.layer.formula))
+        continue;
       state.layer.formula->stale = true;
       stale.push_back(state.layer);
     }
@@ -285,7 +298,8 @@ void OpenRoom::records_changed(std::int64_t table_id) {
   }
   on_strand([&] {
     outdate([&](const LayerFormula& formula) {
-      return std::ranges::any_of(formula.inputs, [&](const auto& input) { return input.table == table_id; });
+      return std::ranges::any_of(formula.inputs,
+                                 [&](const auto& input) { return input.table == table_id; });
     });
   });
 }
@@ -302,18 +316,22 @@ Result<void> OpenRoom::check_expression(const Expression& expression, const std:
   return bound ? Result<void>{} : tl::unexpected(bound.error());
 }
 
-Result<Layer> OpenRoom::widen_layer(const Layer& layer, ValueType type, const store::FirstAnswer<Layer>& answer) {
+Result<Layer> OpenRoom::widen_layer(const Layer& layer, ValueType type,
+                                    const store::FirstAnswer<Layer>& answer) {
   if (layer.formula || !widens_to(layer.type, type))
-    return fail(422, "Type not usable",
-                "A layer of whole numbers without a sign becomes a wider one of them (u8 to u16 or u32, u16 to u32); "
-                "computed layers have the type that they were made with.",
-                "type");
+    return fail(
+        422, "Type not usable",
+        "A layer of whole numbers without a sign becomes a wider one of them (u8 to u16 or u32, u16 to u32); "
+        "computed layers have the type that they were made with.",
+        "type");
   return exclusively<Layer>([this, layer, type, answer]() -> Result<Layer> {
     const auto held = state(std::to_string(layer.id));
     if (!held) return tl::unexpected(held.error());
-    // The GPU first, as for a new layer. Nothing is on its way to the journal: the mirror is what it holds.
+    // The GPU first, as for a new layer. Nothing is on its way to the journal: the mirror is what
+    // it holds.
     TileMirror::Snapshot content = held->mirror->snapshot();
-    for (auto& [address, tile] : content.tiles) tile = std::make_shared<const TileData>(widened(*tile, type));
+    for (auto& [address, tile] : content.tiles)
+      tile = std::make_shared<const TileData>(widened(*tile, type));
     auto mirror = std::make_shared<TileMirror>(type, layer.resolution);
     mirror->assign(std::move(content.tiles), content.sequence);
     auto handle = add_layer(parts_.renderer, model_handle(), mirror);
@@ -346,11 +364,14 @@ Result<void> OpenRoom::delete_layer(std::int64_t id, const store::FirstAnswer<>&
   return let_go_of_layer(id, [this, id, answer] { return parts_.store.delete_layer(id, answer); });
 }
 Result<void> OpenRoom::bin_layer(std::int64_t id, const store::FirstAnswer<>& answer) {
-  return let_go_of_layer(id, [this, id, answer] { return parts_.store.bin().put_layer(id, answer); });
+  return let_go_of_layer(id,
+                         [this, id, answer] { return parts_.store.bin().put_layer(id, answer); });
 }
 
-Result<void> OpenRoom::let_go_of_layer(std::int64_t id, const std::function<Result<void>()>& in_store) {
-  // In the order of edits: none of the layer's may be on its way to a journal that no longer knows it.
+Result<void> OpenRoom::let_go_of_layer(std::int64_t id,
+                                       const std::function<Result<void>()>& in_store) {
+  // In the order of edits: none of the layer's may be on its way to a journal that no longer knows
+  // it.
   return exclusively<void>([this, id, in_store]() -> Result<void> {
     if (auto gone = in_store(); !gone) return gone;
     on_strand([&] {
@@ -364,9 +385,11 @@ Result<void> OpenRoom::let_go_of_layer(std::int64_t id, const std::function<Resu
         mirrors_share_.recount(mirror_bytes());
       }
       remove_layer(parts_.renderer, gone.handles);
-      tell_seen(gone.layer, [&](Listener& l) { l.layer_changed(Listener::LayerChange::deleted, gone.layer); });
+      tell_seen(gone.layer,
+                [&](Listener& l) { l.layer_changed(Listener::LayerChange::deleted, gone.layer); });
       outdate([&](const LayerFormula& formula) {
-        return std::ranges::any_of(formula.inputs, [&](const auto& input) { return input.layer == id; });
+        return std::ranges::any_of(formula.inputs,
+                                   [&](const auto& input) { return input.layer == id; });
       });
       sort_layers_changed();
     });
@@ -374,20 +397,21 @@ Result<void> OpenRoom::let_go_of_layer(std::int64_t id, const std::function<Resu
   });
 }
 
-Result<store::BinRestored> OpenRoom::restore_layer(const store::BinEntry& entry,
-                                                   const store::FirstAnswer<store::BinRestored>& answer) {
+Result<store::BinRestored> OpenRoom::restore_layer(
+    const store::BinEntry& entry, const store::FirstAnswer<store::BinRestored>& answer) {
   // In the order of edits: the journal's numbers stay as they are.
-  auto restored = exclusively<store::BinRestored>([this, entry, answer]() -> Result<store::BinRestored> {
-    auto back = parts_.store.bin().restore(entry, answer);
-    if (!back) return back;
-    if (auto known = take_up_layer(entry.id); !known) {
-      // It is there, as the database says: the room reads everything again until it has it.
-      log::warning("layer " + std::to_string(entry.id) +
-                   " was restored and could not be loaded: " + known.error().detail);
-      on_strand([&] { journal_differs(); });
-    }
-    return back;
-  });
+  auto restored =
+      exclusively<store::BinRestored>([this, entry, answer]() -> Result<store::BinRestored> {
+        auto back = parts_.store.bin().restore(entry, answer);
+        if (!back) return back;
+        if (auto known = take_up_layer(entry.id); !known) {
+          // It is there, as the database says: the room reads everything again until it has it.
+          log::warning("layer " + std::to_string(entry.id) +
+                       " was restored and could not be loaded: " + known.error().detail);
+          on_strand([&] { journal_differs(); });
+        }
+        return back;
+      });
   return restored;
 }
 
@@ -411,8 +435,9 @@ Result<void> OpenRoom::take_up_layer(std::int64_t id) {
   });
   // Layers that are computed from it may be up to date again.
   for (const Layer& other : layers()) {
-    if (!other.formula ||
-        std::ranges::none_of(other.formula->inputs, [&](const auto& input) { return input.layer == id; }))
+    if (!other.formula || std::ranges::none_of(other.formula->inputs, [&](const auto& input) {
+          return input.layer == id;
+        }))
       continue;
     if (auto stored = parts_.store.layer(model_id_, std::to_string(other.id), Role::owner))
       on_strand([&] { replace_layer(*stored); });
@@ -475,20 +500,23 @@ void OpenRoom::sort_layers_changed() {
   for (RoomMember* member : members_) member->styles_changed();
 }
 
-// ------------------------------------------------------------------------------------------------------- edits
+// -------------------------------------------------------------------------------------------------------
+// edits
 
 void OpenRoom::edit(EditRequest request, Applied applied, Saved saved) {
   touch();
   if (!takes_edits_)
-    return saved(fail(503, "Server is stopping",
-                      "The server saves what is under way and stops; send the edit again when it is back."));
+    return saved(
+        fail(503, "Server is stopping",
+             "The server saves what is under way and stops; send the edit again when it is back."));
   // Counted before it is posted: the strand's own queue has no bound.
   if (++unanswered_ > parts_.options.max_waiting_edits) {
     --unanswered_;
-    return saved(fail(429, "Too many edits", "This model has as many waiting edits as it may; send more slowly."));
+    return saved(fail(429, "Too many edits",
+                      "This model has as many waiting edits as it may; send more slowly."));
   }
-  boost::asio::post(strand_, [self = shared_from_this(), request = std::move(request), applied = std::move(applied),
-                              saved = std::move(saved)]() mutable {
+  boost::asio::post(strand_, [self = shared_from_this(), request = std::move(request),
+                              applied = std::move(applied), saved = std::move(saved)]() mutable {
     if (auto free = self->check_not_retired(request); !free) {
       --self->unanswered_;
       return saved(tl::unexpected(free.error()));
@@ -506,13 +534,16 @@ Result<void> OpenRoom::settle() {
   return exclusively<void>([]() -> Result<void> { return {}; });
 }
 
-// Here, in the order of edits: what a deletion does to the texels comes after every edit that was let in.
+// Here, in the order of edits: what a deletion does to the texels comes after every edit that was
+// let in.
 Result<void> OpenRoom::check_not_retired(const EditRequest& request) {
   const LayerState* state = find_layer(request.layer_id);
-  if (!state || !state->layer.table || !parts_.retired_keys.has_any_of(*state->layer.table)) return {};
+  if (!state || !state->layer.table || !parts_.retired_keys.has_any_of(*state->layer.table))
+    return {};
   for (const auto key : painted_by(state->layer, request))
     if (parts_.retired_keys.holds(*state->layer.table, key))
-      return fail(409, "Record was deleted", "Record " + std::to_string(key) + " was deleted meanwhile.", "value");
+      return fail(409, "Record was deleted",
+                  "Record " + std::to_string(key) + " was deleted meanwhile.", "value");
   return {};
 }
 
@@ -535,11 +566,13 @@ void OpenRoom::set_sequence(LayerState& layer, std::int64_t sequence) {
 
 std::uint64_t OpenRoom::mirror_bytes() const {
   std::uint64_t bytes = 0;
-  for (const auto& [id, state] : layers_) bytes += state.mirror->bytes() + state.provisional->bytes();
+  for (const auto& [id, state] : layers_)
+    bytes += state.mirror->bytes() + state.provisional->bytes();
   return bytes;
 }
 
-void OpenRoom::content_changed(const LayerState& layer, const std::optional<render::FrameRequest::Box>& box,
+void OpenRoom::content_changed(const LayerState& layer,
+                               const std::optional<render::FrameRequest::Box>& box,
                                std::int64_t sequence) {
   std::lock_guard lock(members_mutex_);
   for (RoomMember* member : members_) member->content_changed(layer.layer.id, box, sequence);
@@ -555,7 +588,8 @@ void OpenRoom::edit_saved(const Listener::Edit& edit) {
   durable_ = edit.sequence;
   outdate([&](const LayerFormula& formula) {
     return formula.computed_sequence < edit.sequence &&
-           std::ranges::any_of(formula.inputs, [&](const auto& input) { return input.layer == edit.layer_id; });
+           std::ranges::any_of(formula.inputs,
+                               [&](const auto& input) { return input.layer == edit.layer_id; });
   });
 }
 
@@ -566,20 +600,23 @@ void OpenRoom::edits_unsaved(const std::vector<Listener::Edit>& edits, const Pro
     if (!member->listener()) continue;
     std::vector<Listener::Edit> seen;
     for (const Listener::Edit& edit : edits)
-      if (const auto state = layer_state(edit.layer_id); state && sees(member->role(), state->layer.visibility))
+      if (const auto state = layer_state(edit.layer_id);
+          state && sees(member->role(), state->layer.visibility))
         seen.push_back(edit);
     if (!seen.empty()) member->listener()->edits_unsaved(seen, why);
   }
 }
 
-// ------------------------------------------------------------------------------------------------------ people
+// ------------------------------------------------------------------------------------------------------
+// people
 
-std::unique_ptr<Member> OpenRoom::join(Author who, Portrait portrait, Listener* listener, stream::Viewer::Send send) {
+std::unique_ptr<Member> OpenRoom::join(Author who, Portrait portrait, Listener* listener,
+                                       stream::Viewer::Send send) {
   std::unique_ptr<RoomMember> member;
   {
     std::lock_guard lock(members_mutex_);
-    member = std::make_unique<RoomMember>(shared_from_this(), std::move(who), std::move(portrait), listener,
-                                          std::move(send));
+    member = std::make_unique<RoomMember>(shared_from_this(), std::move(who), std::move(portrait),
+                                          listener, std::move(send));
     members_.push_back(member.get());
   }
   touch();
@@ -603,9 +640,13 @@ void OpenRoom::tell_layer(std::optional<Visibility> before, const Layer& layer) 
   using Change = Listener::LayerChange;
   std::lock_guard lock(members_mutex_);
   for (RoomMember* member : members_) {
-    const bool saw = before && sees(member->role(), *before), sees_now = sees(member->role(), layer.visibility);
+    const bool saw = before && sees(member->role(), *before),
+               sees_now = sees(member->role(), layer.visibility);
     if (!member->listener() || (!saw && !sees_now)) continue;
-    member->listener()->layer_changed(!sees_now ? Change::deleted : saw ? Change::changed : Change::created, layer);
+    member->listener()->layer_changed(!sees_now ? Change::deleted
+                                      : saw     ? Change::changed
+                                                : Change::created,
+                                      layer);
   }
 }
 
@@ -620,7 +661,9 @@ void OpenRoom::leave(RoomMember* member) {
 }
 
 void OpenRoom::announce_presence() {
-  boost::asio::post(strand_, [self = shared_from_this()] { self->tell([](Listener& l) { l.presence_changed(); }); });
+  boost::asio::post(strand_, [self = shared_from_this()] {
+    self->tell([](Listener& l) { l.presence_changed(); });
+  });
 }
 
 Result<void> OpenRoom::follow(const Uuid& follower, const std::optional<Uuid>& leader) {
@@ -630,12 +673,14 @@ Result<void> OpenRoom::follow(const Uuid& follower, const std::optional<Uuid>& l
     if (!leader) {
       other = followers_.stop(follower);
     } else {
-      const bool here = std::any_of(members_.begin(), members_.end(),
-                                    [&](const auto* member) { return member->session() == *leader; });
+      const bool here = std::any_of(members_.begin(), members_.end(), [&](const auto* member) {
+        return member->session() == *leader;
+      });
       if (!here)
-        return fail(404, "Not here",
-                    "Who is to be followed has left, or was never at this model. `presence` lists who is here.",
-                    "follow");
+        return fail(
+            404, "Not here",
+            "Who is to be followed has left, or was never at this model. `presence` lists who is here.",
+            "follow");
       auto followed = followers_.follow(follower, *leader);
       if (!followed) return tl::unexpected(followed.error());
       other = *followed;
@@ -686,7 +731,8 @@ std::size_t OpenRoom::take_departed() {
 }
 
 bool OpenRoom::drop_map() {
-  return surface_->drop_graphs() || on_strand([&] { return pipeline_->is_still() && maps_->drop_oldest(); });
+  return surface_->drop_graphs() ||
+         on_strand([&] { return pipeline_->is_still() && maps_->drop_oldest(); });
 }
 
 bool OpenRoom::drop_large_unused_maps(std::chrono::steady_clock::time_point now) {
@@ -695,7 +741,8 @@ bool OpenRoom::drop_large_unused_maps(std::chrono::steady_clock::time_point now)
   const auto since = now - kKept;
   const auto oldest = maps_->oldest_use();
   if (!oldest || *oldest >= since) return false;
-  const bool dropped = on_strand([&] { return pipeline_->is_still() && maps_->drop_unused(since, kLarge); });
+  const bool dropped =
+      on_strand([&] { return pipeline_->is_still() && maps_->drop_unused(since, kLarge); });
   if (dropped) surface_->drop_graphs();
   return dropped;
 }
@@ -734,7 +781,8 @@ void OpenRoom::shut_deleted() {
   shut({410, "Model deleted", "The model was deleted; nothing can be painted on it any more.", {}});
 }
 
-// ----------------------------------------------------------------------------------------------------- queries
+// -----------------------------------------------------------------------------------------------------
+// queries
 
 Result<std::shared_ptr<const mesh::SurfaceMap>> OpenRoom::surface_map(int resolution) {
   touch();
@@ -749,8 +797,8 @@ Result<std::map<std::int64_t, query::KeyArea>> OpenRoom::key_areas(const std::st
   if (!found) return tl::unexpected(found.error());
   const auto map = surface_map(found->layer.resolution);
   if (!map) return tl::unexpected(map.error());
-  return query::key_areas({found->layer, found->mirror->snapshot()}, **map, geometry_->origin, model().metres(),
-                          found->sums.get());
+  return query::key_areas({found->layer, found->mirror->snapshot()}, **map, geometry_->origin,
+                          model().metres(), found->sums.get());
 }
 
 Result<void> OpenRoom::sum_layer(std::int64_t layer_id) {
@@ -759,10 +807,12 @@ Result<void> OpenRoom::sum_layer(std::int64_t layer_id) {
   if (!found) return tl::unexpected(found.error());
   const auto map = surface_map(found->layer.resolution);
   if (!map) return tl::unexpected(map.error());
-  return exclusively<void>([this, layer = found->layer, mirror = found->mirror, map = *map]() -> Result<void> {
-    const auto snapshot = mirror->snapshot();
-    return parts_.store.keep_sums(layer.id, sum_tiles(layer, *map, {snapshot.tiles.begin(), snapshot.tiles.end()}));
-  });
+  return exclusively<void>(
+      [this, layer = found->layer, mirror = found->mirror, map = *map]() -> Result<void> {
+        const auto snapshot = mirror->snapshot();
+        return parts_.store.keep_sums(
+            layer.id, sum_tiles(layer, *map, {snapshot.tiles.begin(), snapshot.tiles.end()}));
+      });
 }
 
 }  // namespace strata::room

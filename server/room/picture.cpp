@@ -13,10 +13,11 @@
 namespace strata::room {
 namespace {
 
-// Pictures with more pixels are drawn in bands, which have as many: a tenth of a second on a CPU, 32 MB of a view's buffers.
+// Pictures with more pixels are drawn in bands, which have as many: a tenth of a second on a CPU,
+// 32 MB of a view's buffers.
 constexpr int kPixelsOfBand = 1 << 21;
-// Rows of the window above and below a band that are drawn with it and left out: what a pixel shows depends on its neighbours (outlines), and marks
-// are wider than their line.
+// Rows of the window above and below a band that are drawn with it and left out: what a pixel shows
+// depends on its neighbours (outlines), and marks are wider than their line.
 constexpr int kRowsAround = 16;
 constexpr int kRowsEncoded = 32;
 
@@ -36,33 +37,36 @@ struct Borrowed {
 Result<render::Frame> Room::picture(const PictureRequest& request, const Camera& camera) {
   render::Frame whole;
   const PicturePart part{camera};
-  auto seen = pictures(request, {&part, 1}, [&](std::size_t, const PictureBand& band) -> Result<void> {
-    whole.width = band.width;
-    whole.height = band.height;
-    whole.pixels.insert(whole.pixels.end(), band.rgba.begin(), band.rgba.end());
-    return {};
-  });
+  auto seen =
+      pictures(request, {&part, 1}, [&](std::size_t, const PictureBand& band) -> Result<void> {
+        whole.width = band.width;
+        whole.height = band.height;
+        whole.pixels.insert(whole.pixels.end(), band.rgba.begin(), band.rgba.end());
+        return {};
+      });
   if (!seen) return tl::unexpected(seen.error());
   whole.rects = {{0, 0, whole.width, whole.height}};
   return whole;
 }
 
-Result<std::vector<std::uint8_t>> Room::picture_file(const PictureRequest& request, const Camera& camera,
-                                                     PictureFormat format, JpegSettings jpeg) {
+Result<std::vector<std::uint8_t>> Room::picture_file(const PictureRequest& request,
+                                                     const Camera& camera, PictureFormat format,
+                                                     JpegSettings jpeg) {
   std::optional<PictureWriter> writer;
   const PicturePart part{camera};
-  auto seen = pictures(request, {&part, 1}, [&](std::size_t, const PictureBand& band) -> Result<void> {
-    if (!writer) writer.emplace(format, band.width, band.height, jpeg);
-    // A few rows at a time: who else asks something computes between them.
-    const std::size_t row = band.rgba.size() / static_cast<std::size_t>(band.rows);
-    const QuestionTurn turn;
-    for (int top = 0; top < band.rows; top += kRowsEncoded) {
-      turn.check();
-      const auto rows = static_cast<std::size_t>(std::min(kRowsEncoded, band.rows - top));
-      writer->put(band.rgba.subspan(row * static_cast<std::size_t>(top), row * rows));
-    }
-    return {};
-  });
+  auto seen =
+      pictures(request, {&part, 1}, [&](std::size_t, const PictureBand& band) -> Result<void> {
+        if (!writer) writer.emplace(format, band.width, band.height, jpeg);
+        // A few rows at a time: who else asks something computes between them.
+        const std::size_t row = band.rgba.size() / static_cast<std::size_t>(band.rows);
+        const QuestionTurn turn;
+        for (int top = 0; top < band.rows; top += kRowsEncoded) {
+          turn.check();
+          const auto rows = static_cast<std::size_t>(std::min(kRowsEncoded, band.rows - top));
+          writer->put(band.rgba.subspan(row * static_cast<std::size_t>(top), row * rows));
+        }
+        return {};
+      });
   if (!seen) return tl::unexpected(seen.error());
   return writer->finish();
 }
@@ -92,7 +96,8 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
   const auto model = model_handle();
   render::FrameRequest request;
   std::vector<LayerMarks> marked;
-  const auto borrow = [&](ValueType type, int resolution, TileMap tiles) -> Result<render::LayerHandle> {
+  const auto borrow = [&](ValueType type, int resolution,
+                          TileMap tiles) -> Result<render::LayerHandle> {
     auto mirror = std::make_shared<TileMirror>(type, resolution);
     mirror->assign(std::move(tiles), *asked.at);
     auto copy = add_layer(parts_.renderer, model, std::move(mirror));
@@ -101,7 +106,8 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
     return *copy;
   };
   for (const auto& item : shown) {
-    render::LayerStyle style{item.handles.content, item.palette, static_cast<float>(item.layer.opacity)};
+    render::LayerStyle style{item.handles.content, item.palette,
+                             static_cast<float>(item.layer.opacity)};
     std::optional<render::LayerHandle> waiting = item.waiting();
     if (asked.at) {
       auto past = parts_.store.load_tiles(item.layer, asked.at);
@@ -110,7 +116,8 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
       if (!content) return tl::unexpected(content.error());
       style.layer = *content;
       waiting.reset();
-      if (const auto then = asked.provisional.find(item.layer.id); then != asked.provisional.end()) {
+      if (const auto then = asked.provisional.find(item.layer.id);
+          then != asked.provisional.end()) {
         auto marks = borrow(ValueType::u8, item.layer.resolution, then->second);
         if (!marks) return tl::unexpected(marks.error());
         waiting = *marks;
@@ -118,7 +125,8 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
     }
     const LayerView& mine = asked.shown.of(item.layer.id);
     if (mine.palette) style.palette = std::make_shared<const Palette>(*mine.palette);
-    const auto highlight = mine.highlight ? std::make_shared<const Highlight>(*mine.highlight) : nullptr;
+    const auto highlight =
+        mine.highlight ? std::make_shared<const Highlight>(*mine.highlight) : nullptr;
     if (item.layer.table && RecordColors::needs_records(*style.palette, highlight)) {
       auto made = record_colors_->make({*item.layer.table, sight, style.palette, highlight});
       if (!made) return tl::unexpected(made.error());
@@ -134,7 +142,8 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
     if (!marks) return tl::unexpected(marks.error());
     if (*marks) marked.push_back({std::move(*marks), style.palette, style.opacity});
   }
-  auto view = await<render::ViewHandle>([&](auto done) { parts_.renderer.add_view(model, std::move(done)); });
+  auto view = await<render::ViewHandle>(
+      [&](auto done) { parts_.renderer.add_view(model, std::move(done)); });
   if (!view) return tl::unexpected(gpu_problem(view.error()));
   borrowed.view = request.view = *view;
   auto looks = look_shelf_->wait(asked.shown.looks);
@@ -149,15 +158,17 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
   return {};
 }
 
-Result<void> OpenRoom::draw_in_bands(render::FrameRequest request, const PicturePart& part, std::size_t number,
-                                     const SeePicture& see) {
+Result<void> OpenRoom::draw_in_bands(render::FrameRequest request, const PicturePart& part,
+                                     std::size_t number, const SeePicture& see) {
   const Camera& camera = part.camera;
   if (auto valid = validate(camera); !valid) return valid;
-  const auto pixels = [&](int window) { return static_cast<int>(std::lround(window * part.pixels)); };
+  const auto pixels = [&](int window) {
+    return static_cast<int>(std::lround(window * part.pixels));
+  };
   const int width = pixels(camera.width), height = pixels(camera.height);
   if (width < 1 || height < 1 || width > kMaxViewSize || height > kMaxViewSize)
-    return fail(422, "Size out of range", "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.",
-                "width");
+    return fail(422, "Size out of range",
+                "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", "width");
   // Bands are whole rows of the camera's window, so that their own windows are.
   const bool is_large = static_cast<std::int64_t>(width) * height > kPixelsOfBand;
   const int most = static_cast<int>(kPixelsOfBand / (width * std::max(part.pixels, 1e-3)));
@@ -173,14 +184,14 @@ Result<void> OpenRoom::draw_in_bands(render::FrameRequest request, const Picture
     request.width = width;
     request.height = pixels(last) - pixels(first);
     request.background_rows = glm::vec2(first, last) / static_cast<float>(camera.height);
-    const auto frame =
-        await_for_question<render::SharedFrame>([&](auto done) { parts_.renderer.draw(request, std::move(done)); });
+    const auto frame = await_for_question<render::SharedFrame>(
+        [&](auto done) { parts_.renderer.draw(request, std::move(done)); });
     if (!frame) return tl::unexpected(gpu_problem(frame.error()));
     const std::size_t row = std::size_t{4} * static_cast<std::size_t>(width);
     const int rows = pixels(end) - pixels(top);
     const std::span<const std::uint8_t> all((*frame)->pixels);
-    const auto band =
-        all.subspan(row * static_cast<std::size_t>(pixels(top) - pixels(first)), row * static_cast<std::size_t>(rows));
+    const auto band = all.subspan(row * static_cast<std::size_t>(pixels(top) - pixels(first)),
+                                  row * static_cast<std::size_t>(rows));
     if (rows == 0) continue;
     if (auto seen = see(number, {width, height, pixels(top), rows, band}); !seen) return seen;
   }

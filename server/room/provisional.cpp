@@ -15,18 +15,21 @@ Result<TileMap> read_provisional(store::Store& store, const Layer& layer) {
   if (!written) return tl::unexpected(written.error());
   TileMap tiles;
   for (const auto& [tile, texels] : *written) {
-    TileResolver resolver(TileData(layer.type), texels);  // what the texels hold does not matter here
+    // what the texels hold does not matter here
+    TileResolver resolver(TileData(layer.type), texels);
     if (auto walked = walk_back(resolver, layer, tile, store, [](PastRevision&) {}); !walked)
       return tl::unexpected(walked.error());
     if (resolver.provisional().any())
-      tiles[tile] = with_provisional(nullptr, {tile, nullptr, nullptr, texels, resolver.provisional()});
+      tiles[tile] =
+          with_provisional(nullptr, {tile, nullptr, nullptr, texels, resolver.provisional()});
   }
   return tiles;
 }
 
 std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const TileData>& before,
                                                  const TileChange& change) {
-  auto after = before ? std::make_shared<TileData>(*before) : std::make_shared<TileData>(ValueType::u8);
+  auto after =
+      before ? std::make_shared<TileData>(*before) : std::make_shared<TileData>(ValueType::u8);
   for_each_texel(change.written, [&](int texel) {
     if (change.provisional.test(texel))
       after->write(texel, 1);
@@ -37,12 +40,17 @@ std::shared_ptr<const TileData> with_provisional(const std::shared_ptr<const Til
 }
 
 std::shared_ptr<const Palette> provisional_palette() {
-  // Dark lines that stay apart in greyscale and on colours of any palette, and let what is below be read.
-  static const auto kHatch = std::make_shared<const Palette>(Palette{
-      .mode = PaletteMode::categorical,
-      .points =
-          {{.at = 1, .color = {24, 24, 24, 230}, .label = {}, .value = {}, .pattern = Pattern::hatch, .angle = 135}},
-      .column = {}});
+  // Dark lines that stay apart in greyscale and on colours of any palette, and let what is below be
+  // read.
+  static const auto kHatch =
+      std::make_shared<const Palette>(Palette{.mode = PaletteMode::categorical,
+                                              .points = {{.at = 1,
+                                                          .color = {24, 24, 24, 230},
+                                                          .label = {},
+                                                          .value = {},
+                                                          .pattern = Pattern::hatch,
+                                                          .angle = 135}},
+                                              .column = {}});
   return kHatch;
 }
 

@@ -11,8 +11,9 @@
 
 namespace strata::room {
 
-// The texels of a layer that wait for review, as the content of a layer of u8: 1 where they do, and nothing elsewhere. A texel waits where
-// the newest edit in force that wrote it does, also where that edit has erased it.
+// The texels of a layer that wait for review, as the content of a layer of u8: 1 where they do, and
+// nothing elsewhere. A texel waits where the newest edit in force that wrote it does, also where
+// that edit has erased it.
 
 // From the journal; blocks.
 Result<TileMap> read_provisional(store::Store& store, const Layer& layer);

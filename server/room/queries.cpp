@@ -1,4 +1,5 @@
-// Questions to an open model: they are answered from mirrors and maps in main memory, beside those who paint.
+// Questions to an open model: they are answered from mirrors and maps in main memory, beside those
+// who paint.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -23,18 +24,20 @@ query::TexelSelection as_selection(const TileMasks& masks, const mesh::SurfaceMa
   for (const auto& [address, mask] : masks)
     for (std::uint32_t by = 0; by < query::kBlocksPerTile; ++by)
       for (std::uint32_t bx = 0; bx < query::kBlocksPerTile; ++bx) {
-        const auto slot = mesh::slot_at(map, static_cast<int>(address.x * query::kBlocksPerTile + bx),
-                                        static_cast<int>(address.y * query::kBlocksPerTile + by));
+        const auto slot =
+            mesh::slot_at(map, static_cast<int>(address.x * query::kBlocksPerTile + bx),
+                          static_cast<int>(address.y * query::kBlocksPerTile + by));
         if (slot != mesh::kNoSlot)
-          selection[slot] =
-              query::block_bits(mask, static_cast<int>(bx), static_cast<int>(by)) & map.surface_mask[slot];
+          selection[slot] = query::block_bits(mask, static_cast<int>(bx), static_cast<int>(by)) &
+                            map.surface_mask[slot];
       }
   return selection;
 }
 
 // Whether nothing is painted on it: then nothing need be known of the surface to say so.
 bool is_empty(const query::LayerView& view) {
-  return std::ranges::none_of(view.snapshot.tiles, [](const auto& tile) { return tile.second != nullptr; });
+  return std::ranges::none_of(view.snapshot.tiles,
+                              [](const auto& tile) { return tile.second != nullptr; });
 }
 
 query::Statistics nothing_painted(StatisticsWanted wanted) {
@@ -61,7 +64,8 @@ Result<TileMirror::Snapshot> OpenRoom::tiles(const std::string& layer, At at) {
   return tiles_at(*found, at);
 }
 
-Result<std::vector<query::LayerView>> OpenRoom::layer_views(const std::vector<std::string>& refs, At at) const {
+Result<std::vector<query::LayerView>> OpenRoom::layer_views(const std::vector<std::string>& refs,
+                                                            At at) const {
   std::vector<query::LayerView> views;
   for (const auto& ref : refs) {
     auto found = state(ref);
@@ -73,7 +77,8 @@ Result<std::vector<query::LayerView>> OpenRoom::layer_views(const std::vector<st
   return views;
 }
 
-Result<query::SurfacePoint> OpenRoom::position(const glm::dvec3& world, const std::vector<std::string>& layers, At at) {
+Result<query::SurfacePoint> OpenRoom::position(const glm::dvec3& world,
+                                               const std::vector<std::string>& layers, At at) {
   touch();
   auto views = layer_views(layers, at);
   if (!views) return tl::unexpected(views.error());
@@ -81,11 +86,13 @@ Result<query::SurfacePoint> OpenRoom::position(const glm::dvec3& world, const st
 }
 
 Result<std::vector<query::SurfacePoint>> OpenRoom::positions(const std::vector<glm::dvec3>& world,
-                                                             const std::vector<std::string>& layers, At at) {
+                                                             const std::vector<std::string>& layers,
+                                                             At at) {
   touch();
   auto views = layer_views(layers, at);
   if (!views) return tl::unexpected(views.error());
-  return query::nearest_points(*surface_->tree(), geometry_->origin, world, *views, mesh::background_threads());
+  return query::nearest_points(*surface_->tree(), geometry_->origin, world, *views,
+                               mesh::background_threads());
 }
 
 Result<query::SurfacePoint> OpenRoom::pick(const Camera& camera, double x, double y,
@@ -96,21 +103,25 @@ Result<query::SurfacePoint> OpenRoom::pick(const Camera& camera, double x, doubl
   return query::pick(*surface_->tree(), geometry_->origin, camera, x, y, *views);
 }
 
-Result<std::vector<std::optional<std::uint32_t>>> OpenRoom::seen_keys(const std::string& layer, const Camera& camera,
-                                                                      int columns, int rows, At at) {
+Result<std::vector<std::optional<std::uint32_t>>> OpenRoom::seen_keys(const std::string& layer,
+                                                                      const Camera& camera,
+                                                                      int columns, int rows,
+                                                                      At at) {
   touch();
   auto views = layer_views({layer}, at);
   if (!views) return tl::unexpected(views.error());
-  return query::seen_keys(*surface_->tree(), geometry_->origin, camera, columns, rows, views->front());
+  return query::seen_keys(*surface_->tree(), geometry_->origin, camera, columns, rows,
+                          views->front());
 }
 
-Result<std::vector<query::SeenLayer>> OpenRoom::seen_layers(const std::vector<std::string>& layers,
-                                                            const std::vector<query::LayerCover>& covers,
-                                                            const Camera& camera, int columns, int rows, At at) {
+Result<std::vector<query::SeenLayer>> OpenRoom::seen_layers(
+    const std::vector<std::string>& layers, const std::vector<query::LayerCover>& covers,
+    const Camera& camera, int columns, int rows, At at) {
   touch();
   auto views = layer_views(layers, at);
   if (!views) return tl::unexpected(views.error());
-  return query::seen_layers(*surface_->tree(), geometry_->origin, camera, columns, rows, *views, covers);
+  return query::seen_layers(*surface_->tree(), geometry_->origin, camera, columns, rows, *views,
+                            covers);
 }
 
 Result<std::optional<query::TexelSelection>> OpenRoom::texels_within(const Selection& selection,
@@ -126,10 +137,12 @@ Result<std::optional<query::TexelSelection>> OpenRoom::texels_within(const Selec
   if (!start) return tl::unexpected(start.error());
   const auto graph = surface_->graph(map);
   if (!graph) return tl::unexpected(graph.error());
-  return query::select_near(map, **graph, start->texel, start->position, static_cast<float>(around.radius));
+  return query::select_near(map, **graph, start->texel, start->position,
+                            static_cast<float>(around.radius));
 }
 
-// Nothing where the whole surface is meant. A condition is looked at within the place alone, so that a small one is quickly answered.
+// Nothing where the whole surface is meant. A condition is looked at within the place alone, so
+// that a small one is quickly answered.
 Result<std::optional<query::TexelSelection>> OpenRoom::select_texels(const Selection& selection,
                                                                      const mesh::SurfaceMap& map) {
   auto inside = texels_within(selection, map);
@@ -139,19 +152,23 @@ Result<std::optional<query::TexelSelection>> OpenRoom::select_texels(const Selec
     if (sees(selection.seen_by, layer.visibility)) slugs.push_back(layer.slug);
   const std::vector<std::string> named = layers_of(*selection.where);
   // Those that are not there are refused by the evaluator, with the field.
-  std::erase_if(slugs, [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
+  std::erase_if(slugs,
+                [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
   const auto views = layer_views(slugs, selection.at);
   if (!views) return tl::unexpected(views.error());
-  const auto bound = bind_expression(*selection.where, *views, parts_.store, selection.seen_by, selection.at, "where");
+  const auto bound = bind_expression(*selection.where, *views, parts_.store, selection.seen_by,
+                                     selection.at, "where");
   if (!bound) return tl::unexpected(bound.error());
-  auto holds = query::select_where(*bound, *views, map, "where", mesh::background_threads(),
-                                   {geometry_->origin, model().metres()}, *inside ? &**inside : nullptr);
+  auto holds =
+      query::select_where(*bound, *views, map, "where", mesh::background_threads(),
+                          {geometry_->origin, model().metres()}, *inside ? &**inside : nullptr);
   if (!holds) return tl::unexpected(holds.error());
   return std::move(*holds);
 }
 
 Result<query::Statistics> OpenRoom::count(const query::LayerView& view, const mesh::SurfaceMap& map,
-                                          const query::TexelSelection* within, bool is_now, StatisticsWanted wanted) {
+                                          const query::TexelSelection* within, bool is_now,
+                                          StatisticsWanted wanted) {
   query::StatisticsRequest request;
   request.within = within;
   request.quantiles = wanted.quantiles;
@@ -183,16 +200,19 @@ Result<query::Statistics> OpenRoom::statistics(const std::string& layer, const S
   return count(views->front(), **map, *selected ? &**selected : nullptr, !selection.at, wanted);
 }
 
-Result<SelectedArea> OpenRoom::select(const Selection& selection, const std::vector<std::string>& layers,
+Result<SelectedArea> OpenRoom::select(const Selection& selection,
+                                      const std::vector<std::string>& layers,
                                       StatisticsWanted wanted) {
   touch();
   const auto views = layer_views(layers, selection.at);
   if (!views) return tl::unexpected(views.error());
   SelectedArea area;
-  for (const auto& view : *views) area.resolution = std::max(area.resolution, view.layer.resolution);
+  for (const auto& view : *views)
+    area.resolution = std::max(area.resolution, view.layer.resolution);
   if (selection.where)
     for (const auto& slug : layers_of(*selection.where))
-      if (const auto found = state(slug)) area.resolution = std::max(area.resolution, found->layer.resolution);
+      if (const auto found = state(slug))
+        area.resolution = std::max(area.resolution, found->layer.resolution);
   if (area.resolution == 0) area.resolution = model().default_resolution;
   struct Selected {
     std::shared_ptr<const mesh::SurfaceMap> map;
@@ -211,7 +231,8 @@ Result<SelectedArea> OpenRoom::select(const Selection& selection, const std::vec
   }
   const Selected& finest = of_resolution.at(area.resolution);
   const double m2_per_unit2 = model().metres() * model().metres();
-  const auto extent = query::measure_selection(*finest.map, finest.within(), mesh::background_threads());
+  const auto extent =
+      query::measure_selection(*finest.map, finest.within(), mesh::background_threads());
   area.texels = extent.texels;
   area.area_m2 = extent.area * m2_per_unit2;
   area.share = finest.map->area_total > 0 ? std::min(1.0, extent.area / finest.map->area_total) : 0;
@@ -226,7 +247,8 @@ Result<SelectedArea> OpenRoom::select(const Selection& selection, const std::vec
   return area;
 }
 
-Result<query::Profile> OpenRoom::profile(const ProfileLine& line, const std::vector<std::string>& layers, At at) {
+Result<query::Profile> OpenRoom::profile(const ProfileLine& line,
+                                         const std::vector<std::string>& layers, At at) {
   touch();
   const auto views = layer_views(layers, at);
   if (!views) return tl::unexpected(views.error());
@@ -242,11 +264,13 @@ Result<query::CrossTable> OpenRoom::cross_table(const std::string& rows, const s
   touch();
   const auto views = layer_views({rows, columns}, selection.at);
   if (!views) return tl::unexpected(views.error());
-  const auto map = surface_map(std::max((*views)[0].layer.resolution, (*views)[1].layer.resolution));
+  const auto map =
+      surface_map(std::max((*views)[0].layer.resolution, (*views)[1].layer.resolution));
   if (!map) return tl::unexpected(map.error());
   const auto selected = select_texels(selection, **map);
   if (!selected) return tl::unexpected(selected.error());
-  return query::cross_tabulate((*views)[0], (*views)[1], **map, *selected ? &**selected : nullptr, model().metres());
+  return query::cross_tabulate((*views)[0], (*views)[1], **map, *selected ? &**selected : nullptr,
+                               model().metres());
 }
 
 Result<OpenRoom::LayerGraph> OpenRoom::layer_graph(const std::string& layer, At at) {
@@ -263,8 +287,8 @@ Result<query::Quantities> OpenRoom::quantities(const std::string& layer, At at) 
   touch();
   const auto found = layer_graph(layer, at);
   if (!found) return tl::unexpected(found.error());
-  return query::quantities(found->view, *found->map, *found->graph, query::classes_of(found->view.layer),
-                           model().metres());
+  return query::quantities(found->view, *found->map, *found->graph,
+                           query::classes_of(found->view.layer), model().metres());
 }
 
 Result<LayerAreas> OpenRoom::layer_areas(const std::string& layer, At at) {
@@ -272,14 +296,17 @@ Result<LayerAreas> OpenRoom::layer_areas(const std::string& layer, At at) {
   auto found = layer_graph(layer, at);
   if (!found) return tl::unexpected(found.error());
   const query::ValueClasses classes = query::classes_of(found->view.layer);
-  auto quantities = query::quantities(found->view, *found->map, *found->graph, classes, model().metres());
+  auto quantities =
+      query::quantities(found->view, *found->map, *found->graph, classes, model().metres());
   if (!quantities) return tl::unexpected(quantities.error());
-  auto perimeters =
-      query::measure_perimeters(found->view, *found->map, *found->graph, nullptr, classes, mesh::background_threads());
-  return LayerAreas{std::move(found->view), std::move(found->map), std::move(*quantities), std::move(perimeters)};
+  auto perimeters = query::measure_perimeters(found->view, *found->map, *found->graph, nullptr,
+                                              classes, mesh::background_threads());
+  return LayerAreas{std::move(found->view), std::move(found->map), std::move(*quantities),
+                    std::move(perimeters)};
 }
 
-Result<query::SurfaceTexels> OpenRoom::surface_texels(const std::string& layer, const Selection& selection) {
+Result<query::SurfaceTexels> OpenRoom::surface_texels(const std::string& layer,
+                                                      const Selection& selection) {
   touch();
   auto views = layer_views({layer}, selection.at);
   if (!views) return tl::unexpected(views.error());
@@ -287,8 +314,8 @@ Result<query::SurfaceTexels> OpenRoom::surface_texels(const std::string& layer, 
   if (!map) return tl::unexpected(map.error());
   auto selected = select_texels(selection, **map);
   if (!selected) return tl::unexpected(selected.error());
-  return query::SurfaceTexels{std::move(views->front()), std::move(*map), std::move(*selected), geometry_->origin,
-                              model().metres()};
+  return query::SurfaceTexels{std::move(views->front()), std::move(*map), std::move(*selected),
+                              geometry_->origin, model().metres()};
 }
 
 }  // namespace strata::room

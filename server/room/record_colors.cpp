@@ -15,26 +15,31 @@ Expression column_of(const std::string& slug) {
   return column;
 }
 
-bool holds_numbers(ColumnKind kind) { return kind == ColumnKind::integer || kind == ColumnKind::numeric; }
+bool holds_numbers(ColumnKind kind) {
+  return kind == ColumnKind::integer || kind == ColumnKind::numeric;
+}
 
-Result<Palette> by_column(store::Store& store, std::int64_t table_id, Role seen_by, const Palette& palette) {
+Result<Palette> by_column(store::Store& store, std::int64_t table_id, Role seen_by,
+                          const Palette& palette) {
   auto table = store.table(std::to_string(table_id), seen_by);
   if (!table) return tl::unexpected(table.error());
   const Column* column = find_column(table->columns, palette.column);
   if (!column)
     return fail(422, "No such column",
-                "The palette colours by the column '" + palette.column + "', which the table '" + table->name +
-                    "' no longer has. Choose another one.",
+                "The palette colours by the column '" + palette.column + "', which the table '" +
+                    table->name + "' no longer has. Choose another one.",
                 "palette.column");
   if (holds_numbers(column->kind)) {
-    auto numbers = store.record_numbers(table_id, seen_by, column_of(column->slug), std::nullopt, "palette.column");
+    auto numbers = store.record_numbers(table_id, seen_by, column_of(column->slug), std::nullopt,
+                                        "palette.column");
     if (!numbers) return tl::unexpected(numbers.error());
     return colors_of_numbers(palette, *numbers);
   }
   if (palette.mode != PaletteMode::categorical)
-    return fail(422, "Column holds no numbers",
-                "'" + column->name + "' holds no numbers: only a categorical palette can colour by it.",
-                "palette.column");
+    return fail(
+        422, "Column holds no numbers",
+        "'" + column->name + "' holds no numbers: only a categorical palette can colour by it.",
+        "palette.column");
   auto texts = store.record_texts(table_id, seen_by, column->slug, "palette.column");
   if (!texts) return tl::unexpected(texts.error());
   return colors_of_texts(palette, *texts);
@@ -42,10 +47,12 @@ Result<Palette> by_column(store::Store& store, std::int64_t table_id, Role seen_
 
 }  // namespace
 
-Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::int64_t table_id, Role seen_by,
-                                                    const Highlight& highlight, const std::string& field) {
+Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::int64_t table_id,
+                                                    Role seen_by, const Highlight& highlight,
+                                                    const std::string& field) {
   if (const auto* keys = std::get_if<std::vector<std::uint32_t>>(&highlight.records)) return *keys;
-  auto truths = store.record_numbers(table_id, seen_by, std::get<Expression>(highlight.records), std::nullopt, field);
+  auto truths = store.record_numbers(table_id, seen_by, std::get<Expression>(highlight.records),
+                                     std::nullopt, field);
   if (!truths) return tl::unexpected(truths.error());
   std::vector<std::uint32_t> keys;
   for (const KeyNumber& truth : *truths)
@@ -54,10 +61,12 @@ Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::in
   return keys;
 }
 
-RecordColors::RecordColors(store::Store& store, boost::asio::thread_pool& workers, std::function<void()> ready)
+RecordColors::RecordColors(store::Store& store, boost::asio::thread_pool& workers,
+                           std::function<void()> ready)
     : store_(store), workers_(workers), ready_(std::move(ready)) {}
 
-Result<std::shared_ptr<const Palette>> RecordColors::make(store::Store& store, const Wanted& wanted) {
+Result<std::shared_ptr<const Palette>> RecordColors::make(store::Store& store,
+                                                          const Wanted& wanted) {
   Palette by_key = *wanted.palette;
   const Role seen_by = least_role(wanted.sight);
   if (!by_key.column.empty()) {
@@ -66,7 +75,8 @@ Result<std::shared_ptr<const Palette>> RecordColors::make(store::Store& store, c
     by_key = std::move(*colored);
   }
   if (wanted.highlight) {
-    const auto keys = highlighted_keys(store, wanted.table, seen_by, *wanted.highlight, "highlight.filter");
+    const auto keys =
+        highlighted_keys(store, wanted.table, seen_by, *wanted.highlight, "highlight.filter");
     if (!keys) return tl::unexpected(keys.error());
     by_key = highlighted_colors(by_key, *keys, wanted.highlight->isolate);
   }
@@ -78,15 +88,17 @@ RecordColors::Found RecordColors::find(const Wanted& wanted) {
   // What nobody but this shelf holds is asked for no more.
   std::erase_if(entries_, [](const auto& entry) {
     const Wanted& kept = entry->wanted;
-    return !entry->making && (kept.palette.use_count() == 1 || (kept.highlight && kept.highlight.use_count() == 1));
+    return !entry->making &&
+           (kept.palette.use_count() == 1 || (kept.highlight && kept.highlight.use_count() == 1));
   });
   const auto known = std::ranges::find_if(entries_, [&](const auto& entry) {
     const Wanted& kept = entry->wanted;
-    return kept.table == wanted.table && kept.sight == wanted.sight && kept.palette == wanted.palette &&
-           kept.highlight == wanted.highlight;
+    return kept.table == wanted.table && kept.sight == wanted.sight &&
+           kept.palette == wanted.palette && kept.highlight == wanted.highlight;
   });
-  const auto entry =
-      known != entries_.end() ? *known : entries_.emplace_back(std::make_shared<Entry>(Entry{wanted, {}}));
+  const auto entry = known != entries_.end()
+                         ? *known
+                         : entries_.emplace_back(std::make_shared<Entry>(Entry{wanted, {}}));
   start(entry);
   return entry->found;
 }

@@ -14,11 +14,13 @@
 namespace strata::room {
 
 // The keys that are meant, ascending. Refused (422 at `field`): what the columns do not fit.
-Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::int64_t table_id, Role seen_by,
-                                                    const Highlight& highlight, const std::string& field);
+Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::int64_t table_id,
+                                                    Role seen_by, const Highlight& highlight,
+                                                    const std::string& field);
 
-// Palettes by key of an open model's database layers, where what a layer is drawn with depends on its records: colours by a
-// column, and records that are to be seen before all others. They are made on a worker when a view first needs them, and anew when records change. Thread-safe.
+// Palettes by key of an open model's database layers, where what a layer is drawn with depends on
+// its records: colours by a column, and records that are to be seen before all others. They are
+// made on a worker when a view first needs them, and anew when records change. Thread-safe.
 class RecordColors : public std::enable_shared_from_this<RecordColors> {
  public:
   // `ready` is called, on any thread, whenever something that was asked for is there or has failed.
@@ -38,10 +40,13 @@ class RecordColors : public std::enable_shared_from_this<RecordColors> {
   // The newest that is there; what is not is on its way.
   Found find(const Wanted& wanted);
   // The same as of now, made on the calling thread. Blocks.
-  Result<std::shared_ptr<const Palette>> make(const Wanted& wanted) const { return make(store_, wanted); }
+  Result<std::shared_ptr<const Palette>> make(const Wanted& wanted) const {
+    return make(store_, wanted);
+  }
   static Result<std::shared_ptr<const Palette>> make(store::Store& store, const Wanted& wanted);
   // Whether there is anything to be made of it: otherwise the palette itself serves.
-  static bool needs_records(const Palette& palette, const std::shared_ptr<const Highlight>& highlight) {
+  static bool needs_records(const Palette& palette,
+                            const std::shared_ptr<const Highlight>& highlight) {
     return highlight || !palette.column.empty();
   }
 

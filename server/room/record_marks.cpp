@@ -15,17 +15,19 @@ struct RecordMarks::Shown {
 
 RecordMarks::~RecordMarks() = default;
 
-RecordMarks::RecordMarks(store::Store& store, boost::asio::thread_pool& workers, std::int64_t model_id,
-                         std::function<void()> ready)
+RecordMarks::RecordMarks(store::Store& store, boost::asio::thread_pool& workers,
+                         std::int64_t model_id, std::function<void()> ready)
     : store_(store), workers_(workers), model_id_(model_id), ready_(std::move(ready)) {}
 
-Result<RecordMarks::Marks> RecordMarks::read(const Wanted& wanted, std::optional<std::int64_t> at) const {
+Result<RecordMarks::Marks> RecordMarks::read(const Wanted& wanted,
+                                             std::optional<std::int64_t> at) const {
   auto marks = store_.marks(wanted.first, least_role(wanted.second), model_id_, at);
   if (!marks) return tl::unexpected(marks.error());
   return marks->empty() ? nullptr : std::make_shared<const std::vector<KeyMark>>(std::move(*marks));
 }
 
-Result<RecordMarks::Marks> RecordMarks::when(std::int64_t table_id, Visibility sight, std::int64_t sequence) const {
+Result<RecordMarks::Marks> RecordMarks::when(std::int64_t table_id, Visibility sight,
+                                             std::int64_t sequence) const {
   const auto at = store_.table_sequence_when(table_id, model_id_, sequence);
   if (!at) return tl::unexpected(at.error());
   return read({table_id, sight}, *at);
@@ -71,7 +73,9 @@ void RecordMarks::start(const Wanted& wanted, Entry& entry) {
 
 void RecordMarks::run(const Wanted& wanted) {
   auto marks = read(wanted);
-  if (!marks) log::warning("lines and points of table " + std::to_string(wanted.first) + ": " + marks.error().detail);
+  if (!marks)
+    log::warning("lines and points of table " + std::to_string(wanted.first) + ": " +
+                 marks.error().detail);
   bool differ = false;
   {
     std::lock_guard lock(mutex_);
@@ -80,7 +84,8 @@ void RecordMarks::run(const Wanted& wanted) {
     entry.reading = false;
     // What cannot be read stays as it was, until records change again.
     entry.known |= marks.has_value();
-    if (marks && !(!entry.marks && !*marks) && !(entry.marks && *marks && *entry.marks == **marks)) {
+    if (marks && !(!entry.marks && !*marks) &&
+        !(entry.marks && *marks && *entry.marks == **marks)) {
       entry.marks = std::move(*marks);
       differ = true;
     }
@@ -120,7 +125,8 @@ render::MarksShown show_marks(const std::vector<LayerMarks>& layers) {
     if (!layer.marks) continue;
     for (const KeyMark& each : *layer.marks) {
       Rgba color = color_of(*layer.palette, static_cast<double>(each.key));
-      color[3] = static_cast<std::uint8_t>(std::lround(color[3] * std::clamp(layer.opacity, 0.0f, 1.0f)));
+      color[3] =
+          static_cast<std::uint8_t>(std::lround(color[3] * std::clamp(layer.opacity, 0.0f, 1.0f)));
       if (color[3] > 0) shown->push_back({each.mark.places, color});
     }
   }

@@ -15,25 +15,29 @@ namespace strata::room {
 
 struct LayerMarks;
 
-// The lines and points that records have on an open model, by table and by the least seen of the columns that are looked at (`sight`). They are read on a worker when a view first needs them, and anew
-// when records change. Thread-safe.
+// The lines and points that records have on an open model, by table and by the least seen of the
+// columns that are looked at (`sight`). They are read on a worker when a view first needs them, and
+// anew when records change. Thread-safe.
 class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
  public:
   using Marks = std::shared_ptr<const std::vector<KeyMark>>;  // by key; told apart by the object
 
-  // `ready` is called, on any thread, whenever marks that were asked for are there and differ from before.
+  // `ready` is called, on any thread, whenever marks that were asked for are there and differ from
+  // before.
   RecordMarks(store::Store& store, boost::asio::thread_pool& workers, std::int64_t model_id,
               std::function<void()> ready);
   ~RecordMarks();
 
   // The newest that are there; null: none are, as far as is known.
   Marks find(std::int64_t table_id, Visibility sight);
-  // Those of now, read on the calling thread where they are not known. While the database is away, the last that were. Blocks.
+  // Those of now, read on the calling thread where they are not known. While the database is away,
+  // the last that were. Blocks.
   Result<Marks> newest(std::int64_t table_id, Visibility sight);
   // Those of when an edit of the model was made. Blocks.
   Result<Marks> when(std::int64_t table_id, Visibility sight, std::int64_t sequence) const;
   void records_changed(std::int64_t table_id);
-  // `show_marks`, as one object for all who show the same now: views are told by it whether they have the same picture.
+  // `show_marks`, as one object for all who show the same now: views are told by it whether they
+  // have the same picture.
   render::MarksShown shown(const std::vector<LayerMarks>& layers);
   void stop();  // nothing more is read, and `ready` not called
 
@@ -47,7 +51,8 @@ class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
   using Wanted = std::pair<std::int64_t, Visibility>;
   void start(const Wanted& wanted, Entry& entry);  // with the mutex held
   void run(const Wanted& wanted);
-  Result<Marks> read(const Wanted& wanted, std::optional<std::int64_t> at = {}) const;  // `at` of the table
+  // `at` of the table
+  Result<Marks> read(const Wanted& wanted, std::optional<std::int64_t> at = {}) const;
 
   store::Store& store_;
   boost::asio::thread_pool& workers_;
@@ -60,7 +65,8 @@ class RecordMarks : public std::enable_shared_from_this<RecordMarks> {
   bool stopped_ = false;
 };
 
-// Marks of one layer's records, as the layer is drawn: in the colours of their keys, with its opacity.
+// Marks of one layer's records, as the layer is drawn: in the colours of their keys, with its
+// opacity.
 struct LayerMarks {
   RecordMarks::Marks marks;
   std::shared_ptr<const Palette> palette;  // by key

@@ -1,6 +1,7 @@
-// How an open room recovers: its copies on the GPU are made anew after a lost context, its mirrors after the journal turned out
-// to hold more than they do. Both happen while the pipeline is paused and nothing is under way, so nothing else changes the
-// layers. What fails is tried again until the room is shut; who waits for it is refused after each try.
+// How an open room recovers: its copies on the GPU are made anew after a lost context, its mirrors
+// after the journal turned out to hold more than they do. Both happen while the pipeline is paused
+// and nothing is under way, so nothing else changes the layers. What fails is tried again until the
+// room is shut; who waits for it is refused after each try.
 #include <boost/asio/post.hpp>
 
 #include "core/log.h"
@@ -29,9 +30,11 @@ void OpenRoom::recover() {
     recovery_.working = true;
     parts_.renderer.remove_model(model_handle());  // there may not be room for both
     boost::asio::post(parts_.workers, [self = shared_from_this(), losses = recovery_.gpu_losses] {
-      auto contents = fill_gpu(self->parts_.renderer, {self->geometry_, self->coarser_}, self->layer_states());
-      boost::asio::post(self->strand_,
-                        [self, losses, contents = std::move(contents)] { self->on_gpu_filled(losses, contents); });
+      auto contents =
+          fill_gpu(self->parts_.renderer, {self->geometry_, self->coarser_}, self->layer_states());
+      boost::asio::post(self->strand_, [self, losses, contents = std::move(contents)] {
+        self->on_gpu_filled(losses, contents);
+      });
     });
   } else if (recovery_.journal_differs) {
     recovery_.working = true;
@@ -60,7 +63,8 @@ void OpenRoom::on_journal_read(Result<JournalContents> contents) {
     for (auto& [id, state] : read) {
       auto known = layers_.find(id);
       if (known == layers_.end()) {
-        recovery_.gpu_lacks_all = true;  // made by a request that never heard so; rare enough to start from nothing
+        // made by a request that never heard so; rare enough to start from nothing
+        recovery_.gpu_lacks_all = true;
         continue;
       }
       state.handles = known->second.handles;
@@ -128,15 +132,18 @@ void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& conte
 }
 
 void OpenRoom::retry_recovery(const Problem& why) {
-  log::warning("model " + std::to_string(model_id_) + " could not be loaded again, trying again: " + why.title + ": " +
-               why.detail);
-  pipeline_->refuse_waiting(
-      {503, "Model is reloading", "The model is being loaded again, which failed for now: " + why.detail, {}});
+  log::warning("model " + std::to_string(model_id_) +
+               " could not be loaded again, trying again: " + why.title + ": " + why.detail);
+  pipeline_->refuse_waiting({503,
+                             "Model is reloading",
+                             "The model is being loaded again, which failed for now: " + why.detail,
+                             {}});
   recovery_.timer.expires_after(recovery_.retry_in);
   recovery_.retry_in = std::min(2 * recovery_.retry_in, Recovery::kLastRetry);
-  recovery_.timer.async_wait([self = shared_from_this()](const boost::system::error_code& cancelled) {
-    if (!cancelled) self->recover();
-  });
+  recovery_.timer.async_wait(
+      [self = shared_from_this()](const boost::system::error_code& cancelled) {
+        if (!cancelled) self->recover();
+      });
 }
 
 }  // namespace strata::room

@@ -25,20 +25,23 @@ struct RegionContext {
   Role author;
 };
 
-// A place as a surface texel (numbered as in mesh::TexelGraph) and a point in model space. Refused (422 at `field`) where there is none.
+// A place as a surface texel (numbered as in mesh::TexelGraph) and a point in model space. Refused
+// (422 at `field`) where there is none.
 struct PlaceOnSurface {
   std::uint32_t texel = 0;
   glm::vec3 position{0};
 };
-Result<PlaceOnSurface> find_place(const Place& place, const mesh::SurfaceMap& map, SurfaceLookup& surface,
-                                  const std::string& field);
+Result<PlaceOnSurface> find_place(const Place& place, const mesh::SurfaceMap& map,
+                                  SurfaceLookup& surface, const std::string& field);
 // The texels of an outline, gutter included. Waits for the GPU, which must have the map.
-Result<TileMasks> texels_in(const Outline& outline, const mesh::SurfaceMap& map, const SurfaceLookup& surface,
-                            render::Renderer& renderer, render::ModelHandle model);
+Result<TileMasks> texels_in(const Outline& outline, const mesh::SurfaceMap& map,
+                            const SurfaceLookup& surface, render::Renderer& renderer,
+                            render::ModelHandle model);
 
-// What a fill or a polygon changes. Blocks: for worker threads. Refused: an expression over layers that are not there
-// (422), a place that is not on the model (422), what the GPU refuses.
-Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType type, const RegionContext& context);
+// What a fill or a polygon changes. Blocks: for worker threads. Refused: an expression over layers
+// that are not there (422), a place that is not on the model (422), what the GPU refuses.
+Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType type,
+                                             const RegionContext& context);
 Result<std::vector<TileChange>> polygon_changes(const PolygonEdit& polygon, ValueType type,
                                                 const RegionContext& context);
 

@@ -25,27 +25,32 @@ constexpr auto kSweepEvery = std::chrono::seconds(5);
 
 // A share of what the machine has, or of what its container may take.
 std::uint64_t default_budget() {
-  std::uint64_t bytes =
-      static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  std::uint64_t bytes = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+                        static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
   std::uint64_t limit = 0;
-  if (std::ifstream("/sys/fs/cgroup/memory.max") >> limit) bytes = std::min(bytes, limit);  // "max" is no number
+  // "max" is no number
+  if (std::ifstream("/sys/fs/cgroup/memory.max") >> limit) bytes = std::min(bytes, limit);
   return bytes / 10 * 6;
 }
 
-const Problem kClosing{503, "Model is closing", "The server is letting go of this model; try again in a moment.", {}};
+const Problem kClosing{
+    503, "Model is closing", "The server is letting go of this model; try again in a moment.", {}};
 const Problem kStopping{503, "Server is stopping", "Try again when it is back.", {}};
 
 }  // namespace
 
 struct Rooms::Impl {
-  Impl(store::Store& store, render::Renderer& the_renderer, stream::StreamContext stream, RoomOptions options)
+  Impl(store::Store& store, render::Renderer& the_renderer, stream::StreamContext stream,
+       RoomOptions options)
       : renderer(the_renderer),
         writer(store, {options.retry_for, 256u << 20}),
         strands(kStrandThreads),
         workers(kWorkerThreads),
         readers(kReaderThreads),
-        memory("main memory", "--memory", options.memory_bytes > 0 ? options.memory_bytes : default_budget()),
-        parts{store, writer, renderer, stream, strands, workers, memory, readers, retired_keys, options} {
+        memory("main memory", "--memory",
+               options.memory_bytes > 0 ? options.memory_bytes : default_budget()),
+        parts{store,   writer, renderer, stream,       strands,
+              workers, memory, readers,  retired_keys, options} {
     memory.set_evictor([this] { return drop_a_map(); });
     renderer.on_context_lost([this] {
       std::lock_guard lock(mutex);
@@ -84,8 +89,8 @@ struct Rooms::Impl {
 
   Result<std::shared_ptr<OpenRoom>> open(const std::string& model_ref);
 
-  // Lets go of rooms that nobody has been in for a while, and of the memory of people who left: each view is some 15 MB, in pieces where
-  // the processor draws.
+  // Lets go of rooms that nobody has been in for a while, and of the memory of people who left:
+  // each view is some 15 MB, in pieces where the processor draws.
   void sweep() {
     std::size_t departed = 0;  // since memory was given back
     bool due = false;          // a turn later, when the renderer has let go of their views
@@ -95,7 +100,8 @@ struct Rooms::Impl {
         if (changed.wait_for(lock, kSweepEvery, [&] { return stopping; })) return;
       }
       const auto now = std::chrono::steady_clock::now();
-      bool closed = close_rooms([&](const OpenRoom& room) { return room.deserted(now); }, "nobody is looking");
+      bool closed = close_rooms([&](const OpenRoom& room) { return room.deserted(now); },
+                                "nobody is looking");
       for (const auto& room : open_ones()) closed |= room->drop_large_unused_maps(now);
       if (std::exchange(due, false)) give_back_memory();
       std::size_t here = 0;
@@ -109,8 +115,8 @@ struct Rooms::Impl {
     }
   }
 
-  // The surface map that was not used for the longest time, of a room where nothing is being painted. Those who ask wait, and so
-  // must not be on a strand.
+  // The surface map that was not used for the longest time, of a room where nothing is being
+  // painted. Those who ask wait, and so must not be on a strand.
   bool drop_a_map() {
     std::vector<std::pair<SurfaceMaps::Clock::time_point, std::shared_ptr<OpenRoom>>> by_use;
     {
@@ -118,16 +124,20 @@ struct Rooms::Impl {
       for (auto& [id, room] : rooms)
         if (const auto use = room->maps().oldest_use()) by_use.emplace_back(*use, room);
     }
-    std::sort(by_use.begin(), by_use.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    return std::any_of(by_use.begin(), by_use.end(), [](const auto& entry) { return entry.second->drop_map(); });
+    std::sort(by_use.begin(), by_use.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    return std::any_of(by_use.begin(), by_use.end(),
+                       [](const auto& entry) { return entry.second->drop_map(); });
   }
 
   // Without waiting for their time; false when somebody is in every room.
   bool close_empty_rooms() {
-    return close_rooms([](const OpenRoom& room) { return room.people() == 0; }, "for another that needs its memory");
+    return close_rooms([](const OpenRoom& room) { return room.people() == 0; },
+                       "for another that needs its memory");
   }
 
-  // Closes the rooms that no request is looking at and where no edit waits for an answer: ours is the only reference.
+  // Closes the rooms that no request is looking at and where no edit waits for an answer: ours is
+  // the only reference.
   bool close_rooms(const std::function<bool(const OpenRoom&)>& may_close, const char* why) {
     std::vector<std::shared_ptr<OpenRoom>> leaving;
     {
@@ -171,7 +181,8 @@ struct Rooms::Impl {
   std::thread sweeper;
 };
 
-Rooms::Rooms(store::Store& store, render::Renderer& renderer, stream::StreamContext stream, RoomOptions options)
+Rooms::Rooms(store::Store& store, render::Renderer& renderer, stream::StreamContext stream,
+             RoomOptions options)
     : impl_(std::make_unique<Impl>(store, renderer, stream, options)) {}
 
 Rooms::~Rooms() = default;
@@ -200,7 +211,8 @@ Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref
     opening.insert(model->id);
   }
   auto room = OpenRoom::open(parts, std::to_string(model->id));
-  if (!room && is_used_up(room.error()) && close_empty_rooms()) room = OpenRoom::open(parts, std::to_string(model->id));
+  if (!room && is_used_up(room.error()) && close_empty_rooms())
+    room = OpenRoom::open(parts, std::to_string(model->id));
   std::unique_lock lock(mutex);
   opening.erase(model->id);
   changed.notify_all();
@@ -225,16 +237,17 @@ Result<void> Rooms::retire_key(std::int64_t table_id, std::int64_t key) {
   impl_->retired_keys.retire(table_id, key);
   for (const auto& room : impl_->open_ones()) {
     const auto layers = room->layers();
-    if (std::ranges::none_of(layers, [&](const Layer& layer) { return layer.table == table_id; })) continue;
+    if (std::ranges::none_of(layers, [&](const Layer& layer) { return layer.table == table_id; }))
+      continue;
     if (auto settled = room->settle(); !settled) return settled;
   }
   return {};
 }
 
 Result<void> Rooms::settle() {
+  // whose model was deleted meanwhile
   for (const auto& room : impl_->open_ones())
-    if (auto settled = room->settle(); !settled && settled.error().status != 410)  // whose model was deleted meanwhile
-      return settled;
+    if (auto settled = room->settle(); !settled && settled.error().status != 410) return settled;
   return {};
 }
 
@@ -276,7 +289,8 @@ void Rooms::drain() {
     while (!room->idle() && std::chrono::steady_clock::now() < deadline)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     if (room->idle()) continue;
-    log::error("model " + std::to_string(room->id()) + ": edits still wait and are refused, since the server stops");
+    log::error("model " + std::to_string(room->id()) +
+               ": edits still wait and are refused, since the server stops");
     room->shut(kStopping);
   }
   impl_->writer.drain();

@@ -5,8 +5,9 @@
 namespace strata::room {
 namespace {
 
-// Every call that is told of layers looks at them here first. Edits are looked at when their turn comes (EditPipeline), frames and events as
-// they are made (RoomMember, OpenRoom::tell_layer), since what is seen may change meanwhile.
+// Every call that is told of layers looks at them here first. Edits are looked at when their turn
+// comes (EditPipeline), frames and events as they are made (RoomMember, OpenRoom::tell_layer),
+// since what is seen may change meanwhile.
 class SeenRoom final : public Room {
  public:
   SeenRoom(std::shared_ptr<Room> room, Role role) : room_(std::move(room)), role_(role) {}
@@ -21,23 +22,25 @@ class SeenRoom final : public Room {
     if (layer && !sees(role_, layer->visibility)) return no_such_layer(ref);
     return layer;
   }
-  std::unique_ptr<Member> join(Author who, Portrait portrait, Listener* listener, stream::Viewer::Send send) override {
-    return room_->join({std::move(who.user), std::min(who.role, role_)}, std::move(portrait), listener,
-                       std::move(send));
+  std::unique_ptr<Member> join(Author who, Portrait portrait, Listener* listener,
+                               stream::Viewer::Send send) override {
+    return room_->join({std::move(who.user), std::min(who.role, role_)}, std::move(portrait),
+                       listener, std::move(send));
   }
 
-  Result<query::SurfacePoint> position(const glm::dvec3& world, const std::vector<std::string>& layers,
-                                       At at) override {
+  Result<query::SurfacePoint> position(const glm::dvec3& world,
+                                       const std::vector<std::string>& layers, At at) override {
     if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
     return room_->position(world, layers, at);
   }
   Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
-                                                     const std::vector<std::string>& layers, At at) override {
+                                                     const std::vector<std::string>& layers,
+                                                     At at) override {
     if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
     return room_->positions(world, layers, at);
   }
-  Result<query::SurfacePoint> pick(const Camera& camera, double x, double y, const std::vector<std::string>& layers,
-                                   At at) override {
+  Result<query::SurfacePoint> pick(const Camera& camera, double x, double y,
+                                   const std::vector<std::string>& layers, At at) override {
     if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
     return room_->pick(camera, x, y, layers, at);
   }
@@ -51,7 +54,8 @@ class SeenRoom final : public Room {
     if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
     return room_->select(seen_by(selection), layers, wanted);
   }
-  Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers, At at) override {
+  Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers,
+                                 At at) override {
     if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
     return room_->profile(line, layers, at);
   }
@@ -68,7 +72,8 @@ class SeenRoom final : public Room {
     if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
     return room_->layer_areas(layer, at);
   }
-  Result<query::SurfaceTexels> surface_texels(const std::string& layer, const Selection& selection) override {
+  Result<query::SurfaceTexels> surface_texels(const std::string& layer,
+                                              const Selection& selection) override {
     if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
     return room_->surface_texels(layer, seen_by(selection));
   }
@@ -91,24 +96,28 @@ class SeenRoom final : public Room {
       std::vector<Layer> in_order = layers();
       sort_as_shown(in_order, asked.shown);
       for (const Layer& layer : in_order)
-        if (asked.shown.of(layer.id).visible.value_or(layer.visible)) seen.layers->push_back(std::to_string(layer.id));
+        if (asked.shown.of(layer.id).visible.value_or(layer.visible))
+          seen.layers->push_back(std::to_string(layer.id));
     }
     return room_->pictures(seen, parts, see);
   }
-  Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string& layer, const Camera& camera,
-                                                              int columns, int rows, At at) override {
+  Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string& layer,
+                                                              const Camera& camera, int columns,
+                                                              int rows, At at) override {
     if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
     return room_->seen_keys(layer, camera, columns, rows, at);
   }
   Result<std::vector<query::SeenLayer>> seen_layers(const std::vector<std::string>& layers,
-                                                    const std::vector<query::LayerCover>& covers, const Camera& camera,
-                                                    int columns, int rows, At at) override {
+                                                    const std::vector<query::LayerCover>& covers,
+                                                    const Camera& camera, int columns, int rows,
+                                                    At at) override {
     if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
     return room_->seen_layers(layers, covers, camera, columns, rows, at);
   }
   DurableState durable_state() const override {
     DurableState state = room_->durable_state();
-    std::erase_if(state.provisional, [&](const auto& entry) { return !layer(std::to_string(entry.first)); });
+    std::erase_if(state.provisional,
+                  [&](const auto& entry) { return !layer(std::to_string(entry.first)); });
     return state;
   }
 
@@ -116,7 +125,9 @@ class SeenRoom final : public Room {
   Model model() const override { return room_->model(); }
   std::int64_t sequence() const override { return room_->sequence(); }
   std::int64_t durable_sequence() const override { return room_->durable_sequence(); }
-  std::vector<Presence> presence(const Uuid& receiver) const override { return room_->presence(receiver); }
+  std::vector<Presence> presence(const Uuid& receiver) const override {
+    return room_->presence(receiver);
+  }
   std::shared_ptr<const mesh::Geometry> geometry() const override { return room_->geometry(); }
   std::shared_ptr<const mesh::SearchTree> search_tree() override { return room_->search_tree(); }
   Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution) override {
@@ -146,7 +157,8 @@ class SeenRoom final : public Room {
                        double tolerance) override {
     return room_->dabs(layer, values, radius, tolerance);
   }
-  Result<TileMap> project(const Layer& layer, const glm::dvec3& direction, const ValueAt& value_at) override {
+  Result<TileMap> project(const Layer& layer, const glm::dvec3& direction,
+                          const ValueAt& value_at) override {
     return room_->project(layer, direction, value_at);
   }
   Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>& answer,
@@ -156,7 +168,8 @@ class SeenRoom final : public Room {
   Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) override {
     return room_->update_layer(std::move(layer), answer);
   }
-  Result<Layer> widen_layer(const Layer& layer, ValueType type, const store::FirstAnswer<Layer>& answer) override {
+  Result<Layer> widen_layer(const Layer& layer, ValueType type,
+                            const store::FirstAnswer<Layer>& answer) override {
     return room_->widen_layer(layer, type, answer);
   }
   Result<void> delete_layer(std::int64_t id, const store::FirstAnswer<>& answer) override {
@@ -165,11 +178,12 @@ class SeenRoom final : public Room {
   Result<void> bin_layer(std::int64_t id, const store::FirstAnswer<>& answer) override {
     return room_->bin_layer(id, answer);
   }
-  Result<store::BinRestored> restore_layer(const store::BinEntry& entry,
-                                           const store::FirstAnswer<store::BinRestored>& answer) override {
+  Result<store::BinRestored> restore_layer(
+      const store::BinEntry& entry, const store::FirstAnswer<store::BinRestored>& answer) override {
     return room_->restore_layer(entry, answer);
   }
-  Result<Layer> layer_computed(std::int64_t id, const std::string& expression, std::int64_t sequence,
+  Result<Layer> layer_computed(std::int64_t id, const std::string& expression,
+                               std::int64_t sequence,
                                const std::map<std::int64_t, std::int64_t>& tables) override {
     return room_->layer_computed(id, expression, sequence, tables);
   }

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kMargin_px = 1;  // the box's own rounding must not cut off what lies at its border
 
-// A swept square covers exactly a box: its side is the box's shorter one, and its path runs along the longer.
+// A swept square covers exactly a box: its side is the box's shorter one, and its path runs along
+// the longer.
 StrokeBatch box_stroke(const Camera& camera, const glm::dvec2& low, const glm::dvec2& high) {
   const glm::dvec2 window(camera.width, camera.height);
   const glm::dvec2 from = glm::clamp(low - kMargin_px, glm::dvec2(-kMargin_px), window);
@@ -26,16 +27,18 @@ StrokeBatch box_stroke(const Camera& camera, const glm::dvec2& low, const glm::d
 }  // namespace
 
 Result<TileMasks> seen_texels(render::Renderer& renderer, render::ModelHandle model, int resolution,
-                              const Camera& camera, const glm::dvec2& low, const glm::dvec2& high, bool through) {
-  // Erasing a layer that is empty changes nothing and takes no page, and tells all the same what it went over.
+                              const Camera& camera, const glm::dvec2& low, const glm::dvec2& high,
+                              bool through) {
+  // Erasing a layer that is empty changes nothing and takes no page, and tells all the same what it
+  // went over.
   auto scratch = await<render::LayerHandle>(
       [&](auto done) { renderer.add_layer(model, ValueType::u8, resolution, std::move(done)); });
   if (!scratch) return tl::unexpected(scratch.error());
   StrokeBatch stroke = box_stroke(camera, low, high);
   stroke.erase = true;
   stroke.through = through;
-  const auto outcome =
-      await<render::StrokeOutcome>([&](auto done) { renderer.paint(*scratch, std::move(stroke), std::move(done)); });
+  const auto outcome = await<render::StrokeOutcome>(
+      [&](auto done) { renderer.paint(*scratch, std::move(stroke), std::move(done)); });
   renderer.remove_layer(*scratch);
   if (!outcome) return tl::unexpected(outcome.error());
   TileMasks seen;

@@ -26,10 +26,12 @@ Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::graph(const mesh:
   return graph;
 }
 
-Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::find_or_build(const mesh::SurfaceMap& map) {
+Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::find_or_build(
+    const mesh::SurfaceMap& map) {
   const Question::Aside aside;
   std::lock_guard lock(graphs_mutex_);  // held while it is built: who else asks wants the same
-  if (const auto found = graphs_.find(map.resolution); found != graphs_.end()) return found->second.graph;
+  if (const auto found = graphs_.find(map.resolution); found != graphs_.end())
+    return found->second.graph;
   auto built = mesh::build_texel_graph(*geometry_, map, progress_);
   if (!built) return tl::unexpected(built.error());
   auto graph = std::make_shared<const mesh::TexelGraph>(std::move(*built));

@@ -11,8 +11,8 @@
 
 namespace strata::room {
 
-// What questions about a model's surface need, made when first asked for: the calls block meanwhile, so they are for worker
-// threads. Thread-safe.
+// What questions about a model's surface need, made when first asked for: the calls block
+// meanwhile, so they are for worker threads. Thread-safe.
 class SurfaceLookup {
  public:
   // `memory` must outlive it.
@@ -23,7 +23,8 @@ class SurfaceLookup {
   std::shared_ptr<const mesh::SearchTree> tree();
   // A Problem 503 beyond the budget of main memory.
   Result<std::shared_ptr<const mesh::TexelGraph>> graph(const mesh::SurfaceMap& map);
-  bool drop_graphs();  // they are made again when next asked for; false when there is none, or one is being made
+  // they are made again when next asked for; false when there is none, or one is being made
+  bool drop_graphs();
   void stop() { progress_.cancel(); }
 
  private:

@@ -47,7 +47,8 @@ SurfaceMaps::Entries::const_iterator SurfaceMaps::oldest() const {
   auto oldest = entries_.end();
   for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
     if (!entry->second.baked || entry->second.working) continue;
-    if (oldest == entries_.end() || entry->second.last_use < oldest->second.last_use) oldest = entry;
+    if (oldest == entries_.end() || entry->second.last_use < oldest->second.last_use)
+      oldest = entry;
   }
   return oldest;
 }
@@ -71,7 +72,8 @@ bool SurfaceMaps::drop_unused(Clock::time_point since, std::uint64_t at_least_by
   std::lock_guard lock(mutex_);
   return std::erase_if(entries_, [&](const auto& each) {
            const auto& [resolution, entry] = each;
-           if (!entry.baked || entry.working || entry.last_use >= since || entry.share.bytes() < at_least_bytes)
+           if (!entry.baked || entry.working || entry.last_use >= since ||
+               entry.share.bytes() < at_least_bytes)
              return false;
            renderer_.remove_surface_map(model_, resolution);
            return true;
@@ -92,7 +94,8 @@ void SurfaceMaps::start(int resolution) {
     if (!map) {
       auto baked = mesh::bake_surface_map(*self->geometry_, resolution, self->progress_);
       if (!baked) return self->finish(resolution, tl::unexpected(baked.error()), model);
-      auto share = self->memory_.reserve(baked->bytes(), "a surface map of " + std::to_string(resolution) + " texels");
+      auto share = self->memory_.reserve(
+          baked->bytes(), "a surface map of " + std::to_string(resolution) + " texels");
       if (!share) return self->finish(resolution, tl::unexpected(share.error()), model);
       map = std::make_shared<const mesh::SurfaceMap>(std::move(*baked));
       std::lock_guard lock(self->mutex_);
@@ -104,9 +107,10 @@ void SurfaceMaps::start(int resolution) {
 }
 
 void SurfaceMaps::upload(int resolution, MapPtr map, render::ModelHandle model) {
-  renderer_.add_surface_map(model, map, [self = shared_from_this(), resolution, map, model](Result<void> done) {
-    self->finish(resolution, done ? Result<MapPtr>(map) : tl::unexpected(done.error()), model);
-  });
+  renderer_.add_surface_map(
+      model, map, [self = shared_from_this(), resolution, map, model](Result<void> done) {
+        self->finish(resolution, done ? Result<MapPtr>(map) : tl::unexpected(done.error()), model);
+      });
 }
 
 void SurfaceMaps::finish(int resolution, Result<MapPtr> result, render::ModelHandle model) {
@@ -114,7 +118,8 @@ void SurfaceMaps::finish(int resolution, Result<MapPtr> result, render::ModelHan
   {
     std::unique_lock lock(mutex_);
     Entry& entry = entries_[resolution];
-    // The model's handle may have changed while the map was on its way (lost context): then once more, with the new one.
+    // The model's handle may have changed while the map was on its way (lost context): then once
+    // more, with the new one.
     if (entry.baked && model_ != model) {
       model = model_;
       MapPtr again = entry.baked;

@@ -16,15 +16,15 @@
 
 namespace strata::room {
 
-// The surface maps of one model, baked when first asked for (a second or so) on a background thread and put on the GPU.
-// Thread-safe.
+// The surface maps of one model, baked when first asked for (a second or so) on a background thread
+// and put on the GPU. Thread-safe.
 class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
  public:
   using MapPtr = std::shared_ptr<const mesh::SurfaceMap>;
   using Ready = std::function<void(Result<MapPtr>)>;
 
-  SurfaceMaps(std::shared_ptr<const mesh::Geometry> geometry, render::Renderer& renderer, MemoryLedger& memory,
-              boost::asio::thread_pool& workers)
+  SurfaceMaps(std::shared_ptr<const mesh::Geometry> geometry, render::Renderer& renderer,
+              MemoryLedger& memory, boost::asio::thread_pool& workers)
       : geometry_(std::move(geometry)), renderer_(renderer), memory_(memory), workers_(workers) {}
 
   // The map if it is baked and on the GPU, otherwise null (and nothing is started).
@@ -38,10 +38,13 @@ class SurfaceMaps : public std::enable_shared_from_this<SurfaceMaps> {
   void set_model(render::ModelHandle model);
   // Maps that can be done without, for the moment: they are baked again when they are asked for.
   using Clock = std::chrono::steady_clock;
-  std::optional<Clock::time_point> oldest_use() const;  // of the map that was not used for the longest time
-  // Drops it; false when there is none. Only while nothing is being painted, which would miss it on the GPU.
+  // of the map that was not used for the longest time
+  std::optional<Clock::time_point> oldest_use() const;
+  // Drops it; false when there is none. Only while nothing is being painted, which would miss it on
+  // the GPU.
   bool drop_oldest();
-  // Drops those of at least so many bytes that were not used since; false when there is none. As above.
+  // Drops those of at least so many bytes that were not used since; false when there is none. As
+  // above.
   bool drop_unused(Clock::time_point since, std::uint64_t at_least_bytes);
   void stop() { progress_.cancel(); }
 

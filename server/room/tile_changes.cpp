@@ -17,15 +17,16 @@ TileMask differing(const TileData& a, const TileData& b) {
   for (int w = 0; w < kMaskWords; ++w) mask.words[w] = a.valid.words[w] ^ b.valid.words[w];
   if (std::memcmp(a.values.data(), b.values.data(), a.values.size()) == 0) return mask;
   for (int texel = 0; texel < kTexelsPerTile; ++texel)
-    if (std::memcmp(&a.values[std::size_t(texel) * width], &b.values[std::size_t(texel) * width], width) != 0)
+    if (std::memcmp(&a.values[std::size_t(texel) * width], &b.values[std::size_t(texel) * width],
+                    width) != 0)
       mask.set(texel);
   return mask;
 }
 
 // Writes the texels that `mask_of(address)` tells.
 template <class MaskOf>
-std::vector<TileChange> fill(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map, WrittenValue value,
-                             MaskOf mask_of) {
+std::vector<TileChange> fill(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
+                             WrittenValue value, MaskOf mask_of) {
   std::vector<TileChange> changes;
   const int tiles_per_side = map.resolution / kTileSize;
   for (int y = 0; y < tiles_per_side; ++y)
@@ -36,7 +37,8 @@ std::vector<TileChange> fill(const TileMap& tiles, ValueType type, const mesh::S
       auto before = tile_or_empty(tiles, address, type);
       if (!value && !before->valid.any()) continue;
       auto after = std::make_shared<TileData>(*before);
-      for_each_texel(mask, [&](int texel) { value ? after->write(texel, *value) : after->clear(texel); });
+      for_each_texel(mask,
+                     [&](int texel) { value ? after->write(texel, *value) : after->clear(texel); });
       changes.push_back({address, std::move(before), std::move(after), mask});
     }
   return changes;
@@ -44,7 +46,8 @@ std::vector<TileChange> fill(const TileMap& tiles, ValueType type, const mesh::S
 
 }  // namespace
 
-std::shared_ptr<const TileData> tile_or_empty(const TileMap& tiles, TileAddress address, ValueType type) {
+std::shared_ptr<const TileData> tile_or_empty(const TileMap& tiles, TileAddress address,
+                                              ValueType type) {
   auto found = tiles.find(address);
   if (found != tiles.end() && found->second) return found->second;
   return std::make_shared<const TileData>(type);
@@ -63,21 +66,26 @@ ChangeCount count_changes(const TileChange& change, const mesh::SurfaceMap& map)
   return count;
 }
 
-std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
-                                        WrittenValue value) {
-  return fill(tiles, type, map, value, [&](TileAddress address) { return map.owned_in_tile(address); });
+std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type,
+                                        const mesh::SurfaceMap& map, WrittenValue value) {
+  return fill(tiles, type, map, value,
+              [&](TileAddress address) { return map.owned_in_tile(address); });
 }
 
-std::vector<TileChange> fill_selected(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
-                                      query::TexelSelection selection, WrittenValue value) {
+std::vector<TileChange> fill_selected(const TileMap& tiles, ValueType type,
+                                      const mesh::SurfaceMap& map, query::TexelSelection selection,
+                                      WrittenValue value) {
   mesh::spread_to_gutter(map, selection);
   return fill(tiles, type, map, value, [&](TileAddress address) {
-    return mesh::gather_tile_bits(map, address, [&](std::uint32_t slot) { return selection[slot]; });
+    return mesh::gather_tile_bits(map, address,
+                                  [&](std::uint32_t slot) { return selection[slot]; });
   });
 }
 
-std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
-                                   const std::map<TileAddress, TileMask>& masks, WrittenValue value) {
+std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type,
+                                   const mesh::SurfaceMap& map,
+                                   const std::map<TileAddress, TileMask>& masks,
+                                   WrittenValue value) {
   return fill(tiles, type, map, value, [&](TileAddress address) {
     const auto found = masks.find(address);
     return found == masks.end() ? TileMask{} : found->second;
@@ -119,8 +127,8 @@ std::vector<TileChange> paint_over(const TileMap& tiles, const TileMap& written,
   return changes;
 }
 
-TileChange painted_change(TileAddress address, std::shared_ptr<const TileData> before, const TileMask& written,
-                          const TileData& read_back) {
+TileChange painted_change(TileAddress address, std::shared_ptr<const TileData> before,
+                          const TileMask& written, const TileData& read_back) {
   auto after = std::make_shared<TileData>(*before);
   copy_texels(read_back, written, *after);
   return {address, std::move(before), std::move(after), written};
@@ -146,8 +154,8 @@ std::vector<store::TileKeys> sum_tiles(
     store::TileKeys& of_tile = out.emplace_back(store::TileKeys{address, {}});
     for (const auto& key : query::surface_keys(*tile, address, layer, map)) {
       const auto value = static_cast<std::int64_t>(decode_value(layer.type, key.bits));
-      of_tile.keys.push_back({apart ? std::optional(value) : std::nullopt, key.texels, key.area.value(),
-                              key.weighted_position, key.lowest, key.highest});
+      of_tile.keys.push_back({apart ? std::optional(value) : std::nullopt, key.texels,
+                              key.area.value(), key.weighted_position, key.lowest, key.highest});
     }
   }
   return out;

@@ -14,7 +14,8 @@
 
 namespace strata::room {
 
-// One tile before and after an edit. `before` and `after` are never null; an empty tile is a TileData with nothing valid.
+// One tile before and after an edit. `before` and `after` are never null; an empty tile is a
+// TileData with nothing valid.
 struct TileChange {
   TileAddress address;
   std::shared_ptr<const TileData> before, after;
@@ -23,7 +24,8 @@ struct TileChange {
 };
 
 // The tile of a snapshot, or an empty one of the type.
-std::shared_ptr<const TileData> tile_or_empty(const TileMap& tiles, TileAddress address, ValueType type);
+std::shared_ptr<const TileData> tile_or_empty(const TileMap& tiles, TileAddress address,
+                                              ValueType type);
 
 struct ChangeCount {
   std::uint64_t texels = 0;  // surface texels whose value or validity differs
@@ -40,27 +42,32 @@ std::vector<store::TileKeys> sum_tiles(
 using WrittenValue = std::optional<std::uint32_t>;
 
 // Every texel of the surface gets the value, or loses what it has.
-std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
-                                        WrittenValue value);
+std::vector<TileChange> fill_everywhere(const TileMap& tiles, ValueType type,
+                                        const mesh::SurfaceMap& map, WrittenValue value);
 // The selected surface texels do, and the gutter texels that follow them.
-std::vector<TileChange> fill_selected(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
-                                      query::TexelSelection selection, WrittenValue value);
+std::vector<TileChange> fill_selected(const TileMap& tiles, ValueType type,
+                                      const mesh::SurfaceMap& map, query::TexelSelection selection,
+                                      WrittenValue value);
 // The texels of the masks, which belong to the surface or its gutter.
-std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type, const mesh::SurfaceMap& map,
-                                   const std::map<TileAddress, TileMask>& masks, WrittenValue value);
+std::vector<TileChange> fill_masks(const TileMap& tiles, ValueType type,
+                                   const mesh::SurfaceMap& map,
+                                   const std::map<TileAddress, TileMask>& masks,
+                                   WrittenValue value);
 
-// The layer's content becomes `wished`, on the texels that belong to the surface. Written is what differs.
+// The layer's content becomes `wished`, on the texels that belong to the surface. Written is what
+// differs.
 std::vector<TileChange> replace_content(const TileMap& tiles, const TileMap& wished, ValueType type,
                                         const mesh::SurfaceMap& map);
 
-// What is valid in `written` is painted over what is there; texels that do not belong to the surface are passed over.
+// What is valid in `written` is painted over what is there; texels that do not belong to the
+// surface are passed over.
 std::vector<TileChange> paint_over(const TileMap& tiles, const TileMap& written, ValueType type,
                                    const mesh::SurfaceMap& map);
 
-// What a stroke did to a tile: the texels it wrote become what the GPU holds there, and nothing else changes, whatever the GPU
-// holds in the rest of the tile.
-TileChange painted_change(TileAddress address, std::shared_ptr<const TileData> before, const TileMask& written,
-                          const TileData& read_back);
+// What a stroke did to a tile: the texels it wrote become what the GPU holds there, and nothing
+// else changes, whatever the GPU holds in the rest of the tile.
+TileChange painted_change(TileAddress address, std::shared_ptr<const TileData> before,
+                          const TileMask& written, const TileData& read_back);
 
 // Tiles that are not the same in both.
 std::vector<TileAddress> differing_tiles(const TileMap& a, const TileMap& b);

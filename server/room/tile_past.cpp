@@ -6,8 +6,8 @@ namespace strata::room {
 
 constexpr int kRevisionsAtOnce = 32;  // no more of a tile's history are in memory
 
-Result<void> walk_back(TileResolver& resolver, const Layer& layer, TileAddress tile, store::Store& store,
-                       const std::function<void(PastRevision&)>& turn) {
+Result<void> walk_back(TileResolver& resolver, const Layer& layer, TileAddress tile,
+                       store::Store& store, const std::function<void(PastRevision&)>& turn) {
   for (std::int64_t newest = std::numeric_limits<std::int64_t>::max(); resolver.is_open();) {
     auto revisions = store.tile_history(layer, tile, newest, kRevisionsAtOnce);
     if (!revisions) return tl::unexpected(revisions.error());

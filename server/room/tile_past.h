@@ -7,9 +7,9 @@
 
 namespace strata::room {
 
-// Walks back through a tile's history, only until every texel of the resolver has found its author. `turn` may change what an edit is
-// before it is looked at. Blocks.
-Result<void> walk_back(TileResolver& resolver, const Layer& layer, TileAddress tile, store::Store& store,
-                       const std::function<void(PastRevision&)>& turn);
+// Walks back through a tile's history, only until every texel of the resolver has found its author.
+// `turn` may change what an edit is before it is looked at. Blocks.
+Result<void> walk_back(TileResolver& resolver, const Layer& layer, TileAddress tile,
+                       store::Store& store, const std::function<void(PastRevision&)>& turn);
 
 }  // namespace strata::room

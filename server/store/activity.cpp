@@ -7,7 +7,8 @@
 namespace strata::store {
 namespace {
 
-// Of what is about a layer, or in a thread about one: to whoever sees that layer, in the Bin or not, or saw it when it was erased.
+// Of what is about a layer, or in a thread about one: to whoever sees that layer, in the Bin or
+// not, or saw it when it was erased.
 #define STRATA_ACTIVITY_IS_SEEN                                                                                          \
   "coalesce((SELECT l.visibility FROM all_layers l WHERE l.id = activities.layer_id), activities.visibility) = any($6) " \
   "AND (activities.comment_id IS NULL OR (SELECT coalesce(l.visibility, f.visibility) FROM comments c JOIN comments "    \
@@ -17,7 +18,8 @@ namespace {
 #define STRATA_ACTIVITY_LINES(asked)                                                     \
   "(SELECT * FROM activities WHERE " asked                                               \
   " AND (time, id) < (timestamptz 'epoch' + $2 * interval '1 microsecond', $3::bigint) " \
-  "AND ($4 OR kind <> 'member') AND " STRATA_ACTIVITY_IS_SEEN " ORDER BY time DESC, id DESC LIMIT $5)"
+  "AND ($4 OR kind <> 'member') AND " STRATA_ACTIVITY_IS_SEEN                            \
+  " ORDER BY time DESC, id DESC LIMIT $5)"
 #define STRATA_ACTIVITY_PAGE(lines)                                                                                  \
   "SELECT a.id, a.time, a.begun, a.user_name, a.kind, a.op, coalesce(l.name, t.name, CASE WHEN a.kind = 'model' "    \
   "THEN m.name END, a.subject), m.id, l.id, t.id, c.id, m.name, a.record_key, left(c.text, 200), a.person, a.role, " \
@@ -35,7 +37,8 @@ namespace {
                        STRATA_ACTIVITY_LINES("activities.table_id = on_it.table_id") " of_table) found "  \
   "ORDER BY time DESC, id DESC LIMIT $5"
 
-constexpr ActivityPlace kAfterAll{9'999'999'999'999'999, std::numeric_limits<std::int64_t>::max()};  // the year 2286
+// the year 2286
+constexpr ActivityPlace kAfterAll{9'999'999'999'999'999, std::numeric_limits<std::int64_t>::max()};
 
 std::optional<std::int64_t> integer_at(const PgResult& rows, int row, int column) {
   return rows.null(row, column) ? std::nullopt : std::optional(rows.integer(row, column));
@@ -72,7 +75,8 @@ Activity read_line(const PgResult& rows, int i) {
 
 }  // namespace
 
-Result<ActivityPage> Store::activity(std::int64_t project_id, Role seen_by, const ActivityQuery& query) {
+Result<ActivityPage> Store::activity(std::int64_t project_id, Role seen_by,
+                                     const ActivityQuery& query) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<ActivityPage> {
     const ActivityPlace before = query.before.value_or(kAfterAll);
     const int limit = std::max(query.limit, 1);
@@ -83,13 +87,16 @@ Result<ActivityPage> Store::activity(std::int64_t project_id, Role seen_by, cons
         .boolean(query.with_members)
         .integer(limit + 1)  // one more tells whether there is a next page
         .array(visibilities_seen_by(seen_by));
-    auto rows = connection.query(query.model ? STRATA_ACTIVITY_PAGE(STRATA_ACTIVITY_OF_MODEL)
-                                             : STRATA_ACTIVITY_PAGE(STRATA_ACTIVITY_LINES("project_id = $1")),
-                                 params);
+    auto rows = connection.query(
+        query.model ? STRATA_ACTIVITY_PAGE(STRATA_ACTIVITY_OF_MODEL)
+                    : STRATA_ACTIVITY_PAGE(STRATA_ACTIVITY_LINES("project_id = $1")),
+        params);
     if (!rows) return tl::unexpected(rows.error());
     ActivityPage page;
-    for (int i = 0; i < std::min(rows->rows(), limit); ++i) page.lines.push_back(read_line(*rows, i));
-    if (rows->rows() > limit) page.next = ActivityPlace{rows->integer(limit - 1, 20), page.lines.back().id};
+    for (int i = 0; i < std::min(rows->rows(), limit); ++i)
+      page.lines.push_back(read_line(*rows, i));
+    if (rows->rows() > limit)
+      page.next = ActivityPlace{rows->integer(limit - 1, 20), page.lines.back().id};
     return page;
   });
 }
@@ -100,10 +107,12 @@ Result<void> act_as(PgConnection& connection, const std::string& user) {
   return set ? Result<void>{} : tl::unexpected(set.error());
 }
 
-Result<void> rename_in_activity(PgConnection& connection, const std::string& name, const std::string& former) {
+Result<void> rename_in_activity(PgConnection& connection, const std::string& name,
+                                const std::string& former) {
   for (const char* sql : {"UPDATE activities SET user_name = $2 WHERE user_name = $1",
                           "UPDATE activities SET person = $2 WHERE person = $1"})
-    if (auto done = connection.query(sql, Params().text(name).text(former)); !done) return tl::unexpected(done.error());
+    if (auto done = connection.query(sql, Params().text(name).text(former)); !done)
+      return tl::unexpected(done.error());
   return {};
 }
 

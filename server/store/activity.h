@@ -8,22 +8,28 @@
 
 namespace strata::store {
 
-// A line of what was done in a project: what one person did to one thing, each time within ten minutes of the last one.
+// A line of what was done in a project: what one person did to one thing, each time within ten
+// minutes of the last one.
 struct Activity {
   std::int64_t id = 0;
   std::chrono::system_clock::time_point time, begun;  // the last time, and the first
-  std::string user;                                   // empty: the server itself, by its command line
-  // "edit", "layer", "look", "view", "tour", "model", "table", "columns", "records", "comment", "member", "project"
+  // empty: the server itself, by its command line
+  std::string user;
+  // "edit", "layer", "look", "view", "tour", "model", "table", "columns", "records", "comment",
+  // "member", "project"
   std::string kind;
-  std::string op;    // of an edit or a table's entry as its journal has it; "created", "changed", "deleted", …
+  // of an edit or a table's entry as its journal has it; "created", "changed", "deleted", …
+  std::string op;
   std::string name;  // of what it was done to, as it is called now, or was last; empty: a comment
   // What is still there.
   std::optional<std::int64_t> model, layer, table, comment;
   std::string model_name;
-  std::optional<std::int64_t> record;  // where all of the line is about this one, which may be deleted
-  std::string text;                    // how the comment begins
+  // where all of the line is about this one, which may be deleted
+  std::optional<std::int64_t> record;
+  std::string text;  // how the comment begins
   std::string person, group,
-      role;                // of a membership: in the project, or, where both are told, in the group; no role: it ended
+      // of a membership: in the project, or, where both are told, in the group; no role: it ended
+      role;
   std::int64_t count = 1;  // strokes and other edits; records or columns written; changes
   std::optional<std::int64_t> texels;  // of edits: changed one after the other
   std::optional<double> area_m2;

@@ -5,7 +5,8 @@ namespace {
 
 Result<void> check_key(const std::string& key) {
   if (key.empty() || key.size() > kLongestName)
-    return fail(400, "Bad Idempotency-Key", "An Idempotency-Key has 1 to 255 bytes.", "Idempotency-Key");
+    return fail(400, "Bad Idempotency-Key", "An Idempotency-Key has 1 to 255 bytes.",
+                "Idempotency-Key");
   return check_text(key, "Idempotency-Key");
 }
 
@@ -14,16 +15,19 @@ Result<void> check_key(const std::string& key) {
 Result<std::optional<nlohmann::json>> Store::find_answer(const std::string& key) {
   if (auto good = check_key(key); !good) return tl::unexpected(good.error());
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::optional<nlohmann::json>> {
-    auto row = connection.query("SELECT answer FROM answers WHERE key = $1 AND time > now() - interval '7 days'",
-                                Params().text(key));
+    auto row = connection.query(
+        "SELECT answer FROM answers WHERE key = $1 AND time > now() - interval '7 days'",
+        Params().text(key));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return std::optional<nlohmann::json>();
     return std::optional<nlohmann::json>(row->json(0, 0));
   });
 }
 
-// Those past their time make room. Another server may be doing the same: each takes what the other has not.
-Result<void> insert_answer(PgConnection& connection, const std::string& key, const nlohmann::json& answer) {
+// Those past their time make room. Another server may be doing the same: each takes what the other
+// has not.
+Result<void> insert_answer(PgConnection& connection, const std::string& key,
+                           const nlohmann::json& answer) {
   if (auto good = check_key(key); !good) return good;
   if (auto good = check_json(answer, "answer"); !good) return good;
   auto old = connection.query(
@@ -37,7 +41,8 @@ Result<void> insert_answer(PgConnection& connection, const std::string& key, con
       Params().text(key).json(answer));
   if (!kept) return tl::unexpected(kept.error());
   if (kept->affected() == 0)
-    return fail(409, "Done already", "Another call with this Idempotency-Key was quicker; ask again for its answer.",
+    return fail(409, "Done already",
+                "Another call with this Idempotency-Key was quicker; ask again for its answer.",
                 "Idempotency-Key");
   return {};
 }

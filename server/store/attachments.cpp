@@ -15,7 +15,8 @@ namespace {
   "a.height, a.user_name, a.time, a.visibility"
 
 std::optional<int> side_of(const PgResult& rows, int row, int column) {
-  return rows.null(row, column) ? std::nullopt : std::optional(static_cast<int>(rows.integer(row, column)));
+  return rows.null(row, column) ? std::nullopt
+                                : std::optional(static_cast<int>(rows.integer(row, column)));
 }
 
 Attachment read_attachment_row(const PgResult& rows, int i) {
@@ -67,12 +68,14 @@ Result<const Column*> column_for(const Table& table, std::optional<std::int64_t>
   if (wished) return not_found("column", std::to_string(*wished));
   if (all_pictures && pictures) return pictures;
   if (documents) return documents;
-  return fail(422, "No column of files",
-              pictures ? table.name +
-                             " has columns of pictures only, and not all that was sent is one (JPEG, PNG, TIFF, WebP, "
-                             "GIF, HEIC, AVIF, BMP, JPEG 2000)."
-                       : table.name + " has no column of kind `picture` or `document`. Add one first.",
-              "column");
+  return fail(
+      422, "No column of files",
+      pictures
+          ? table.name +
+                " has columns of pictures only, and not all that was sent is one (JPEG, PNG, TIFF, WebP, "
+                "GIF, HEIC, AVIF, BMP, JPEG 2000)."
+          : table.name + " has no column of kind `picture` or `document`. Add one first.",
+      "column");
 }
 
 Result<Record> record_of(PgConnection& connection, const OpenTable& open, std::int64_t key,
@@ -89,9 +92,12 @@ nlohmann::json cell_of(const Record& record, const Column& column) {
   return value == record.values.end() ? nlohmann::json::array() : value->second;
 }
 
-Result<Attachment> insert_attachment(PgConnection& connection, std::int64_t table_id, const Store::NewAttachment& file,
-                                     const Sha256& hash, const std::string& user) {
-  const auto side = [](std::optional<int> value) { return value ? std::optional<std::int64_t>(*value) : std::nullopt; };
+Result<Attachment> insert_attachment(PgConnection& connection, std::int64_t table_id,
+                                     const Store::NewAttachment& file, const Sha256& hash,
+                                     const std::string& user) {
+  const auto side = [](std::optional<int> value) {
+    return value ? std::optional<std::int64_t>(*value) : std::nullopt;
+  };
   auto row = connection.query(
       "INSERT INTO attachments (table_id, sha256, name, media_type, width, height, user_name, visibility) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8) RETURNING id",
@@ -117,9 +123,11 @@ Result<TableChange> without_problems(Result<TableChange> change) {
 
 }  // namespace
 
-Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key, std::optional<std::int64_t> column_id,
-                                      const std::vector<NewAttachment>& files, std::optional<std::int64_t> version,
-                                      const Author& who, const FirstAnswer<Attached>& answer) {
+Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key,
+                                      std::optional<std::int64_t> column_id,
+                                      const std::vector<NewAttachment>& files,
+                                      std::optional<std::int64_t> version, const Author& who,
+                                      const FirstAnswer<Attached>& answer) {
   if (auto good = check_text(who.user, "user"); !good) return tl::unexpected(good.error());
   std::vector<Content> contents;
   for (const NewAttachment& file : files) {
@@ -130,9 +138,11 @@ Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key, s
   }
   std::vector<const Content*> by_hash;
   for (const Content& content : contents) by_hash.push_back(&content);
-  std::sort(by_hash.begin(), by_hash.end(), [](const Content* a, const Content* b) { return a->hash < b->hash; });
-  // What cannot be is told before gigabytes are kept for it; said for certain once the table is locked, which others wait for. Not in one
-  // transaction: having read the rows it would keep them from who deletes the table, and waits for them with the table locked.
+  std::sort(by_hash.begin(), by_hash.end(),
+            [](const Content* a, const Content* b) { return a->hash < b->hash; });
+  // What cannot be is told before gigabytes are kept for it; said for certain once the table is
+  // locked, which others wait for. Not in one transaction: having read the rows it would keep them
+  // from who deletes the table, and waits for them with the table locked.
   auto may = impl_->pool.read([&](PgConnection& connection) -> Result<void> {
     auto open = read_table(connection, table_id, who.role);
     if (!open) return tl::unexpected(open.error());
@@ -147,7 +157,8 @@ Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key, s
   if (!may) return tl::unexpected(may.error());
   const auto work = [&](PgConnection& connection) -> Result<Attached> {
     for (const Content* content : by_hash)
-      if (auto kept = keep_blob(connection, *content, {}); !kept) return tl::unexpected(kept.error());
+      if (auto kept = keep_blob(connection, *content, {}); !kept)
+        return tl::unexpected(kept.error());
     auto open = lock_table(connection, table_id);
     if (!open) return tl::unexpected(open.error());
     auto record = record_of(connection, *open, key, version);
@@ -166,8 +177,11 @@ Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key, s
     }
     auto value = check_value(**column, cell, "column");
     if (!value) return tl::unexpected(value.error());
-    TableEdit edit{
-        who.user, "attach", {{"records", 1}, {"keys", nlohmann::json::array({key})}, {"attachments", ids}}, {}, {}};
+    TableEdit edit{who.user,
+                   "attach",
+                   {{"records", 1}, {"keys", nlohmann::json::array({key})}, {"attachments", ids}},
+                   {},
+                   {}};
     edit.records[key][std::to_string((*column)->id)] = std::move(*value);
     auto change = without_problems(apply_edit(connection, *open, std::move(edit)));
     if (!change) return tl::unexpected(change.error());
@@ -181,12 +195,14 @@ Result<TableChange> Store::detach(std::int64_t attachment_id, const std::string&
                                   const FirstAnswer<TableChange>& answer) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   return impl_->change(answer, [&](PgConnection& connection) -> Result<TableChange> {
-    auto owner = connection.query("SELECT table_id FROM attachments WHERE id = $1", Params().integer(attachment_id));
+    auto owner = connection.query("SELECT table_id FROM attachments WHERE id = $1",
+                                  Params().integer(attachment_id));
     if (!owner) return tl::unexpected(owner.error());
     if (owner->rows() == 0) return not_found("attachment", std::to_string(attachment_id));
     auto open = lock_table(connection, owner->integer(0, 0));
     if (!open) return tl::unexpected(open.error());
-    TableEdit edit{user, "detach", {{"attachments", nlohmann::json::array({attachment_id})}}, {}, {}};
+    TableEdit edit{
+        user, "detach", {{"attachments", nlohmann::json::array({attachment_id})}}, {}, {}};
     std::vector<std::int64_t> keys;
     for (const Column& column : open->table.columns) {
       if (!holds_attachments(column.kind)) continue;
@@ -196,13 +212,16 @@ Result<TableChange> Store::detach(std::int64_t attachment_id, const std::string&
       if (!rows) return tl::unexpected(rows.error());
       for (const Record& row : *rows) {
         nlohmann::json cell = cell_of(row, column);
-        cell.erase(std::remove(cell.begin(), cell.end(), nlohmann::json(attachment_id)), cell.end());
-        edit.records[row.key][std::to_string(column.id)] = cell.empty() ? nlohmann::json() : std::move(cell);
+        cell.erase(std::remove(cell.begin(), cell.end(), nlohmann::json(attachment_id)),
+                   cell.end());
+        edit.records[row.key][std::to_string(column.id)] =
+            cell.empty() ? nlohmann::json() : std::move(cell);
       }
       keys.insert(keys.end(), holding->begin(), holding->end());
     }
     if (edit.records.empty())
-      return fail(404, "Not found", "No record has the attachment " + std::to_string(attachment_id) + " any more.");
+      return fail(404, "Not found",
+                  "No record has the attachment " + std::to_string(attachment_id) + " any more.");
     edit.record["records"] = edit.records.size();
     if (keys.size() > kMostRowProblems) keys.resize(kMostRowProblems);
     edit.record["keys"] = keys;
@@ -225,8 +244,10 @@ Result<Attachment> Store::attachment(std::int64_t id, const Author& seen_by) {
 
 Result<std::vector<Attachment>> Store::attachments(std::int64_t table_id, const Author& seen_by,
                                                    std::span<const std::int64_t> ids) {
-  auto found = impl_->pool.read([&](PgConnection& connection) { return rows_of_ids(connection, table_id, ids); });
-  if (found) std::erase_if(*found, [&](const Attachment& attachment) { return !sees(seen_by, attachment); });
+  auto found = impl_->pool.read(
+      [&](PgConnection& connection) { return rows_of_ids(connection, table_id, ids); });
+  if (found)
+    std::erase_if(*found, [&](const Attachment& attachment) { return !sees(seen_by, attachment); });
   return found;
 }
 
@@ -243,22 +264,27 @@ Result<Attachment> Store::show_attachment(std::int64_t id, Visibility visibility
   });
 }
 
-Result<void> Store::read_attachment(const Attachment& attachment, std::uint64_t begin, std::uint64_t end,
-                                    const std::function<bool(std::span<const std::uint8_t>)>& sink) {
+Result<void> Store::read_attachment(
+    const Attachment& attachment, std::uint64_t begin, std::uint64_t end,
+    const std::function<bool(std::span<const std::uint8_t>)>& sink) {
   auto row = impl_->pool.read([&](PgConnection& connection) {
-    return connection.query("SELECT sha256 FROM attachments WHERE id = $1", Params().integer(attachment.id));
+    return connection.query("SELECT sha256 FROM attachments WHERE id = $1",
+                            Params().integer(attachment.id));
   });
   if (!row) return tl::unexpected(row.error());
   if (row->rows() == 0) return not_found("attachment", std::to_string(attachment.id));
   const Bytes hash = row->bytes(0, 0);
-  return stream_blob(impl_->pool, {hash.begin(), hash.end()}, begin, std::min(end, attachment.bytes), sink);
+  return stream_blob(impl_->pool, {hash.begin(), hash.end()}, begin,
+                     std::min(end, attachment.bytes), sink);
 }
 
-Result<std::optional<std::vector<std::uint8_t>>> Store::thumbnail(const Attachment& attachment, int side) {
+Result<std::optional<std::vector<std::uint8_t>>> Store::thumbnail(const Attachment& attachment,
+                                                                  int side) {
   using Found = std::optional<std::vector<std::uint8_t>>;
   return impl_->pool.read([&](PgConnection& connection) -> Result<Found> {
-    auto row = connection.query("SELECT picture FROM thumbnails WHERE sha256 = decode($1, 'hex') AND side = $2",
-                                Params().text(attachment.sha256).integer(side));
+    auto row = connection.query(
+        "SELECT picture FROM thumbnails WHERE sha256 = decode($1, 'hex') AND side = $2",
+        Params().text(attachment.sha256).integer(side));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return Found();
     const Bytes picture = row->bytes(0, 0);
@@ -266,7 +292,8 @@ Result<std::optional<std::vector<std::uint8_t>>> Store::thumbnail(const Attachme
   });
 }
 
-Result<void> Store::keep_thumbnail(const Attachment& attachment, int side, std::span<const std::uint8_t> picture) {
+Result<void> Store::keep_thumbnail(const Attachment& attachment, int side,
+                                   std::span<const std::uint8_t> picture) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
     auto kept = connection.query(
         "INSERT INTO thumbnails (sha256, side, picture) SELECT sha256, $2, $3 FROM attachments WHERE id = $1 "
@@ -277,7 +304,8 @@ Result<void> Store::keep_thumbnail(const Attachment& attachment, int side, std::
 }
 
 Result<std::int64_t> Store::drop_orphans() {
-  return impl_->pool.write_within(kBulkLimits, [](PgConnection& connection) { return drop_all_unused(connection); });
+  return impl_->pool.write_within(
+      kBulkLimits, [](PgConnection& connection) { return drop_all_unused(connection); });
 }
 
 }  // namespace strata::store

@@ -46,7 +46,8 @@ class Unfinished {
     std::error_code error;
     fs::rename(folder_, name, error);
     if (error)
-      return fail(500, "Not written", "Cannot name the folder " + name.string() + ": " + error.message() + ".");
+      return fail(500, "Not written",
+                  "Cannot name the folder " + name.string() + ": " + error.message() + ".");
     folder_.clear();
     return {};
   }
@@ -59,7 +60,8 @@ class Unfinished {
 Result<fs::path> make_scratch() {
   std::error_code error;
   std::string folder = (fs::temp_directory_path(error) / "strata-backup-XXXXXX").string();
-  if (!mkdtemp(folder.data())) return fail(500, "Folder cannot be made", folder + ": " + std::strerror(errno) + ".");
+  if (!mkdtemp(folder.data()))
+    return fail(500, "Folder cannot be made", folder + ": " + std::strerror(errno) + ".");
   return fs::path(folder);
 }
 
@@ -75,11 +77,12 @@ std::string passfile_field(std::string_view value) {
   return out;
 }
 
-// pg_dump and pg_restore show their arguments to everybody on the machine: a password goes by the file.
+// pg_dump and pg_restore show their arguments to everybody on the machine: a password goes by the
+// file.
 Result<std::string> hide_password(const std::string& dsn, const fs::path& file) {
   char* error = nullptr;
-  const std::unique_ptr<PQconninfoOption, void (*)(PQconninfoOption*)> options(PQconninfoParse(dsn.c_str(), &error),
-                                                                               &PQconninfoFree);
+  const std::unique_ptr<PQconninfoOption, void (*)(PQconninfoOption*)> options(
+      PQconninfoParse(dsn.c_str(), &error), &PQconninfoFree);
   if (!options) {
     const std::string why = error ? error : "not understood";
     PQfreemem(error);
@@ -104,8 +107,8 @@ Result<std::string> hide_password(const std::string& dsn, const fs::path& file) 
 }
 
 // Runs until it ends; `watch` is called now and then. What it says goes to `log`.
-Result<void> run_program(const std::vector<std::string>& command, const fs::path& log, const Progress& progress,
-                         const std::function<void()>& watch) {
+Result<void> run_program(const std::vector<std::string>& command, const fs::path& log,
+                         const Progress& progress, const std::function<void()>& watch) {
   const auto child = spawn(command, DatabaseUser{}, log, SIGKILL);
   if (!child) return tl::unexpected(child.error());
   int status = 0;
@@ -120,7 +123,8 @@ Result<void> run_program(const std::vector<std::string>& command, const fs::path
   if (status == 0) return {};
   const std::string name = fs::path(command.front()).filename();
   const std::string said = tail(log);
-  const bool full = said.find("No space left") != std::string::npos || said.find("File too large") != std::string::npos;
+  const bool full = said.find("No space left") != std::string::npos ||
+                    said.find("File too large") != std::string::npos;
   if (full) return fail(507, "Disk full", name + ": " + said);
   return fail(500, "Not done", name + " failed: " + said);
 }
@@ -139,8 +143,9 @@ Result<PgConnection> connect(const std::string& dsn) {
   auto connection = PgConnection::connect(dsn, kMigrationLimits);
   if (!connection) return connection;
   // Rows are compared as texts: everything that changes how one is written is set.
-  if (auto set = connection->script("SET datestyle = 'ISO'; SET intervalstyle = 'postgres'; SET timezone = 'UTC'; "
-                                    "SET extra_float_digits = 1; SET bytea_output = 'hex'; SET search_path = ''");
+  if (auto set = connection->script(
+          "SET datestyle = 'ISO'; SET intervalstyle = 'postgres'; SET timezone = 'UTC'; "
+          "SET extra_float_digits = 1; SET bytea_output = 'hex'; SET search_path = ''");
       !set)
     return tl::unexpected(set.error());
   return connection;
@@ -155,10 +160,12 @@ Result<std::vector<Relation>> relations(PgConnection& connection, const char* ki
   auto found = connection.query_once(
       "SELECT format('%I.%I', n.nspname, c.relname), pg_catalog.pg_table_size(c.oid) FROM pg_catalog.pg_class c "
       "JOIN pg_catalog.pg_namespace n ON n.oid = c.relnamespace WHERE c.relkind = '" +
-      std::string(kind) + "' AND n.nspname !~ '^pg_' AND n.nspname <> 'information_schema' ORDER BY 1");
+      std::string(kind) +
+      "' AND n.nspname !~ '^pg_' AND n.nspname <> 'information_schema' ORDER BY 1");
   if (!found) return tl::unexpected(found.error());
   std::vector<Relation> list;
-  for (int row = 0; row < found->rows(); ++row) list.push_back({found->text(row, 0), found->integer(row, 1)});
+  for (int row = 0; row < found->rows(); ++row)
+    list.push_back({found->text(row, 0), found->integer(row, 1)});
   return list;
 }
 
@@ -170,7 +177,8 @@ Result<void> read_contents(PgConnection& connection, BackupFacts& facts, Progres
   for (const Relation& table : *tables) {
     if (progress.cancelled()) return cancelled_problem();
     progress.report(double(done) / double(all), "Reading it over");
-    // Sixty bits of a hash of each row, added up: the order of rows does not matter, and two that are alike do not cancel out.
+    // Sixty bits of a hash of each row, added up: the order of rows does not matter, and two that
+    // are alike do not cancel out.
     auto sum = connection.query_once(
         "SELECT count(*), coalesce(sum(('x' || left(md5(t::text), 15))::bit(60)::int8), 0)::text FROM ONLY " +
         table.name + " t");
@@ -181,8 +189,8 @@ Result<void> read_contents(PgConnection& connection, BackupFacts& facts, Progres
   const auto sequences = relations(connection, "S");
   if (!sequences) return tl::unexpected(sequences.error());
   for (const Relation& sequence : *sequences) {
-    auto last = connection.query_once("SELECT CASE WHEN is_called THEN last_value ELSE last_value - 1 END FROM " +
-                                      sequence.name);
+    auto last = connection.query_once(
+        "SELECT CASE WHEN is_called THEN last_value ELSE last_value - 1 END FROM " + sequence.name);
     if (!last) return tl::unexpected(last.error());
     facts.sequences[sequence.name] = last->integer(0, 0);
   }
@@ -213,7 +221,8 @@ Result<void> read_dump(const fs::path& file, BackupFacts& facts, Progress& progr
 
 json to_json(const BackupFacts& facts) {
   json tables = json::object();
-  for (const auto& [name, table] : facts.tables) tables[name] = {{"rows", table.rows}, {"digest", table.digest}};
+  for (const auto& [name, table] : facts.tables)
+    tables[name] = {{"rows", table.rows}, {"digest", table.digest}};
   return {{"format", kFormat},
           {"made", facts.made},
           {"schema_version", facts.schema_version},
@@ -228,13 +237,16 @@ Result<BackupFacts> read_manifest(const fs::path& folder) {
   std::error_code error;
   const auto size = fs::file_size(file, error);
   if (error)
-    return fail(404, "No backup", "There is no " + file.string() + ": name a folder that `strata backup` has written.");
+    return fail(
+        404, "No backup",
+        "There is no " + file.string() + ": name a folder that `strata backup` has written.");
   if (size > kLargestManifest) return tl::unexpected(damaged(folder, "the manifest is too large."));
   std::ifstream in(file);
   const json manifest = json::parse(in, nullptr, false);
   try {
     if (manifest.at("format").get<int>() != kFormat)
-      return fail(422, "Another format", folder.string() + " was written by a newer version of this program.");
+      return fail(422, "Another format",
+                  folder.string() + " was written by a newer version of this program.");
     BackupFacts facts;
     facts.made = manifest.at("made").get<std::string>();
     facts.schema_version = manifest.at("schema_version").get<std::int64_t>();
@@ -242,7 +254,8 @@ Result<BackupFacts> read_manifest(const fs::path& folder) {
     facts.bytes = manifest.at("dump").at("bytes").get<std::uint64_t>();
     facts.sha256 = manifest.at("dump").at("sha256").get<std::string>();
     for (const auto& [name, table] : manifest.at("tables").items())
-      facts.tables[name] = {table.at("rows").get<std::int64_t>(), table.at("digest").get<std::string>()};
+      facts.tables[name] = {table.at("rows").get<std::int64_t>(),
+                            table.at("digest").get<std::string>()};
     facts.sequences = manifest.at("sequences").get<std::map<std::string, std::int64_t>>();
     return facts;
   } catch (const json::exception&) {
@@ -258,8 +271,8 @@ Result<void> write_file(const fs::path& file, const std::string& text) {
   return {};
 }
 
-Result<void> dump(PgConnection& connection, const std::string& dsn, const std::string& snapshot, const fs::path& folder,
-                  std::uint64_t database_bytes, Progress& progress) {
+Result<void> dump(PgConnection& connection, const std::string& dsn, const std::string& snapshot,
+                  const fs::path& folder, std::uint64_t database_bytes, Progress& progress) {
   const auto programs = programs_for(connection);
   if (!programs) return tl::unexpected(programs.error());
   const auto made = make_scratch();
@@ -268,15 +281,16 @@ Result<void> dump(PgConnection& connection, const std::string& dsn, const std::s
   const auto client = hide_password(dsn, scratch.folder() / "password");
   if (!client) return tl::unexpected(client.error());
   const fs::path file = folder / kDump;
-  return run_program({*programs / "pg_dump", "--format=custom", "--compress=1", "--no-owner", "--no-privileges",
-                      "--snapshot=" + snapshot, "--file=" + file.string(), "--dbname=" + *client},
-                     scratch.folder() / "log", progress, [&] {
-                       std::error_code not_yet;
-                       const auto size = fs::file_size(file, not_yet);
-                       if (!not_yet)
-                         progress.report(std::min(0.99, double(size) / double(database_bytes + 1)),
-                                         "Writing, " + std::to_string(size >> 20) + " MB so far");
-                     });
+  return run_program(
+      {*programs / "pg_dump", "--format=custom", "--compress=1", "--no-owner", "--no-privileges",
+       "--snapshot=" + snapshot, "--file=" + file.string(), "--dbname=" + *client},
+      scratch.folder() / "log", progress, [&] {
+        std::error_code not_yet;
+        const auto size = fs::file_size(file, not_yet);
+        if (!not_yet)
+          progress.report(std::min(0.99, double(size) / double(database_bytes + 1)),
+                          "Writing, " + std::to_string(size >> 20) + " MB so far");
+      });
 }
 
 }  // namespace
@@ -286,20 +300,24 @@ std::int64_t BackupFacts::rows_of(const std::string& table) const {
   return found == tables.end() ? 0 : found->second.rows;
 }
 
-Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder, Progress& progress) {
+Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
+                                 Progress& progress) {
   std::error_code error;
   if (fs::exists(folder, error))
-    return fail(409, "Already there", folder.string() + " exists: a backup makes a folder of its own.", "folder");
+    return fail(409, "Already there",
+                folder.string() + " exists: a backup makes a folder of its own.", "folder");
   auto connection = connect(dsn);
   if (!connection) return tl::unexpected(connection.error());
 
-  // Others may read a backup only if they are let: it holds everything, hashes of passwords among it.
+  // Others may read a backup only if they are let: it holds everything, hashes of passwords among
+  // it.
   fs::path part = folder;
   part += ".part";
   fs::remove_all(part, error);  // of one that was killed
   fs::create_directories(fs::absolute(part, error).parent_path(), error);
   if (mkdir(part.c_str(), 0700) != 0)
-    return fail(500, "Folder cannot be made", part.string() + ": " + std::strerror(errno) + ".", "folder");
+    return fail(500, "Folder cannot be made", part.string() + ": " + std::strerror(errno) + ".",
+                "folder");
   Unfinished unfinished(part);
 
   auto moment = Transaction::begin_reading(*connection);
@@ -314,16 +332,19 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
   facts.schema_version = state->integer(0, 2);
   facts.server_version = state->text(0, 3);
 
-  // Before the dump: sequences go on, whatever moment is looked at, and the dump's must not stand behind these.
+  // Before the dump: sequences go on, whatever moment is looked at, and the dump's must not stand
+  // behind these.
   progress.begin_stage(0, 0.4);
-  if (auto read = read_contents(*connection, facts, progress); !read) return tl::unexpected(read.error());
+  if (auto read = read_contents(*connection, facts, progress); !read)
+    return tl::unexpected(read.error());
   progress.begin_stage(0.4, 0.9);
-  if (auto dumped =
-          dump(*connection, dsn, state->text(0, 0), part, static_cast<std::uint64_t>(state->integer(0, 4)), progress);
+  if (auto dumped = dump(*connection, dsn, state->text(0, 0), part,
+                         static_cast<std::uint64_t>(state->integer(0, 4)), progress);
       !dumped)
     return tl::unexpected(dumped.error());
   progress.begin_stage(0.9, 1);
-  if (auto read = read_dump(part / kDump, facts, progress); !read) return tl::unexpected(read.error());
+  if (auto read = read_dump(part / kDump, facts, progress); !read)
+    return tl::unexpected(read.error());
   if (auto written = write_file(part / kManifest, to_json(facts).dump(2) + "\n"); !written)
     return tl::unexpected(written.error());
   if (auto kept = unfinished.keep_as(folder); !kept) return tl::unexpected(kept.error());
@@ -334,24 +355,28 @@ Result<BackupFacts> check_backup(const fs::path& folder, Progress& progress) {
   auto facts = read_manifest(folder);
   if (!facts) return facts;
   BackupFacts found;
-  if (auto read = read_dump(folder / kDump, found, progress); !read) return tl::unexpected(read.error());
+  if (auto read = read_dump(folder / kDump, found, progress); !read)
+    return tl::unexpected(read.error());
   if (found.bytes != facts->bytes)
-    return tl::unexpected(damaged(folder, std::string(kDump) + " has " + std::to_string(found.bytes) + " bytes; " +
+    return tl::unexpected(damaged(folder, std::string(kDump) + " has " +
+                                              std::to_string(found.bytes) + " bytes; " +
                                               std::to_string(facts->bytes) + " were written."));
   if (found.sha256 != facts->sha256)
-    return tl::unexpected(damaged(folder, std::string(kDump) + " is not what was written: its checksum differs."));
+    return tl::unexpected(
+        damaged(folder, std::string(kDump) + " is not what was written: its checksum differs."));
   return facts;
 }
 
-Result<void> restore_backup(const fs::path& folder, const BackupFacts& facts, const std::string& dsn,
-                            Progress& progress) {
+Result<void> restore_backup(const fs::path& folder, const BackupFacts& facts,
+                            const std::string& dsn, Progress& progress) {
   auto connection = connect(dsn);
   if (!connection) return tl::unexpected(connection.error());
   const auto there = relations(*connection, "r");
   if (!there) return tl::unexpected(there.error());
   if (!there->empty())
     return fail(409, "Database not empty",
-                "A backup is restored into an empty database only; this one has the table " + there->front().name + ".",
+                "A backup is restored into an empty database only; this one has the table " +
+                    there->front().name + ".",
                 "--database");
   const auto programs = programs_for(*connection);
   if (!programs) return tl::unexpected(programs.error());
@@ -362,9 +387,10 @@ Result<void> restore_backup(const fs::path& folder, const BackupFacts& facts, co
   const auto client = hide_password(dsn, scratch.folder() / "password");
   if (!client) return tl::unexpected(client.error());
   progress.begin_stage(0, 0.7);
-  auto restored = run_program({*programs / "pg_restore", "--exit-on-error", "--single-transaction", "--no-owner",
-                               "--no-privileges", "--dbname=" + *client, (folder / kDump).string()},
-                              scratch.folder() / "log", progress, [&] { progress.report(0.5, "Restoring"); });
+  auto restored = run_program(
+      {*programs / "pg_restore", "--exit-on-error", "--single-transaction", "--no-owner",
+       "--no-privileges", "--dbname=" + *client, (folder / kDump).string()},
+      scratch.folder() / "log", progress, [&] { progress.report(0.5, "Restoring"); });
   if (!restored) return restored;
 
   progress.begin_stage(0.7, 1);
@@ -373,10 +399,12 @@ Result<void> restore_backup(const fs::path& folder, const BackupFacts& facts, co
   if (!same_moment) return tl::unexpected(same_moment.error());
   if (auto read = read_contents(*connection, now, progress); !read) return read;
   for (const auto& [name, table] : facts.tables)
-    if (const auto found = now.tables.find(name); found == now.tables.end() || found->second != table)
+    if (const auto found = now.tables.find(name);
+        found == now.tables.end() || found->second != table)
       return tl::unexpected(damaged(folder, "the table " + name + " is not what was backed up."));
   for (const auto& [name, last] : facts.sequences)
-    if (const auto found = now.sequences.find(name); found == now.sequences.end() || found->second < last)
+    if (const auto found = now.sequences.find(name);
+        found == now.sequences.end() || found->second < last)
       return tl::unexpected(damaged(folder, "the sequence " + name + " would give numbers again."));
   return {};
 }

@@ -8,8 +8,9 @@
 #include "core/problem.h"
 #include "core/progress.h"
 
-// A whole site in a folder: `database.dump` in pg_dump's custom format, and `manifest.json`, which says what must be in it. Everything
-// durable is in PostgreSQL, so nothing else is needed to have the site again.
+// A whole site in a folder: `database.dump` in pg_dump's custom format, and `manifest.json`, which
+// says what must be in it. Everything durable is in PostgreSQL, so nothing else is needed to have
+// the site again.
 namespace strata::store {
 
 struct BackupFacts {
@@ -29,16 +30,19 @@ struct BackupFacts {
   std::int64_t rows_of(const std::string& table) const;  // 0: no such table
 };
 
-// Of the database as it is at one moment, also while a server writes into it. The folder must not be there yet; it appears when all is
-// written and read over once, so that one which is there is whole. 409: it is there; 507: the disk is full.
-Result<BackupFacts> write_backup(const std::string& dsn, const std::filesystem::path& folder, Progress& progress);
+// Of the database as it is at one moment, also while a server writes into it. The folder must not
+// be there yet; it appears when all is written and read over once, so that one which is there is
+// whole. 409: it is there; 507: the disk is full.
+Result<BackupFacts> write_backup(const std::string& dsn, const std::filesystem::path& folder,
+                                 Progress& progress);
 
-// That the folder holds a backup whose dump is, byte for byte, what was written. 404: it holds none; 422: it is damaged.
+// That the folder holds a backup whose dump is, byte for byte, what was written. 404: it holds
+// none; 422: it is damaged.
 Result<BackupFacts> check_backup(const std::filesystem::path& folder, Progress& progress);
 
-// Into an empty database, all or nothing, and compares every table with what was backed up. 409: the database is not empty; 422: what came
-// out is not what went in.
-Result<void> restore_backup(const std::filesystem::path& folder, const BackupFacts& facts, const std::string& dsn,
-                            Progress& progress);
+// Into an empty database, all or nothing, and compares every table with what was backed up. 409:
+// the database is not empty; 422: what came out is not what went in.
+Result<void> restore_backup(const std::filesystem::path& folder, const BackupFacts& facts,
+                            const std::string& dsn, Progress& progress);
 
 }  // namespace strata::store

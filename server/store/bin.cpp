@@ -11,8 +11,9 @@ using Kind = BinEntry::Kind;
 
 constexpr int kRowsAtOnce = 2000;
 
-// What is in the Bin of project $1 and of a model that is there: layers and models that have one of the visibilities $2 where $3 (curators), and
-// records that were deleted in the last $4 days and not made again since.
+// What is in the Bin of project $1 and of a model that is there: layers and models that have one of
+// the visibilities $2 where $3 (curators), and records that were deleted in the last $4 days and
+// not made again since.
 #define STRATA_BIN                                                                                                      \
   "(SELECT 'layer' AS kind, l.id, l.name, l.model_id, m.name AS model_name, 0::bigint AS table_id, '' AS table_name, "  \
   "l.binned_by, l.binned, l.binned_bytes FROM all_layers l JOIN models m ON m.id = l.model_id WHERE m.project_id = $1 " \
@@ -53,7 +54,9 @@ BinEntry read_entry(const PgResult& rows, int i) {
   return entry;
 }
 
-const char* name_of(Kind kind) { return kind == Kind::layer ? "layer" : kind == Kind::model ? "model" : "record"; }
+const char* name_of(Kind kind) {
+  return kind == Kind::layer ? "layer" : kind == Kind::model ? "model" : "record";
+}
 
 tl::unexpected<Problem> not_in_bin(const BinEntry& entry) {
   return fail(404, "Not in the Bin",
@@ -98,8 +101,8 @@ Result<void> erase_model(PgConnection& connection, std::int64_t id) {
   return drop_unused(connection, hashes);
 }
 
-Result<Bin::Page> Bin::of_project(std::int64_t project_id, const Sight& sight, int limit, int offset,
-                                  const std::optional<Place>& after) {
+Result<Bin::Page> Bin::of_project(std::int64_t project_id, const Sight& sight, int limit,
+                                  int offset, const std::optional<Place>& after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     auto total = connection.query("SELECT count(*) FROM " STRATA_BIN, seen_in(project_id, sight));
     if (!total) return tl::unexpected(total.error());
@@ -125,15 +128,17 @@ Result<Bin::Page> Bin::of_project(std::int64_t project_id, const Sight& sight, i
   });
 }
 
-Result<BinEntry> Bin::entry(std::int64_t project_id, Kind kind, std::int64_t id, std::int64_t table_id,
-                            const Sight& sight) {
+Result<BinEntry> Bin::entry(std::int64_t project_id, Kind kind, std::int64_t id,
+                            std::int64_t table_id, const Sight& sight) {
   return pool_.read([&](PgConnection& connection) -> Result<BinEntry> {
-    auto rows = connection.query("SELECT * FROM " STRATA_BIN "WHERE kind = $5 AND id = $6 AND table_id = $7",
-                                 seen_in(project_id, sight).text(name_of(kind)).integer(id).integer(table_id));
+    auto rows = connection.query(
+        "SELECT * FROM " STRATA_BIN "WHERE kind = $5 AND id = $6 AND table_id = $7",
+        seen_in(project_id, sight).text(name_of(kind)).integer(id).integer(table_id));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0)
       return fail(404, "Not in the Bin",
-                  "The project's Bin has no such " + std::string(name_of(kind)) + ": " + std::to_string(id) + ".");
+                  "The project's Bin has no such " + std::string(name_of(kind)) + ": " +
+                      std::to_string(id) + ".");
     return read_entry(*rows, 0);
   });
 }
@@ -169,30 +174,35 @@ Result<void> Bin::put_model(std::int64_t id, const FirstAnswer<>& answer) {
 Result<BinRestored> Bin::restore(const BinEntry& entry, const FirstAnswer<BinRestored>& answer) {
   const bool is_layer = entry.kind == Kind::layer;
   return change(pool_, answer, [&](PgConnection& connection) -> Result<BinRestored> {
-    // Of a layer the model first, which must not go into the Bin meanwhile, and gets no layer of that short name.
+    // Of a layer the model first, which must not go into the Bin meanwhile, and gets no layer of
+    // that short name.
     if (is_layer) {
-      auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR UPDATE", Params().integer(entry.model_id));
+      auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR UPDATE",
+                                    Params().integer(entry.model_id));
       if (!model) return tl::unexpected(model.error());
       if (model->rows() == 0) return not_in_bin(entry);
     }
     auto known = connection.query(
-        is_layer ? "SELECT slug::text FROM all_layers WHERE id = $1 AND binned IS NOT NULL AND NOT erasing FOR UPDATE"
-                 : "SELECT slug::text FROM all_models WHERE id = $1 AND binned IS NOT NULL AND NOT erasing FOR UPDATE",
+        is_layer
+            ? "SELECT slug::text FROM all_layers WHERE id = $1 AND binned IS NOT NULL AND NOT erasing FOR UPDATE"
+            : "SELECT slug::text FROM all_models WHERE id = $1 AND binned IS NOT NULL AND NOT erasing FOR UPDATE",
         Params().integer(entry.id));
     if (!known) return tl::unexpected(known.error());
     if (known->rows() == 0) return not_in_bin(entry);
     const std::string former = known->text(0, 0);
     auto taken =
-        is_layer ? connection.query("SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2",
-                                    Params().text(former + "%").integer(entry.model_id))
-                 : connection.query("SELECT slug::text FROM models WHERE slug LIKE $1", Params().text(former + "%"));
+        is_layer
+            ? connection.query("SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2",
+                               Params().text(former + "%").integer(entry.model_id))
+            : connection.query("SELECT slug::text FROM models WHERE slug LIKE $1",
+                               Params().text(former + "%"));
     if (!taken) return tl::unexpected(taken.error());
     BinRestored restored{entry, free_slug(former, *taken), {}};
     if (restored.slug != former) {
       restored.former_slug = former;
-      auto renamed = connection.query(
-          is_layer ? "UPDATE all_layers SET slug = $2 WHERE id = $1" : "UPDATE all_models SET slug = $2 WHERE id = $1",
-          Params().integer(entry.id).text(restored.slug));
+      auto renamed = connection.query(is_layer ? "UPDATE all_layers SET slug = $2 WHERE id = $1"
+                                               : "UPDATE all_models SET slug = $2 WHERE id = $1",
+                                      Params().integer(entry.id).text(restored.slug));
       if (!renamed) return tl::unexpected(renamed.error());
     }
     auto back = connection.query(
@@ -217,13 +227,16 @@ Result<TableChange> Bin::restore_record(const BinEntry& entry, const std::string
     if (!last) return tl::unexpected(last.error());
     if (last->rows() == 0 || !last->json(0, 0).value("exists", false)) return not_in_bin(entry);
     const nlohmann::json before = last->json(0, 0);
-    TableEdit edit{user, "restore", {{"records", 1}, {"keys", nlohmann::json::array({entry.id})}}, {}, {}, true};
+    TableEdit edit{user, "restore", {{"records", 1}, {"keys", nlohmann::json::array({entry.id})}},
+                   {},   {},        true};
     Cells& cells = edit.records[entry.id];
     cells["exists"] = true;
     for (const Column& column : open->all)
-      if (const auto cell = before.find(std::to_string(column.id)); cell != before.end()) cells[cell.key()] = *cell;
+      if (const auto cell = before.find(std::to_string(column.id)); cell != before.end())
+        cells[cell.key()] = *cell;
     auto done = apply_edit(connection, *open, std::move(edit));
-    if (done && !done->problems.empty()) return fail(409, "Cannot be restored", done->problems.front().problem.detail);
+    if (done && !done->problems.empty())
+      return fail(409, "Cannot be restored", done->problems.front().problem.detail);
     return done;
   });
 }
@@ -276,7 +289,8 @@ Result<bool> Bin::erase_some() {
     auto model = connection.query("SELECT id FROM all_models WHERE erasing ORDER BY id LIMIT 1");
     if (!model) return tl::unexpected(model.error());
     if (model->rows() == 0) return false;
-    if (auto gone = erase_model(connection, model->integer(0, 0)); !gone) return tl::unexpected(gone.error());
+    if (auto gone = erase_model(connection, model->integer(0, 0)); !gone)
+      return tl::unexpected(gone.error());
     return true;
   });
 }

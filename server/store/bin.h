@@ -36,8 +36,9 @@ struct BinRestored {
   std::string former_slug;  // that it had, where something else has it meanwhile; else empty
 };
 
-// What was deleted in projects; of a Store, and as thread-safe and blocking as that, with the same Problems for what is not there or away.
-// Models and layers that are in it are there for nothing else (db/migrations/000023_bin.sql). Records are never erased: their tables' journals keep what
+// What was deleted in projects; of a Store, and as thread-safe and blocking as that, with the same
+// Problems for what is not there or away. Models and layers that are in it are there for nothing
+// else (db/migrations/000023_bin.sql). Records are never erased: their tables' journals keep what
 // they were, and the Bin finds them there.
 class Bin {
  public:
@@ -57,19 +58,22 @@ class Bin {
     BinEntry::Kind kind = BinEntry::Kind::layer;
     std::int64_t table_id = 0, id = 0;
   };
-  // Layers that lie on a model in the Bin come back with it, and are no entries. `after`: only those that follow it.
+  // Layers that lie on a model in the Bin come back with it, and are no entries. `after`: only
+  // those that follow it.
   Result<Page> of_project(std::int64_t project_id, const Sight& sight, int limit, int offset,
                           const std::optional<Place>& after = {});
   // `table_id` is of a record.
-  Result<BinEntry> entry(std::int64_t project_id, BinEntry::Kind kind, std::int64_t id, std::int64_t table_id,
-                         const Sight& sight);
+  Result<BinEntry> entry(std::int64_t project_id, BinEntry::Kind kind, std::int64_t id,
+                         std::int64_t table_id, const Sight& sight);
 
   // Into it, by whom the answer is for.
   Result<void> put_layer(std::int64_t id, const FirstAnswer<>& answer);
   Result<void> put_model(std::int64_t id, const FirstAnswer<>& answer);
-  // A layer or model out of it, with the short name that it had where that is free. A room that is open does not know it yet.
+  // A layer or model out of it, with the short name that it had where that is free. A room that is
+  // open does not know it yet.
   Result<BinRestored> restore(const BinEntry& entry, const FirstAnswer<BinRestored>& answer);
-  // A record, with its key, as an entry of the table's journal. Refused (409): its values do not fit the table as it is now, or it is there.
+  // A record, with its key, as an entry of the table's journal. Refused (409): its values do not
+  // fit the table as it is now, or it is there.
   Result<TableChange> restore_record(const BinEntry& entry, const std::string& user,
                                      const FirstAnswer<TableChange>& answer);
   // A layer or model, gone for ever; its content is left to `erase_some`.
@@ -77,7 +81,8 @@ class Bin {
 
   // What was put in longer ago is gone for ever, likewise.
   Result<void> expire(std::chrono::days after);
-  // Some of the content of what is gone for ever, so little that nobody waits for it; false: there is none.
+  // Some of the content of what is gone for ever, so little that nobody waits for it; false: there
+  // is none.
   Result<bool> erase_some();
 
  private:

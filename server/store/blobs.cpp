@@ -12,7 +12,9 @@ namespace {
 using NextChunk = std::function<Result<Bytes>()>;
 
 Result<void> copy_chunks(PgConnection& connection, const Sha256& hash, const NextChunk& next) {
-  if (auto begun = connection.copy_begin("COPY blob_chunks (sha256, chunk, data) FROM STDIN (FORMAT binary)"); !begun)
+  if (auto begun = connection.copy_begin(
+          "COPY blob_chunks (sha256, chunk, data) FROM STDIN (FORMAT binary)");
+      !begun)
     return begun;
   for (std::int32_t number = 0;; ++number) {
     auto chunk = next();
@@ -34,11 +36,13 @@ Result<void> copy_chunks(PgConnection& connection, const Sha256& hash, const Nex
 // True when the blob is new and its chunks must be written.
 Result<bool> claim(PgConnection& connection, const Sha256& hash, std::int64_t bytes) {
   for (;;) {
-    auto made = connection.query("INSERT INTO blobs (sha256, bytes) VALUES ($1, $2) ON CONFLICT DO NOTHING",
-                                 Params().bytes(hash).integer(bytes));
+    auto made =
+        connection.query("INSERT INTO blobs (sha256, bytes) VALUES ($1, $2) ON CONFLICT DO NOTHING",
+                         Params().bytes(hash).integer(bytes));
     if (!made) return tl::unexpected(made.error());
     if (made->affected() > 0) return true;
-    auto held = connection.query("SELECT 1 FROM blobs WHERE sha256 = $1 FOR KEY SHARE", Params().bytes(hash));
+    auto held = connection.query("SELECT 1 FROM blobs WHERE sha256 = $1 FOR KEY SHARE",
+                                 Params().bytes(hash));
     if (!held) return tl::unexpected(held.error());
     if (held->rows() > 0) return false;
   }
@@ -46,23 +50,29 @@ Result<bool> claim(PgConnection& connection, const Sha256& hash, std::int64_t by
 
 }  // namespace
 
-Content content_of(Bytes memory) { return {sha256(memory), static_cast<std::int64_t>(memory.size()), memory, {}}; }
+Content content_of(Bytes memory) {
+  return {sha256(memory), static_cast<std::int64_t>(memory.size()), memory, {}};
+}
 
 namespace {
 
 // The next chunk of a file, empty at its end.
-Result<Bytes> next_chunk(std::ifstream& in, std::vector<std::uint8_t>& buffer, const std::filesystem::path& file) {
+Result<Bytes> next_chunk(std::ifstream& in, std::vector<std::uint8_t>& buffer,
+                         const std::filesystem::path& file) {
   in.read(reinterpret_cast<char*>(buffer.data()), static_cast<std::streamsize>(buffer.size()));
-  if (in.bad()) return fail(500, "File not readable", "Cannot read " + file.string() + ".", "source_files");
+  if (in.bad())
+    return fail(500, "File not readable", "Cannot read " + file.string() + ".", "source_files");
   return Bytes(buffer).first(static_cast<std::size_t>(in.gcount()));
 }
 
 }  // namespace
 
 // Files are hashed before they are sent: a scan that is kept already is not sent again.
-Result<Content> content_of(const std::filesystem::path& file, const std::function<bool()>& cancelled) {
+Result<Content> content_of(const std::filesystem::path& file,
+                           const std::function<bool()>& cancelled) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) return fail(500, "File not readable", "Cannot open " + file.string() + ".", "source_files");
+  if (!in)
+    return fail(500, "File not readable", "Cannot open " + file.string() + ".", "source_files");
   std::vector<std::uint8_t> buffer(kChunkBytes);
   Sha256Stream stream;
   Content content;
@@ -79,7 +89,8 @@ Result<Content> content_of(const std::filesystem::path& file, const std::functio
   return content;
 }
 
-Result<void> keep_blob(PgConnection& connection, const Content& content, const std::function<bool()>& cancelled) {
+Result<void> keep_blob(PgConnection& connection, const Content& content,
+                       const std::function<bool()>& cancelled) {
   auto fresh = claim(connection, content.hash, content.bytes);
   if (!fresh) return tl::unexpected(fresh.error());
   if (!*fresh) return {};
@@ -102,12 +113,14 @@ Result<void> keep_blob(PgConnection& connection, const Content& content, const s
     return chunk;
   });
   if (written && stream.finish() != content.hash)
-    return fail(409, "File changed", content.file.string() + " changed while it was read. Import it again.",
+    return fail(409, "File changed",
+                content.file.string() + " changed while it was read. Import it again.",
                 "source_files");
   return written;
 }
 
-Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha256, std::int64_t bytes) {
+Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha256,
+                                            std::int64_t bytes) {
   std::vector<std::uint8_t> content;
   content.reserve(static_cast<std::size_t>(bytes));
   auto read = connection.each_row("SELECT data FROM blob_chunks WHERE sha256 = $1 ORDER BY chunk",
@@ -118,16 +131,18 @@ Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha2
                                   });
   if (!read) return tl::unexpected(read.error());
   if (content.size() != static_cast<std::size_t>(bytes))
-    return fail(500, "Damaged content", "Stored content is incomplete: restore the database from a backup.");
+    return fail(500, "Damaged content",
+                "Stored content is incomplete: restore the database from a backup.");
   return content;
 }
 
-Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, std::uint64_t begin, std::uint64_t end,
-                         const std::function<bool(Bytes)>& sink) {
+Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, std::uint64_t begin,
+                         std::uint64_t end, const std::function<bool(Bytes)>& sink) {
   for (std::uint64_t at = begin; at < end;) {
     auto chunk = pool.read([&](PgConnection& connection) {
-      return connection.query("SELECT data FROM blob_chunks WHERE sha256 = $1 AND chunk = $2",
-                              Params().bytes(sha256).integer(static_cast<std::int64_t>(at / kChunkBytes)));
+      return connection.query(
+          "SELECT data FROM blob_chunks WHERE sha256 = $1 AND chunk = $2",
+          Params().bytes(sha256).integer(static_cast<std::int64_t>(at / kChunkBytes)));
     });
     if (!chunk) return tl::unexpected(chunk.error());
     const std::size_t skipped = at % kChunkBytes;
@@ -148,25 +163,29 @@ Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, st
   "AND NOT EXISTS (SELECT 1 FROM looks WHERE picture = b.sha256) "              \
   "AND NOT EXISTS (SELECT 1 FROM attachments a WHERE a.sha256 = b.sha256)"
 
-Result<void> drop_unused(PgConnection& connection, const std::vector<std::vector<std::uint8_t>>& hashes) {
+Result<void> drop_unused(PgConnection& connection,
+                         const std::vector<std::vector<std::uint8_t>>& hashes) {
   PgArray list(oid::kBytea);
   for (const auto& hash : hashes) list.add(Bytes(hash));
-  // Locked first: of two deletions at once, the later one then sees that the earlier one's model is gone.
+  // Locked first: of two deletions at once, the later one then sees that the earlier one's model is
+  // gone.
   auto locked =
-      connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE", Params().array(list));
+      connection.query("SELECT 1 FROM blobs WHERE sha256 = any($1) ORDER BY sha256 FOR UPDATE",
+                       Params().array(list));
   if (!locked) return tl::unexpected(locked.error());
-  auto done =
-      connection.query("DELETE FROM blobs b WHERE sha256 = any($1) AND " STRATA_IS_UNUSED, Params().array(list));
+  auto done = connection.query("DELETE FROM blobs b WHERE sha256 = any($1) AND " STRATA_IS_UNUSED,
+                               Params().array(list));
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
 Result<std::int64_t> drop_all_unused(PgConnection& connection) {
-  auto locked = connection.query("SELECT sha256 FROM blobs b WHERE " STRATA_IS_UNUSED " FOR UPDATE SKIP LOCKED");
+  auto locked = connection.query("SELECT sha256 FROM blobs b WHERE " STRATA_IS_UNUSED
+                                 " FOR UPDATE SKIP LOCKED");
   if (!locked) return tl::unexpected(locked.error());
   PgArray list(oid::kBytea);
   for (int i = 0; i < locked->rows(); ++i) list.add(locked->bytes(i, 0));
-  auto done =
-      connection.query("DELETE FROM blobs b WHERE sha256 = any($1) AND " STRATA_IS_UNUSED, Params().array(list));
+  auto done = connection.query("DELETE FROM blobs b WHERE sha256 = any($1) AND " STRATA_IS_UNUSED,
+                               Params().array(list));
   if (!done) return tl::unexpected(done.error());
   return done->affected();
 }

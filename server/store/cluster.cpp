@@ -34,7 +34,8 @@ using namespace std::chrono_literals;
 constexpr std::size_t kLongestSocketPath = 107;  // sockaddr_un
 constexpr std::uintmax_t kLargestLog = 16u << 20;
 
-// Where the socket lies: in the folder, or in a short one where its path would be too long for a socket.
+// Where the socket lies: in the folder, or in a short one where its path would be too long for a
+// socket.
 fs::path socket_folder(const fs::path& folder) {
   if ((folder / ".s.PGSQL.65535.lock").string().size() <= kLongestSocketPath) return folder;
   return "/tmp/strata-" + to_hex(sha256(folder.string())).substr(0, 16);
@@ -150,16 +151,20 @@ struct Cluster::Impl {
     lock_fd = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     if (lock_fd < 0 || flock(lock_fd, LOCK_EX | LOCK_NB) != 0)
       return fail(409, "Data folder in use",
-                  "Another Strata server uses " + data_dir.string() + ". Stop it, or choose another --data.");
+                  "Another Strata server uses " + data_dir.string() +
+                      ". Stop it, or choose another --data.");
 
     sockets = socket_folder(folder);
     if (sockets != folder) {
-      if (mkdir(sockets.c_str(), 0700) == 0 && user.switch_user && chown(sockets.c_str(), user.uid, user.gid) != 0)
-        return fail(500, "Socket folder not usable", "Cannot give " + sockets.string() + " to " + user.name + ".");
+      if (mkdir(sockets.c_str(), 0700) == 0 && user.switch_user &&
+          chown(sockets.c_str(), user.uid, user.gid) != 0)
+        return fail(500, "Socket folder not usable",
+                    "Cannot give " + sockets.string() + " to " + user.name + ".");
       struct stat info {};
       if (lstat(sockets.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != user.uid ||
           (info.st_mode & 077) != 0)
-        return fail(500, "Socket folder not usable", sockets.string() + " belongs to someone else. Remove it.");
+        return fail(500, "Socket folder not usable",
+                    sockets.string() + " belongs to someone else. Remove it.");
     }
     if (fs::exists(log_file, error) && fs::file_size(log_file, error) > kLargestLog)
       fs::rename(log_file, folder / "postgres.log.1", error);
@@ -173,7 +178,8 @@ struct Cluster::Impl {
     return write_access_rules();
   }
 
-  // Who may connect: by the socket, in a folder of the database user's own, the server; by TCP analysts alone.
+  // Who may connect: by the socket, in a folder of the database user's own, the server; by TCP
+  // analysts alone.
   Result<void> write_access_rules() {
     std::ofstream file(access_rules(), std::ios::trunc);
     file << "local all all trust\n";
@@ -183,27 +189,32 @@ struct Cluster::Impl {
     file.close();
     if (!file || chmod(access_rules().c_str(), 0600) != 0 ||
         (user.switch_user && chown(access_rules().c_str(), user.uid, user.gid) != 0))
-      return fail(500, "Database folder not writable", "Cannot write " + access_rules().string() + ".");
+      return fail(500, "Database folder not writable",
+                  "Cannot write " + access_rules().string() + ".");
     return {};
   }
   fs::path access_rules() const { return folder / "access.conf"; }
 
-  // In a folder of another name first: an initdb cut short leaves nothing that looks like a database.
+  // In a folder of another name first: an initdb cut short leaves nothing that looks like a
+  // database.
   Result<void> initialise() {
     const fs::path fresh = folder / "pgdata.new";
     std::error_code error;
     fs::remove_all(fresh, error);
-    auto child = spawn({programs / "initdb", "-D", fresh, "-U", "strata", "-A", "trust", "-E", "UTF8",
-                        "--locale=C.UTF-8", "--no-instructions"},
+    auto child = spawn({programs / "initdb", "-D", fresh, "-U", "strata", "-A", "trust", "-E",
+                        "UTF8", "--locale=C.UTF-8", "--no-instructions"},
                        user, log_file, SIGKILL);
     if (!child) return tl::unexpected(child.error());
     int status = 0;
     while (waitpid(*child, &status, 0) < 0 && errno == EINTR) {
     }
     if (status != 0)
-      return fail(500, "Database not made", "initdb failed in " + folder.string() + ": " + tail(log_file));
+      return fail(500, "Database not made",
+                  "initdb failed in " + folder.string() + ": " + tail(log_file));
     fs::rename(fresh, data, error);
-    if (error) return fail(500, "Database not made", "Cannot rename " + fresh.string() + ": " + error.message() + ".");
+    if (error)
+      return fail(500, "Database not made",
+                  "Cannot rename " + fresh.string() + ": " + error.message() + ".");
     return {};
   }
 
@@ -217,7 +228,8 @@ struct Cluster::Impl {
     return false;
   }
 
-  // The one that answers is ours, not one that a killed server left behind and that is still ending.
+  // The one that answers is ours, not one that a killed server left behind and that is still
+  // ending.
   bool owns_data() const {
     pid_t owner = 0;
     std::ifstream(data / "postmaster.pid") >> owner;
@@ -227,8 +239,8 @@ struct Cluster::Impl {
   int port() const { return sql ? sql->port : kUsualPort; }
   std::string dsn(const std::string& database) const { return dsn_of(sockets, port(), database); }
 
-  // After a `kill -9` of the postmaster its orphans hold the lock file and the shared memory until they notice, so a
-  // start that fails at once is tried again every 100 ms.
+  // After a `kill -9` of the postmaster its orphans hold the lock file and the shared memory until
+  // they notice, so a start that fails at once is tried again every 100 ms.
   Result<void> run() {
     if (running()) return {};
     const auto deadline = Clock::now() + 30s;
@@ -259,7 +271,8 @@ struct Cluster::Impl {
                          user, log_file, SIGINT);
       if (!child) return tl::unexpected(child.error());
       postmaster = *child;
-      // Replaying the log after a crash may take minutes; it ends by itself, or the postmaster does.
+      // Replaying the log after a crash may take minutes; it ends by itself, or the postmaster
+      // does.
       while (running()) {
         if (owns_data() && PQping(dsn("postgres").c_str()) == PQPING_OK) return {};
         std::this_thread::sleep_for(10ms);
@@ -271,7 +284,8 @@ struct Cluster::Impl {
     }
   }
 
-  // Fast: ends sessions, writes a checkpoint. One that hangs is ended less gently; its log makes that whole at the next start.
+  // Fast: ends sessions, writes a checkpoint. One that hangs is ended less gently; its log makes
+  // that whole at the next start.
   Result<void> stop() {
     for (const auto& [signal_number, patience] :
          {std::pair{SIGINT, 30s}, std::pair{SIGQUIT, 5s}, std::pair{SIGKILL, 5s}}) {
@@ -280,7 +294,8 @@ struct Cluster::Impl {
       for (const auto deadline = Clock::now() + patience; running() && Clock::now() < deadline;)
         std::this_thread::sleep_for(5ms);
     }
-    if (running()) log::error("database: PostgreSQL " + std::to_string(postmaster) + " does not end");
+    if (running())
+      log::error("database: PostgreSQL " + std::to_string(postmaster) + " does not end");
     return {};
   }
 
@@ -301,13 +316,15 @@ Cluster::State Cluster::inspect(const fs::path& data_dir) {
   State state;
   state.version = version_of(folder / "pgdata");
   state.dsn = dsn_of(socket_folder(folder), running_port(folder / "pgdata"), "strata");
-  state.running = state.version > 0 && PQping((state.dsn + " connect_timeout=5").c_str()) == PQPING_OK;
+  state.running =
+      state.version > 0 && PQping((state.dsn + " connect_timeout=5").c_str()) == PQPING_OK;
   if (auto programs = find_programs(state.version); !programs) state.trouble = programs.error();
   if (auto user = database_user(); !user) state.trouble = user.error();
   return state;
 }
 
-Result<std::unique_ptr<Cluster>> Cluster::start(const fs::path& data_dir, const std::optional<SqlListen>& sql) {
+Result<std::unique_ptr<Cluster>> Cluster::start(const fs::path& data_dir,
+                                                const std::optional<SqlListen>& sql) {
   std::unique_ptr<Cluster> cluster(new Cluster);
   Impl& impl = *cluster->impl_;
   impl.sql = sql;

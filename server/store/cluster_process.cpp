@@ -30,9 +30,10 @@ Result<DatabaseUser> database_user() {
   }
   const passwd* entry = getpwnam("postgres");
   if (!entry)
-    return fail(500, "No database user",
-                "PostgreSQL refuses to run as root and there is no user `postgres`. Install postgresql, run Strata as "
-                "another user, or give --database.");
+    return fail(
+        500, "No database user",
+        "PostgreSQL refuses to run as root and there is no user `postgres`. Install postgresql, run Strata as "
+        "another user, or give --database.");
   user.switch_user = true;
   user.name = entry->pw_name;
   user.uid = entry->pw_uid;
@@ -49,7 +50,9 @@ Result<fs::path> find_programs(int wanted_major) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator("/usr/lib/postgresql", error)) {
     const std::string version = entry.path().filename();
-    if (!is_all_digits(version) || version.size() > 3 || !fs::exists(entry.path() / "bin/postgres", error)) continue;
+    if (!is_all_digits(version) || version.size() > 3 ||
+        !fs::exists(entry.path() / "bin/postgres", error))
+      continue;
     const int major = std::stoi(version);
     if (major > best && (wanted_major == 0 || major == wanted_major)) best = major;
   }
@@ -59,44 +62,53 @@ Result<fs::path> find_programs(int wanted_major) {
     while (!rest.empty()) {
       const fs::path folder = rest.substr(0, rest.find(':'));
       rest.erase(0, std::min(rest.size(), folder.string().size() + 1));
-      if (fs::exists(folder / "postgres", error) && fs::exists(folder / "initdb", error)) return folder;
+      if (fs::exists(folder / "postgres", error) && fs::exists(folder / "initdb", error))
+        return folder;
     }
   }
   const std::string which =
-      wanted_major ? "PostgreSQL " + std::to_string(wanted_major) + ", which wrote the data," : "PostgreSQL";
+      wanted_major ? "PostgreSQL " + std::to_string(wanted_major) + ", which wrote the data,"
+                   : "PostgreSQL";
   return fail(
       500, "PostgreSQL missing",
-      which + " is not installed (looked in /usr/lib/postgresql/*/bin). Install postgresql, or give --database.");
+      which +
+          " is not installed (looked in /usr/lib/postgresql/*/bin). Install postgresql, or give --database.");
 }
 
 namespace {
 
-// Only system calls here: other threads may hold the locks of malloc and stdio at the time of the fork.
+// Only system calls here: other threads may hold the locks of malloc and stdio at the time of the
+// fork.
 bool become(const DatabaseUser& user) {
   if (!user.switch_user) return true;
-  return setgroups(user.groups.size(), user.groups.data()) == 0 && setgid(user.gid) == 0 && setuid(user.uid) == 0;
+  return setgroups(user.groups.size(), user.groups.data()) == 0 && setgid(user.gid) == 0 &&
+         setuid(user.uid) == 0;
 }
 
 }  // namespace
 
 Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
   std::error_code error;
-  // Every folder made here can be passed through by the database user; what is in them decides for itself.
+  // Every folder made here can be passed through by the database user; what is in them decides for
+  // itself.
   fs::path made;
   for (const auto& part : folder) {
     made /= part;
     if (fs::exists(made, error)) continue;
     if (mkdir(made.c_str(), 0755) != 0 && errno != EEXIST)
-      return fail(500, "Data folder not usable", "Cannot make " + made.string() + ": " + std::strerror(errno) + ".");
+      return fail(500, "Data folder not usable",
+                  "Cannot make " + made.string() + ": " + std::strerror(errno) + ".");
     chmod(made.c_str(), 0755);
   }
   struct stat info {};
   if (lstat(folder.c_str(), &info) != 0 || !S_ISDIR(info.st_mode))
     return fail(500, "Data folder not usable", folder.string() + " is not a folder.");
-  if ((user.switch_user && info.st_uid != user.uid && chown(folder.c_str(), user.uid, user.gid) != 0) ||
+  if ((user.switch_user && info.st_uid != user.uid &&
+       chown(folder.c_str(), user.uid, user.gid) != 0) ||
       chmod(folder.c_str(), 0700) != 0)
-    return fail(500, "Data folder not usable",
-                "Cannot give " + folder.string() + " to " + user.name + ": " + std::strerror(errno) + ".");
+    return fail(
+        500, "Data folder not usable",
+        "Cannot give " + folder.string() + " to " + user.name + ": " + std::strerror(errno) + ".");
 
   const pid_t child = fork();
   if (child == 0) _exit(become(user) && chdir(folder.c_str()) == 0 ? 0 : 1);
@@ -112,19 +124,21 @@ Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
   return {};
 }
 
-Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user, const fs::path& log,
-                    int death_signal) {
+Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user,
+                    const fs::path& log, int death_signal) {
   std::vector<char*> arguments;
   for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   std::vector<char*> environment;
+  // PGDATA, PGPORT… are someone else's
   for (char** variable = environ; *variable; ++variable)
-    if (std::strncmp(*variable, "PG", 2) != 0) environment.push_back(*variable);  // PGDATA, PGPORT… are someone else's
+    if (std::strncmp(*variable, "PG", 2) != 0) environment.push_back(*variable);
   environment.push_back(nullptr);
 
   const int output = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0640);
   if (output < 0)
-    return fail(500, "Data folder not usable", "Cannot write " + log.string() + ": " + std::strerror(errno));
+    return fail(500, "Data folder not usable",
+                "Cannot write " + log.string() + ": " + std::strerror(errno));
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child == 0) {
@@ -145,7 +159,8 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
     _exit(127);
   }
   close(output);
-  if (child < 0) return fail(500, "Database not started", std::string("Cannot fork: ") + std::strerror(errno));
+  if (child < 0)
+    return fail(500, "Database not started", std::string("Cannot fork: ") + std::strerror(errno));
   return child;
 }
 

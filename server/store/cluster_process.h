@@ -21,16 +21,18 @@ struct DatabaseUser {
 };
 Result<DatabaseUser> database_user();
 
-// /usr/lib/postgresql/N/bin, N as wanted (0: the newest), else the folder of `postgres` on the PATH.
+// /usr/lib/postgresql/N/bin, N as wanted (0: the newest), else the folder of `postgres` on the
+// PATH.
 Result<std::filesystem::path> find_programs(int wanted_major);
 
 // Makes the folder the user's own with mode 0700, and proves in a child that he can enter it.
 Result<void> give_folder(const std::filesystem::path& folder, const DatabaseUser& user);
 
-// Forks and runs a program as `user`, with output appended to `log`, no other open files, default signals, a process
-// group of its own (so that Ctrl-C reaches only us) and `death_signal` when the calling thread ends. Returns the pid.
-Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user, const std::filesystem::path& log,
-                    int death_signal);
+// Forks and runs a program as `user`, with output appended to `log`, no other open files, default
+// signals, a process group of its own (so that Ctrl-C reaches only us) and `death_signal` when the
+// calling thread ends. Returns the pid.
+Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser& user,
+                    const std::filesystem::path& log, int death_signal);
 
 // Quoted for a connection string of libpq.
 std::string dsn_value(std::string_view value);

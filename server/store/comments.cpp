@@ -4,14 +4,16 @@
 
 #include "store/store_impl.h"
 
-// A thread's first comment is locked by whoever adds or takes away a reply, so that it is not deleted, or kept, for what is no longer so.
+// A thread's first comment is locked by whoever adds or takes away a reply, so that it is not
+// deleted, or kept, for what is no longer so.
 
 namespace strata::store {
 namespace {
 
 constexpr std::size_t kLongestText = 10'000;  // characters
 
-// Who sees the layer that the thread is about, in the Bin or not, sees the thread. Also of a comment that a statement has just made.
+// Who sees the layer that the thread is about, in the Bin or not, sees the thread. Also of a
+// comment that a statement has just made.
 #define STRATA_COMMENT_VISIBILITY                                                                                         \
   "CASE WHEN c.thread_id IS NULL THEN coalesce((SELECT visibility FROM all_layers WHERE id = c.layer_id), c.visibility) " \
   "ELSE (SELECT coalesce(l.visibility, f.visibility) FROM comments f LEFT JOIN all_layers l ON l.id = f.layer_id "        \
@@ -64,21 +66,26 @@ Result<void> check_words(const std::string& text) {
   if (auto good = check_text(text, "text"); !good) return good;
   if (text.find_first_not_of(" \t\r\n\v\f") == std::string::npos)
     return fail(422, "Nothing written", "`text` is blank.", "text");
-  const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
+  const auto begins_character = [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+  };
   if (static_cast<std::size_t>(std::ranges::count_if(text, begins_character)) > kLongestText)
-    return fail(422, "Text too long", "`text` has at most " + std::to_string(kLongestText) + " characters.", "text");
+    return fail(422, "Text too long",
+                "`text` has at most " + std::to_string(kLongestText) + " characters.", "text");
   return {};
 }
 
 // One of a model that is there.
-#define STRATA_COMMENT "FROM comments c WHERE id = $1 AND EXISTS (SELECT 1 FROM models WHERE id = c.model_id)"
+#define STRATA_COMMENT \
+  "FROM comments c WHERE id = $1 AND EXISTS (SELECT 1 FROM models WHERE id = c.model_id)"
 
 enum class Lock { none, keep, change };  // `keep`: it stays while this transaction lasts
 
 Result<Comment> load(PgConnection& connection, std::int64_t id, Lock lock) {
-  const char* sql = lock == Lock::none   ? "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT
-                    : lock == Lock::keep ? "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR SHARE"
-                                         : "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR UPDATE";
+  const char* sql = lock == Lock::none ? "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT
+                    : lock == Lock::keep
+                        ? "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR SHARE"
+                        : "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR UPDATE";
   auto rows = connection.query(sql, Params().integer(id));
   if (!rows) return tl::unexpected(rows.error());
   if (rows->rows() == 0) return not_found("comment", std::to_string(id));
@@ -89,7 +96,8 @@ Result<Comment> load_thread(PgConnection& connection, std::int64_t id, Lock lock
   auto first = load(connection, id, lock);
   if (first && first->thread)
     return fail(422, "A reply",
-                "Replies are to the first comment of a thread, which is " + std::to_string(*first->thread) + " here.");
+                "Replies are to the first comment of a thread, which is " +
+                    std::to_string(*first->thread) + " here.");
   return first;
 }
 
@@ -114,11 +122,12 @@ Result<Comments::Page> Comments::of_model(std::int64_t model_id, Role seen_by, c
   std::optional<std::string> state;
   if (query.resolved) state = *query.resolved ? "resolved" : "open";
   return pool_.read([&](PgConnection& connection) {
-    auto total = connection.query("SELECT count(*)" STRATA_ASKED_COMMENTS, Params()
-                                                                               .integer(model_id)
-                                                                               .optional_text(state)
-                                                                               .optional_text(query.since)
-                                                                               .array(visibilities_seen_by(seen_by)));
+    auto total = connection.query("SELECT count(*)" STRATA_ASKED_COMMENTS,
+                                  Params()
+                                      .integer(model_id)
+                                      .optional_text(state)
+                                      .optional_text(query.since)
+                                      .array(visibilities_seen_by(seen_by)));
     auto rows = connection.query("SELECT " STRATA_COMMENT_COLUMNS STRATA_ASKED_COMMENTS
                                  " AND c.id > $7 ORDER BY c.id LIMIT $5 OFFSET $6",
                                  Params()
@@ -133,21 +142,26 @@ Result<Comments::Page> Comments::of_model(std::int64_t model_id, Role seen_by, c
   });
 }
 
-Result<Comments::Page> Comments::replies(std::int64_t thread, Role seen_by, int limit, int offset, std::int64_t after) {
+Result<Comments::Page> Comments::replies(std::int64_t thread, Role seen_by, int limit, int offset,
+                                         std::int64_t after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     auto first = load_thread(connection, thread, Lock::none);
-    if (first && !sees(seen_by, first->visibility)) return not_found("comment", std::to_string(thread));
+    if (first && !sees(seen_by, first->visibility))
+      return not_found("comment", std::to_string(thread));
     if (!first) return tl::unexpected(first.error());
-    auto total = connection.query("SELECT count(*) FROM comments WHERE thread_id = $1", Params().integer(thread));
-    auto rows = connection.query("SELECT " STRATA_COMMENT_COLUMNS
-                                 " FROM comments c WHERE thread_id = $1 AND c.id > $4 ORDER BY c.id LIMIT $2 OFFSET $3",
-                                 Params().integer(thread).integer(limit).integer(offset).integer(after));
+    auto total = connection.query("SELECT count(*) FROM comments WHERE thread_id = $1",
+                                  Params().integer(thread));
+    auto rows = connection.query(
+        "SELECT " STRATA_COMMENT_COLUMNS
+        " FROM comments c WHERE thread_id = $1 AND c.id > $4 ORDER BY c.id LIMIT $2 OFFSET $3",
+        Params().integer(thread).integer(limit).integer(offset).integer(after));
     return page_of(std::move(total), std::move(rows));
   });
 }
 
 Result<Comment> Comments::comment(std::int64_t id, Role seen_by) {
-  auto found = pool_.read([&](PgConnection& connection) { return load(connection, id, Lock::none); });
+  auto found =
+      pool_.read([&](PgConnection& connection) { return load(connection, id, Lock::none); });
   if (found && !sees(seen_by, found->visibility)) return not_found("comment", std::to_string(id));
   return found;
 }
@@ -163,14 +177,17 @@ Result<Comment> Comments::create(const Comment& comment, const FirstAnswer<Comme
       model_id = first->model_id;
     }
     // Locked, so that of two at once the later one counts the earlier.
-    auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE", Params().integer(model_id));
+    auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
+                                  Params().integer(model_id));
     if (!model) return tl::unexpected(model.error());
     if (model->rows() == 0) return not_found("model", std::to_string(model_id));
-    auto count = connection.query("SELECT count(*) FROM comments WHERE model_id = $1", Params().integer(model_id));
+    auto count = connection.query("SELECT count(*) FROM comments WHERE model_id = $1",
+                                  Params().integer(model_id));
     if (!count) return tl::unexpected(count.error());
     if (count->integer(0, 0) >= kMostComments)
       return fail(409, "Too many comments",
-                  "A model holds at most " + std::to_string(kMostComments) + " comments. Delete some first.");
+                  "A model holds at most " + std::to_string(kMostComments) +
+                      " comments. Delete some first.");
     PgArray position(oid::kFloat8), normal(oid::kFloat8);
     if (comment.place) {
       position = array_of(comment.place->position);
@@ -207,15 +224,21 @@ Result<Comment> Comments::update(const Comment& comment, const FirstAnswer<Comme
         "resolved_by = CASE WHEN $4 IS NOT NULL THEN coalesce(resolved_by, $4) END, "
         "changed = clock_timestamp(), version = version + 1 WHERE id = $1 AND version = $2 "
         "RETURNING " STRATA_COMMENT_COLUMNS,
-        Params().integer(comment.id).integer(comment.version).text(comment.text).optional_text(resolver));
+        Params()
+            .integer(comment.id)
+            .integer(comment.version)
+            .text(comment.text)
+            .optional_text(resolver));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) return read_comment(*row, 0);
-    if (auto known = load(connection, comment.id, Lock::none); !known) return tl::unexpected(known.error());
+    if (auto known = load(connection, comment.id, Lock::none); !known)
+      return tl::unexpected(known.error());
     return stale("comment");
   });
 }
 
-Result<Comments::Removal> Comments::remove(const Comment& comment, const FirstAnswer<Removal>& answer) {
+Result<Comments::Removal> Comments::remove(const Comment& comment,
+                                           const FirstAnswer<Removal>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Removal> {
     const std::int64_t thread = comment.thread.value_or(comment.id);
     auto first = load(connection, thread, Lock::change);
@@ -224,9 +247,11 @@ Result<Comments::Removal> Comments::remove(const Comment& comment, const FirstAn
     if (!now) return tl::unexpected(now.error());
     if (now->version != comment.version) return stale("comment");
     if (now->deleted)
-      return fail(409, "Deleted already", "The comment was deleted; it stands there for its replies until they are.");
-    auto others = connection.query("SELECT count(*) FROM comments WHERE thread_id = $1 AND id <> $2",
-                                   Params().integer(thread).integer(comment.id));
+      return fail(409, "Deleted already",
+                  "The comment was deleted; it stands there for its replies until they are.");
+    auto others =
+        connection.query("SELECT count(*) FROM comments WHERE thread_id = $1 AND id <> $2",
+                         Params().integer(thread).integer(comment.id));
     if (!others) return tl::unexpected(others.error());
     const bool has_others = others->integer(0, 0) > 0;
     Removal removal{first->model_id, {}, {}};
@@ -242,18 +267,21 @@ Result<Comments::Removal> Comments::remove(const Comment& comment, const FirstAn
     removal.gone.push_back(comment.id);
     if (comment.thread && first->deleted && !has_others) removal.gone.push_back(thread);
     for (const auto id : removal.gone)
-      if (auto done = connection.query("DELETE FROM comments WHERE id = $1", Params().integer(id)); !done)
+      if (auto done = connection.query("DELETE FROM comments WHERE id = $1", Params().integer(id));
+          !done)
         return tl::unexpected(done.error());
     return removal;
   });
 }
 
-Result<void> rename_in_comments(PgConnection& connection, const std::string& name, const std::string& former) {
-  for (const char* sql :
-       {"UPDATE comments SET user_name = $2 WHERE user_name = $1",
-        "UPDATE comments SET resolved_by = $2 WHERE resolved_by = $1",
-        "UPDATE comments SET text = " STRATA_CALL_RENAMED("text", "10000") " WHERE " STRATA_CALLS_THEM("text")})
-    if (auto done = connection.query(sql, Params().text(name).text(former)); !done) return tl::unexpected(done.error());
+Result<void> rename_in_comments(PgConnection& connection, const std::string& name,
+                                const std::string& former) {
+  for (const char* sql : {"UPDATE comments SET user_name = $2 WHERE user_name = $1",
+                          "UPDATE comments SET resolved_by = $2 WHERE resolved_by = $1",
+                          "UPDATE comments SET text = " STRATA_CALL_RENAMED(
+                              "text", "10000") " WHERE " STRATA_CALLS_THEM("text")})
+    if (auto done = connection.query(sql, Params().text(name).text(former)); !done)
+      return tl::unexpected(done.error());
   return {};
 }
 

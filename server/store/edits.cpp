@@ -8,15 +8,18 @@ namespace {
   "r.record ->> 'reason', r.time FROM edits e LEFT JOIN edits r ON r.model_id = e.model_id AND r.sequence = e.reviewed_by "
 
 JournalRow read_row(const PgResult& rows, int i) {
-  JournalRow row{rows.integer(i, 0), rows.uuid(i, 1), rows.uuid(i, 2), rows.text(i, 3),   rows.text(i, 4),
-                 rows.json(i, 5),    rows.json(i, 6), rows.time(i, 7), rows.boolean(i, 8)};
+  JournalRow row{rows.integer(i, 0), rows.uuid(i, 1), rows.uuid(i, 2),
+                 rows.text(i, 3),    rows.text(i, 4), rows.json(i, 5),
+                 rows.json(i, 6),    rows.time(i, 7), rows.boolean(i, 8)};
   if (!rows.null(i, 9)) row.review = parse_review(rows.text(i, 9)).value_or(Review::none);
   if (!rows.null(i, 10))
-    row.reviewer = {rows.text(i, 10), rows.null(i, 11) ? std::string() : rows.text(i, 11), rows.time(i, 12)};
+    row.reviewer = {rows.text(i, 10), rows.null(i, 11) ? std::string() : rows.text(i, 11),
+                    rows.time(i, 12)};
   return row;
 }
 
-Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char* sql, const Params& params) {
+Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char* sql,
+                                            const Params& params) {
   auto rows = connection.query(sql, params);
   if (!rows) return tl::unexpected(rows.error());
   std::vector<std::int64_t> found;
@@ -29,19 +32,19 @@ Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char
 Result<Store::HistoryPage> Store::history(std::int64_t layer_id, int limit, int offset,
                                           std::optional<std::int64_t> before) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<HistoryPage> {
-    auto total =
-        connection.query("SELECT (SELECT count(*) FROM edits WHERE layer_id = l.id) FROM layers l WHERE id = $1",
-                         Params().integer(layer_id));
+    auto total = connection.query(
+        "SELECT (SELECT count(*) FROM edits WHERE layer_id = l.id) FROM layers l WHERE id = $1",
+        Params().integer(layer_id));
     if (!total) return tl::unexpected(total.error());
     if (total->rows() == 0) return not_found("layer", std::to_string(layer_id));
-    auto rows =
-        connection.query("SELECT " STRATA_EDIT_COLUMNS
-                         "WHERE e.layer_id = $1 AND e.sequence < $4 ORDER BY e.sequence DESC LIMIT $2 OFFSET $3",
-                         Params()
-                             .integer(layer_id)
-                             .integer(std::max(limit, 0))
-                             .integer(std::max(offset, 0))
-                             .integer(before.value_or(INT64_MAX)));
+    auto rows = connection.query(
+        "SELECT " STRATA_EDIT_COLUMNS
+        "WHERE e.layer_id = $1 AND e.sequence < $4 ORDER BY e.sequence DESC LIMIT $2 OFFSET $3",
+        Params()
+            .integer(layer_id)
+            .integer(std::max(limit, 0))
+            .integer(std::max(offset, 0))
+            .integer(before.value_or(INT64_MAX)));
     if (!rows) return tl::unexpected(rows.error());
     HistoryPage page;
     page.total = total->integer(0, 0);
@@ -54,34 +57,40 @@ Result<Store::JournalState> Store::journal_state(std::int64_t model_id, std::spa
   PgArray wanted(oid::kUuid);
   for (const Uuid& id : ids) wanted.add(id);
   return impl_->pool.read([&](PgConnection& connection) -> Result<JournalState> {
-    auto model = connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
+    auto model =
+        connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
     if (!model) return tl::unexpected(model.error());
     if (model->rows() == 0) return not_found("model", std::to_string(model_id));
     JournalState state{model->integer(0, 0), {}};
     if (ids.empty()) return state;
-    auto rows = connection.query("SELECT " STRATA_EDIT_COLUMNS "WHERE e.model_id = $1 AND e.id = any($2)",
-                                 Params().integer(model_id).array(wanted));
+    auto rows =
+        connection.query("SELECT " STRATA_EDIT_COLUMNS "WHERE e.model_id = $1 AND e.id = any($2)",
+                         Params().integer(model_id).array(wanted));
     if (!rows) return tl::unexpected(rows.error());
     for (int i = 0; i < rows->rows(); ++i) state.known.push_back(read_row(*rows, i));
     return state;
   });
 }
 
-Result<std::vector<std::int64_t>> Store::undoable(std::int64_t layer_id, const std::string& user, bool pending_only) {
+Result<std::vector<std::int64_t>> Store::undoable(std::int64_t layer_id, const std::string& user,
+                                                  bool pending_only) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   return impl_->pool.read([&](PgConnection& connection) {
-    return sequences(connection,
-                     "SELECT sequence FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
-                     "AND (NOT $3 OR review = 'pending') AND stroke = "
-                     "(SELECT stroke FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
-                     "AND (NOT $3 OR review = 'pending') ORDER BY sequence DESC LIMIT 1) ORDER BY sequence",
-                     Params().integer(layer_id).text(user).boolean(pending_only));
+    return sequences(
+        connection,
+        "SELECT sequence FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
+        "AND (NOT $3 OR review = 'pending') AND stroke = "
+        "(SELECT stroke FROM edits WHERE layer_id = $1 AND user_name = $2 AND writer AND in_force "
+        "AND (NOT $3 OR review = 'pending') ORDER BY sequence DESC LIMIT 1) ORDER BY sequence",
+        Params().integer(layer_id).text(user).boolean(pending_only));
   });
 }
 
-// The batches that the newest undo took, unless paint made after that undo is in force. (Strokes that redo brought back
-// are older than it, so that undo, undo, redo, redo works.) What was rejected only a curator brings back.
-Result<std::vector<std::int64_t>> Store::redoable(std::int64_t layer_id, const std::string& user, bool pending_only) {
+// The batches that the newest undo took, unless paint made after that undo is in force. (Strokes
+// that redo brought back are older than it, so that undo, undo, redo, redo works.) What was
+// rejected only a curator brings back.
+Result<std::vector<std::int64_t>> Store::redoable(std::int64_t layer_id, const std::string& user,
+                                                  bool pending_only) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   return impl_->pool.read([&](PgConnection& connection) {
     return sequences(
@@ -99,7 +108,8 @@ Result<std::vector<std::int64_t>> Store::redoable(std::int64_t layer_id, const s
 
 Result<std::int64_t> Store::sequence_at(std::int64_t model_id, const std::string& utc) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
-    auto row = connection.query(  // Times are told in milliseconds: one that was read counts its own edit.
+    // Times are told in milliseconds: one that was read counts its own edit.
+    auto row = connection.query(
         "SELECT coalesce(max(sequence), 0) FROM edits "
         "WHERE model_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
         Params().integer(model_id).text(utc));
@@ -110,26 +120,30 @@ Result<std::int64_t> Store::sequence_at(std::int64_t model_id, const std::string
 
 Result<std::int64_t> Store::last_sequence(std::int64_t model_id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
-    auto row = connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
+    auto row =
+        connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return not_found("model", std::to_string(model_id));
     return row->integer(0, 0);
   });
 }
 
-Result<void> rename_in_journal(PgConnection& connection, const std::string& name, const std::string& former) {
-  for (
-      const char* sql :
-      {"UPDATE edits SET user_name = $2 WHERE user_name = $1",
-       // Decisions on what waited for review tell whose edits were meant, and a reason in words. Other records may be large.
-       "UPDATE edits SET record = jsonb_set(record, '{user}', to_jsonb($2::text)) "
-       "WHERE op IN ('accept', 'reject', 'reopen') AND record ->> 'user' = $1",
-       "UPDATE edits SET record = jsonb_set(record, '{reason}', "
-       "to_jsonb(" STRATA_CALL_RENAMED(
-           "record ->> 'reason'",
-           "1000") ")) "
-                   "WHERE op IN ('accept', 'reject', 'reopen') AND " STRATA_CALLS_THEM("record ->> 'reason'")})
-    if (auto done = connection.query(sql, Params().text(name).text(former)); !done) return tl::unexpected(done.error());
+Result<void> rename_in_journal(PgConnection& connection, const std::string& name,
+                               const std::string& former) {
+  for (const char* sql :
+       {"UPDATE edits SET user_name = $2 WHERE user_name = $1",
+        // Decisions on what waited for review tell whose edits were meant, and a reason in words.
+        // Other records may be large.
+        "UPDATE edits SET record = jsonb_set(record, '{user}', to_jsonb($2::text)) "
+        "WHERE op IN ('accept', 'reject', 'reopen') AND record ->> 'user' = $1",
+        "UPDATE edits SET record = jsonb_set(record, '{reason}', "
+        "to_jsonb(" STRATA_CALL_RENAMED(
+            "record ->> 'reason'",
+            "1000") ")) "
+                    "WHERE op IN ('accept', 'reject', 'reopen') AND " STRATA_CALLS_THEM(
+                        "record ->> 'reason'")})
+    if (auto done = connection.query(sql, Params().text(name).text(former)); !done)
+      return tl::unexpected(done.error());
   return {};
 }
 

@@ -5,7 +5,8 @@
 
 #include "store/store_impl.h"
 
-// Who changes a group locks it first, and people after it, by their names: what is said of both in that moment holds until it is written.
+// Who changes a group locks it first, and people after it, by their names: what is said of both in
+// that moment holds until it is written.
 
 namespace strata::store {
 namespace {
@@ -25,14 +26,17 @@ Role read_role(const PgResult& rows, int row, int column) {
 }
 
 Result<Group> load(PgConnection& connection, std::int64_t id, bool lock) {
-  auto rows = connection.query(lock ? "SELECT " STRATA_GROUP_COLUMNS " FROM groups g WHERE g.id = $1 FOR UPDATE"
-                                    : "SELECT " STRATA_GROUP_COLUMNS " FROM groups g WHERE g.id = $1",
-                               Params().integer(id));
+  auto rows = connection.query(
+      lock ? "SELECT " STRATA_GROUP_COLUMNS " FROM groups g WHERE g.id = $1 FOR UPDATE"
+           : "SELECT " STRATA_GROUP_COLUMNS " FROM groups g WHERE g.id = $1",
+      Params().integer(id));
   if (!rows) return tl::unexpected(rows.error());
   if (rows->rows() == 0) return not_found("group", std::to_string(id));
   return read_group(*rows, 0);
 }
-Result<Group> lock_group(PgConnection& connection, std::int64_t id) { return load(connection, id, true); }
+Result<Group> lock_group(PgConnection& connection, std::int64_t id) {
+  return load(connection, id, true);
+}
 
 Result<GroupDetail> load_detail(PgConnection& connection, std::int64_t id) {
   auto group = load(connection, id, false);
@@ -44,15 +48,18 @@ Result<GroupDetail> load_detail(PgConnection& connection, std::int64_t id) {
       "ORDER BY lower(u.name)",
       Params().integer(id));
   if (!members) return tl::unexpected(members.error());
-  for (int i = 0; i < members->rows(); ++i) detail.members.push_back({members->text(i, 0), members->text(i, 1)});
+  for (int i = 0; i < members->rows(); ++i)
+    detail.members.push_back({members->text(i, 0), members->text(i, 1)});
   auto projects = connection.query(
       "SELECT p.slug::text, p.name, r.role FROM project_groups r JOIN projects p ON p.id = r.project_id "
       "WHERE r.group_id = $1 ORDER BY lower(p.name), p.id",
       Params().integer(id));
   if (!projects) return tl::unexpected(projects.error());
   for (int i = 0; i < projects->rows(); ++i)
-    detail.projects.push_back({projects->text(i, 0), projects->text(i, 1), read_role(*projects, i, 2)});
-  // Those for whom nothing else is as high: neither what they may do everywhere, nor a role of their own, nor one by another group.
+    detail.projects.push_back(
+        {projects->text(i, 0), projects->text(i, 1), read_role(*projects, i, 2)});
+  // Those for whom nothing else is as high: neither what they may do everywhere, nor a role of
+  // their own, nor one by another group.
   auto losing = connection.query(
       "SELECT count(*) FROM group_people p JOIN users u ON u.id = p.user_id WHERE p.group_id = $1 AND "
       "u.disabled IS NULL AND EXISTS (SELECT 1 FROM project_groups g WHERE g.group_id = $1 AND "
@@ -67,41 +74,49 @@ Result<GroupDetail> load_detail(PgConnection& connection, std::int64_t id) {
 
 Result<std::vector<std::string>> people_in(PgConnection& connection, std::int64_t id) {
   auto rows = connection.query(
-      "SELECT u.name FROM group_people p JOIN users u ON u.id = p.user_id WHERE p.group_id = $1", Params().integer(id));
+      "SELECT u.name FROM group_people p JOIN users u ON u.id = p.user_id WHERE p.group_id = $1",
+      Params().integer(id));
   if (!rows) return tl::unexpected(rows.error());
   std::vector<std::string> people;
   for (int i = 0; i < rows->rows(); ++i) people.push_back(rows->text(i, 0));
   return people;
 }
 
-// For whoever makes or renames one: the names and their number are those of now until it is written.
+// For whoever makes or renames one: the names and their number are those of now until it is
+// written.
 Result<void> check_name(PgConnection& connection, const std::string& name, std::int64_t own_id) {
   if (auto locked = connection.query("LOCK TABLE groups IN SHARE ROW EXCLUSIVE MODE"); !locked)
     return tl::unexpected(locked.error());
-  auto taken = connection.query("SELECT name FROM groups WHERE lower(name) = lower($1) AND id <> $2",
-                                Params().text(name).integer(own_id));
+  auto taken =
+      connection.query("SELECT name FROM groups WHERE lower(name) = lower($1) AND id <> $2",
+                       Params().text(name).integer(own_id));
   if (!taken) return tl::unexpected(taken.error());
   if (taken->rows() > 0)
-    return fail(409, "Name taken", "There is a group called `" + taken->text(0, 0) + "`. Choose another name.", "name");
+    return fail(409, "Name taken",
+                "There is a group called `" + taken->text(0, 0) + "`. Choose another name.",
+                "name");
   return {};
 }
 
 Result<void> check_spelling(const std::string& name) {
   const auto is_blank = [](char c) { return static_cast<unsigned char>(c) <= ' '; };
   const auto characters = std::ranges::count_if(name, [](char c) { return (c & 0xc0) != 0x80; });
-  if (name.empty() || static_cast<std::size_t>(characters) > kLongestGroupName || is_blank(name.front()) ||
-      is_blank(name.back()))
-    return fail(422, "Bad name", "A group's name has 1 to 100 characters, and no blank before or behind it.", "name");
+  if (name.empty() || static_cast<std::size_t>(characters) > kLongestGroupName ||
+      is_blank(name.front()) || is_blank(name.back()))
+    return fail(422, "Bad name",
+                "A group's name has 1 to 100 characters, and no blank before or behind it.",
+                "name");
   return check_text(name, "name");
 }
 
 // Locked, each once.
-Result<std::vector<Person>> lock_people(PgConnection& connection, const std::vector<std::string>& names,
-                                        const char* field) {
+Result<std::vector<Person>> lock_people(PgConnection& connection,
+                                        const std::vector<std::string>& names, const char* field) {
   std::vector<Person> people;
   for (const std::string& name : std::set<std::string>(names.begin(), names.end())) {
     auto person = lock_person(connection, name);
-    if (!person && person.error().status == 404) return fail(422, "Nobody called that", person.error().detail, field);
+    if (!person && person.error().status == 404)
+      return fail(422, "Nobody called that", person.error().detail, field);
     if (!person) return tl::unexpected(person.error());
     people.push_back(std::move(*person));
   }
@@ -117,17 +132,20 @@ Result<bool> put_person(PgConnection& connection, std::int64_t group_id, std::in
   return put->rows() > 0;
 }
 
-Result<void> check_not_too_full(PgConnection& connection, std::int64_t group_id, const char* field) {
-  auto count = connection.query("SELECT count(*) FROM group_people WHERE group_id = $1", Params().integer(group_id));
+Result<void> check_not_too_full(PgConnection& connection, std::int64_t group_id,
+                                const char* field) {
+  auto count = connection.query("SELECT count(*) FROM group_people WHERE group_id = $1",
+                                Params().integer(group_id));
   if (!count) return tl::unexpected(count.error());
   if (count->integer(0, 0) > Groups::kMostPeople)
-    return fail(409, "Too many people", "A group has at most " + std::to_string(Groups::kMostPeople) + " people.",
-                field);
+    return fail(409, "Too many people",
+                "A group has at most " + std::to_string(Groups::kMostPeople) + " people.", field);
   return {};
 }
 
 Result<std::vector<std::string>> put_people(PgConnection& connection, std::int64_t id,
-                                            const std::vector<std::string>& names, const char* field) {
+                                            const std::vector<std::string>& names,
+                                            const char* field) {
   const auto people = lock_people(connection, names, field);
   if (!people) return tl::unexpected(people.error());
   std::vector<std::string> put;
@@ -136,7 +154,8 @@ Result<std::vector<std::string>> put_people(PgConnection& connection, std::int64
     if (!is_new) return tl::unexpected(is_new.error());
     if (*is_new) put.push_back(person.name);
   }
-  if (auto good = check_not_too_full(connection, id, field); !good) return tl::unexpected(good.error());
+  if (auto good = check_not_too_full(connection, id, field); !good)
+    return tl::unexpected(good.error());
   return put;
 }
 
@@ -146,8 +165,9 @@ Result<std::vector<std::string>> take_people(PgConnection& connection, std::int6
   if (!people) return tl::unexpected(people.error());
   std::vector<std::string> taken;
   for (const Person& person : *people) {
-    auto gone = connection.query("DELETE FROM group_people WHERE group_id = $1 AND user_id = $2 RETURNING 1",
-                                 Params().integer(id).integer(person.id));
+    auto gone = connection.query(
+        "DELETE FROM group_people WHERE group_id = $1 AND user_id = $2 RETURNING 1",
+        Params().integer(id).integer(person.id));
     if (!gone) return tl::unexpected(gone.error());
     if (gone->rows() > 0) taken.push_back(person.name);
   }
@@ -156,16 +176,19 @@ Result<std::vector<std::string>> take_people(PgConnection& connection, std::int6
 
 Result<void> rename(PgConnection& connection, std::int64_t id, const std::string& name) {
   if (auto free = check_name(connection, name, id); !free) return free;
-  auto done = connection.query("UPDATE groups SET name = $2 WHERE id = $1", Params().integer(id).text(name));
+  auto done = connection.query("UPDATE groups SET name = $2 WHERE id = $1",
+                               Params().integer(id).text(name));
   return done ? Result<void>() : tl::unexpected(done.error());
 }
 
 }  // namespace
 
-Result<void> join_groups(PgConnection& connection, std::int64_t person_id, const std::vector<std::int64_t>& groups) {
+Result<void> join_groups(PgConnection& connection, std::int64_t person_id,
+                         const std::vector<std::int64_t>& groups) {
   for (const std::int64_t id : std::set<std::int64_t>(groups.begin(), groups.end())) {
     const auto group = lock_group(connection, id);
-    if (!group && group.error().status == 404) return fail(422, "No such group", group.error().detail, "groups");
+    if (!group && group.error().status == 404)
+      return fail(422, "No such group", group.error().detail, "groups");
     if (!group) return tl::unexpected(group.error());
     if (auto put = put_person(connection, id, person_id); !put) return tl::unexpected(put.error());
     if (auto good = check_not_too_full(connection, id, "groups"); !good) return good;
@@ -175,7 +198,8 @@ Result<void> join_groups(PgConnection& connection, std::int64_t person_id, const
 
 Result<std::vector<Group>> Groups::all() {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<Group>> {
-    auto rows = connection.query("SELECT " STRATA_GROUP_COLUMNS " FROM groups g ORDER BY lower(g.name)");
+    auto rows =
+        connection.query("SELECT " STRATA_GROUP_COLUMNS " FROM groups g ORDER BY lower(g.name)");
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Group> groups;
     for (int i = 0; i < rows->rows(); ++i) groups.push_back(read_group(*rows, i));
@@ -187,30 +211,36 @@ Result<GroupDetail> Groups::group(std::int64_t id) {
   return pool_.read([&](PgConnection& connection) { return load_detail(connection, id); });
 }
 
-Result<GroupDetail> Groups::create(const std::string& name, const std::vector<std::string>& people) {
+Result<GroupDetail> Groups::create(const std::string& name,
+                                   const std::vector<std::string>& people) {
   if (auto good = check_spelling(name); !good) return tl::unexpected(good.error());
   return pool_.write([&](PgConnection& connection) -> Result<GroupDetail> {
     if (auto free = check_name(connection, name, 0); !free) return tl::unexpected(free.error());
     auto count = connection.query("SELECT count(*) FROM groups");
     if (!count) return tl::unexpected(count.error());
     if (count->integer(0, 0) >= kMostGroups)
-      return fail(409, "Too many groups", "There are " + std::to_string(kMostGroups) + " groups. Delete some first.",
+      return fail(409, "Too many groups",
+                  "There are " + std::to_string(kMostGroups) + " groups. Delete some first.",
                   "name");
-    auto made = connection.query("INSERT INTO groups (name) VALUES ($1) RETURNING id", Params().text(name));
+    auto made =
+        connection.query("INSERT INTO groups (name) VALUES ($1) RETURNING id", Params().text(name));
     if (!made) return tl::unexpected(made.error());
     const std::int64_t id = made->integer(0, 0);
-    if (auto put = put_people(connection, id, people, "members"); !put) return tl::unexpected(put.error());
+    if (auto put = put_people(connection, id, people, "members"); !put)
+      return tl::unexpected(put.error());
     return load_detail(connection, id);
   });
 }
 
-Result<Regrouped<GroupDetail>> Groups::change(std::int64_t id, const GroupChange& change, const std::string& by) {
+Result<Regrouped<GroupDetail>> Groups::change(std::int64_t id, const GroupChange& change,
+                                              const std::string& by) {
   if (change.name)
     if (auto good = check_spelling(*change.name); !good) return tl::unexpected(good.error());
   return pool_.write([&](PgConnection& connection) -> Result<Regrouped<GroupDetail>> {
     if (auto named = act_as(connection, by); !named) return tl::unexpected(named.error());
     if (change.name)
-      if (auto done = rename(connection, id, *change.name); !done) return tl::unexpected(done.error());
+      if (auto done = rename(connection, id, *change.name); !done)
+        return tl::unexpected(done.error());
     if (auto locked = lock_group(connection, id); !locked) return tl::unexpected(locked.error());
     auto taken = take_people(connection, id, change.remove);
     if (!taken) return tl::unexpected(taken.error());
@@ -232,21 +262,25 @@ Result<std::vector<std::string>> Groups::remove(std::int64_t id, const std::stri
     auto people = people_in(connection, id);
     if (!people) return people;
     // The roles first: what the projects' activity tells is that they end.
-    for (const char* sql : {"DELETE FROM project_groups WHERE group_id = $1", "DELETE FROM groups WHERE id = $1"})
-      if (auto gone = connection.query(sql, Params().integer(id)); !gone) return tl::unexpected(gone.error());
+    for (const char* sql :
+         {"DELETE FROM project_groups WHERE group_id = $1", "DELETE FROM groups WHERE id = $1"})
+      if (auto gone = connection.query(sql, Params().integer(id)); !gone)
+        return tl::unexpected(gone.error());
     return people;
   });
 }
 
 Result<std::vector<ProjectGroup>> Groups::of_project(std::int64_t project_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<ProjectGroup>> {
-    auto rows = connection.query("SELECT " STRATA_GROUP_COLUMNS
-                                 ", i.role FROM project_groups i JOIN groups g ON g.id = i.group_id "
-                                 "WHERE i.project_id = $1 ORDER BY lower(g.name)",
-                                 Params().integer(project_id));
+    auto rows =
+        connection.query("SELECT " STRATA_GROUP_COLUMNS
+                         ", i.role FROM project_groups i JOIN groups g ON g.id = i.group_id "
+                         "WHERE i.project_id = $1 ORDER BY lower(g.name)",
+                         Params().integer(project_id));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<ProjectGroup> groups;
-    for (int i = 0; i < rows->rows(); ++i) groups.push_back({read_group(*rows, i), read_role(*rows, i, 4)});
+    for (int i = 0; i < rows->rows(); ++i)
+      groups.push_back({read_group(*rows, i), read_role(*rows, i, 4)});
     return groups;
   });
 }
@@ -257,7 +291,8 @@ Result<Regrouped<ProjectGroup>> Groups::put(std::int64_t project_id, std::int64_
   return pool_.write([&](PgConnection& connection) -> Result<Regrouped<ProjectGroup>> {
     auto group = lock_group(connection, id);
     if (!group) return tl::unexpected(group.error());
-    if (auto there = lock_project(connection, project_id); !there) return tl::unexpected(there.error());
+    if (auto there = lock_project(connection, project_id); !there)
+      return tl::unexpected(there.error());
     if (auto named = act_as(connection, by); !named) return tl::unexpected(named.error());
     auto put = connection.query(
         "INSERT INTO project_groups (project_id, group_id, role) VALUES ($1, $2, $3) "
@@ -270,12 +305,14 @@ Result<Regrouped<ProjectGroup>> Groups::put(std::int64_t project_id, std::int64_
   });
 }
 
-Result<std::vector<std::string>> Groups::take(std::int64_t project_id, std::int64_t id, const std::string& by) {
+Result<std::vector<std::string>> Groups::take(std::int64_t project_id, std::int64_t id,
+                                              const std::string& by) {
   return pool_.write([&](PgConnection& connection) -> Result<std::vector<std::string>> {
     if (auto group = lock_group(connection, id); !group) return tl::unexpected(group.error());
     if (auto named = act_as(connection, by); !named) return tl::unexpected(named.error());
-    auto gone = connection.query("DELETE FROM project_groups WHERE project_id = $1 AND group_id = $2 RETURNING 1",
-                                 Params().integer(project_id).integer(id));
+    auto gone = connection.query(
+        "DELETE FROM project_groups WHERE project_id = $1 AND group_id = $2 RETURNING 1",
+        Params().integer(project_id).integer(id));
     if (!gone) return tl::unexpected(gone.error());
     if (gone->rows() == 0) return not_found("group of the project", std::to_string(id));
     return people_in(connection, id);

@@ -62,8 +62,8 @@ struct Regrouped {
   std::vector<std::string> people;
 };
 
-// Groups of a Store, and as thread-safe and blocking as that, with the same Problems for what is not there or away. `by`: who asked,
-// for the projects' activity; empty: it is not told there.
+// Groups of a Store, and as thread-safe and blocking as that, with the same Problems for what is
+// not there or away. `by`: who asked, for the projects' activity; empty: it is not told there.
 class Groups {
  public:
   static constexpr std::int64_t kMostGroups = 200, kMostPeople = 1000;  // of the site; in a group
@@ -72,23 +72,28 @@ class Groups {
 
   Result<std::vector<Group>> all();  // by name
   Result<GroupDetail> group(std::int64_t id);
-  // Refused: a name that is empty or too long (422) or taken (409), nobody of a name (422), too many groups or people (409).
+  // Refused: a name that is empty or too long (422) or taken (409), nobody of a name (422), too
+  // many groups or people (409).
   Result<GroupDetail> create(const std::string& name, const std::vector<std::string>& people);
   // The same. Who is in it already, or not in it, stays so.
-  Result<Regrouped<GroupDetail>> change(std::int64_t id, const GroupChange& change, const std::string& by);
+  Result<Regrouped<GroupDetail>> change(std::int64_t id, const GroupChange& change,
+                                        const std::string& by);
   // With the roles that it has.
   Result<std::vector<std::string>> remove(std::int64_t id, const std::string& by);
 
   // --- in projects
   Result<std::vector<ProjectGroup>> of_project(std::int64_t project_id);  // by name
   // Gives the role (viewer, annotator or curator) in place of the one it had there.
-  Result<Regrouped<ProjectGroup>> put(std::int64_t project_id, std::int64_t id, Role role, const std::string& by);
+  Result<Regrouped<ProjectGroup>> put(std::int64_t project_id, std::int64_t id, Role role,
+                                      const std::string& by);
   // 404: it has none there.
-  Result<std::vector<std::string>> take(std::int64_t project_id, std::int64_t id, const std::string& by);
+  Result<std::vector<std::string>> take(std::int64_t project_id, std::int64_t id,
+                                        const std::string& by);
 
   // Who has a role there, of their own or by a group.
   Result<std::vector<std::int64_t>> people_with_role(std::int64_t project_id);
-  Result<std::vector<GivenRole>> roles_of(const std::string& user);  // by groups, by the name of these
+  // by groups, by the name of these
+  Result<std::vector<GivenRole>> roles_of(const std::string& user);
 
  private:
   Pool& pool_;

@@ -49,7 +49,8 @@ std::string random_token() {
   std::array<unsigned char, 32> secret{};
   randombytes_buf(secret.data(), secret.size());
   std::array<char, 64> text{};
-  sodium_bin2base64(text.data(), text.size(), secret.data(), secret.size(), sodium_base64_VARIANT_URLSAFE_NO_PADDING);
+  sodium_bin2base64(text.data(), text.size(), secret.data(), secret.size(),
+                    sodium_base64_VARIANT_URLSAFE_NO_PADDING);
   return text.data();
 }
 

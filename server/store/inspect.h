@@ -18,6 +18,7 @@ struct DatabaseState {
 // The newest version of the schema that there is a migration to.
 Result<std::int64_t> newest_migration(const std::filesystem::path& migrations_dir);
 
-Result<DatabaseState> inspect_database(const std::string& dsn, const std::filesystem::path& migrations_dir);
+Result<DatabaseState> inspect_database(const std::string& dsn,
+                                       const std::filesystem::path& migrations_dir);
 
 }  // namespace strata::store

@@ -15,7 +15,8 @@
 
 namespace strata::store {
 
-// What a tile holds of a key, in model space and units: the sum of area × position, and the box of its texels.
+// What a tile holds of a key, in model space and units: the sum of area × position, and the box of
+// its texels.
 struct KeySum {
   std::optional<std::int64_t> key;  // nothing: values of the layer are not told apart
   std::uint64_t texels = 0;
@@ -35,18 +36,20 @@ struct JournalEntry {
   Uuid id;                    // of the message; unique per model
   std::string user;           // display name of the author
   Uuid stroke;                // groups the batches of one stroke; equal to `id` for single edits
-  std::string op;  // "stroke", "fill", "polygon", "import", "undo", "redo", "restore", "accept", "reject", "reopen"
+  // "stroke", "fill", "polygon", "import", "undo", "redo", "restore", "accept", "reject", "reopen"
+  std::string op;
   nlohmann::json record;  // the edit as it was asked for
   nlohmann::json answer;  // what the caller was told; a repeat of `id` gets this again
   std::chrono::system_clock::time_point time;
   struct Revision {
     TileAddress tile;
     std::vector<std::uint8_t> difference;  // strata::encode_revision
-    std::vector<std::uint8_t> key_tile;    // strata::encode_tile after the edit; empty except every 64th of a tile
+    // strata::encode_tile after the edit; empty except every 64th of a tile
+    std::vector<std::uint8_t> key_tile;
   };
   std::vector<Revision> revisions;
-  // What the tiles of the revisions hold after the edit; asked for on the writer's thread, at each try. Empty: it is not known, and the
-  // layer is to be counted anew (Store::layers_to_sum).
+  // What the tiles of the revisions hold after the edit; asked for on the writer's thread, at each
+  // try. Empty: it is not known, and the layer is to be counted anew (Store::layers_to_sum).
   std::function<std::vector<TileKeys>()> sum_tiles;
   // undo, redo, reviews: the sequences whose `in_force` becomes false / true with this entry
   std::vector<std::int64_t> disable, enable;

@@ -18,8 +18,10 @@ Result<void> check(const JournalEntry& entry) {
   if (auto good = check_json(entry.record, "record"); !good) return good;
   if (auto good = check_json(entry.answer, "answer"); !good) return good;
   for (const auto& revision : entry.revisions)
-    if (revision.tile.x >= kTilesASide || revision.tile.y >= kTilesASide || revision.difference.empty())
-      return fail(400, "Bad edit", "A tile revision is outside every layer, or empty.", "revisions");
+    if (revision.tile.x >= kTilesASide || revision.tile.y >= kTilesASide ||
+        revision.difference.empty())
+      return fail(400, "Bad edit", "A tile revision is outside every layer, or empty.",
+                  "revisions");
   return {};
 }
 
@@ -31,7 +33,8 @@ struct Span {
 Result<std::map<std::int64_t, Span>> model_spans(std::span<const JournalEntry* const> entries) {
   std::map<std::int64_t, Span> spans;
   for (const JournalEntry* entry : entries) {
-    const auto [span, fresh] = spans.try_emplace(entry->model_id, Span{entry->sequence, entry->sequence});
+    const auto [span, fresh] =
+        spans.try_emplace(entry->model_id, Span{entry->sequence, entry->sequence});
     if (!fresh && entry->sequence != ++span->second.last)
       return fail(409, "Journal out of order",
                   "Edit " + std::to_string(entry->sequence) + " does not follow the one before.");
@@ -58,7 +61,8 @@ void advance_models(const std::map<std::int64_t, Span>& spans, Statements& out) 
 
 std::size_t advance_layers(std::span<const JournalEntry* const> entries, Statements& out) {
   std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> lasts;
-  for (const JournalEntry* entry : entries) lasts[{entry->layer_id, entry->model_id}] = entry->sequence;
+  for (const JournalEntry* entry : entries)
+    lasts[{entry->layer_id, entry->model_id}] = entry->sequence;
   PgArray ids(oid::kInt8), models(oid::kInt8), sequences(oid::kInt8);
   for (const auto& [key, last] : lasts) {
     ids.add(key.first);
@@ -75,9 +79,9 @@ std::size_t advance_layers(std::span<const JournalEntry* const> entries, Stateme
 }
 
 void insert_edits(std::span<const JournalEntry* const> entries, Statements& out) {
-  PgArray models(oid::kInt8), sequences(oid::kInt8), ids(oid::kUuid), layers(oid::kInt8), strokes(oid::kUuid),
-      users(oid::kText), ops(oid::kText), records(oid::kJsonb), answers(oid::kJsonb), times(oid::kTimestamptz),
-      reviews(oid::kText);
+  PgArray models(oid::kInt8), sequences(oid::kInt8), ids(oid::kUuid), layers(oid::kInt8),
+      strokes(oid::kUuid), users(oid::kText), ops(oid::kText), records(oid::kJsonb),
+      answers(oid::kJsonb), times(oid::kTimestamptz), reviews(oid::kText);
   for (const JournalEntry* entry : entries) {
     models.add(entry->model_id);
     sequences.add(entry->sequence);
@@ -114,8 +118,8 @@ void insert_edits(std::span<const JournalEntry* const> entries, Statements& out)
 }
 
 struct RevisionColumns {
-  PgArray layers{oid::kInt8}, ys{oid::kInt2}, xs{oid::kInt2}, sequences{oid::kInt8}, differences{oid::kBytea},
-      keys{oid::kBytea};
+  PgArray layers{oid::kInt8}, ys{oid::kInt2}, xs{oid::kInt2}, sequences{oid::kInt8},
+      differences{oid::kBytea}, keys{oid::kBytea};
   std::size_t bytes = 0;
 
   void add(const JournalEntry& entry, const JournalEntry::Revision& revision) {
@@ -152,7 +156,8 @@ void insert_revisions(std::span<const JournalEntry* const> entries, Statements& 
   columns.flush(out);
 }
 
-// After the inserts and in the order of the entries: an undo may come in the same transaction as the edit it undoes.
+// After the inserts and in the order of the entries: an undo may come in the same transaction as
+// the edit it undoes.
 void switch_edits(std::span<const JournalEntry* const> entries, Statements& out) {
   for (const JournalEntry* entry : entries)
     for (const auto* sequences : {&entry->disable, &entry->enable}) {
@@ -178,7 +183,8 @@ void keep_decisions(std::span<const JournalEntry* const> entries, Statements& ou
     const Review becomes = entry->reviewed->becomes;
     Params params;
     params.integer(entry->layer_id).integer(entry->model_id).array(list).text(name(becomes));
-    params.optional_integer(becomes == Review::pending ? std::nullopt : std::optional(entry->sequence));
+    params.optional_integer(becomes == Review::pending ? std::nullopt
+                                                       : std::optional(entry->sequence));
     out.push_back(
         {"UPDATE edits SET review = $4, reviewed_by = $5 WHERE layer_id = $1 AND model_id = $2 AND sequence = any($3)",
          std::move(params)});
@@ -189,7 +195,9 @@ void keep_decisions(std::span<const JournalEntry* const> entries, Statements& ou
 
 tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
                                                  std::span<const JournalEntry* const> entries) {
-  const auto never = [](Problem problem) { return tl::unexpected(CommitFailure{std::move(problem), false}); };
+  const auto never = [](Problem problem) {
+    return tl::unexpected(CommitFailure{std::move(problem), false});
+  };
   const auto failed = [&](const Problem& problem) {
     return tl::unexpected(CommitFailure{problem, is_transient(connection.sqlstate())});
   };
@@ -217,12 +225,14 @@ tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
          "The model was deleted, or an edit before this one was not saved. Nothing was changed; read the layer again.",
          ""});
   if ((*results)[2].affected() != static_cast<std::int64_t>(layer_count))
-    return never({409, "Layer gone", "The layer was deleted meanwhile; the edit was not saved.", ""});
+    return never(
+        {409, "Layer gone", "The layer was deleted meanwhile; the edit was not saved.", ""});
   if (auto committed = transaction.commit(); !committed) return failed(committed.error());
   return {};
 }
 
-Result<std::vector<bool>> find_saved(PgConnection& connection, std::span<const JournalEntry* const> entries) {
+Result<std::vector<bool>> find_saved(PgConnection& connection,
+                                     std::span<const JournalEntry* const> entries) {
   PgArray models(oid::kInt8), sequences(oid::kInt8), ids(oid::kUuid);
   for (const JournalEntry* entry : entries) {
     models.add(entry->model_id);
@@ -235,7 +245,8 @@ Result<std::vector<bool>> find_saved(PgConnection& connection, std::span<const J
       Params().array(models).array(sequences).array(ids));
   if (!rows) return tl::unexpected(rows.error());
   std::vector<bool> saved(entries.size());
-  for (int i = 0; i < rows->rows(); ++i) saved[static_cast<std::size_t>(rows->integer(i, 0)) - 1] = true;
+  for (int i = 0; i < rows->rows(); ++i)
+    saved[static_cast<std::size_t>(rows->integer(i, 0)) - 1] = true;
   return saved;
 }
 

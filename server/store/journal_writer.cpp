@@ -27,14 +27,17 @@ struct Waiting {
 };
 
 std::size_t bytes_of(const nlohmann::json& json) {
-  if (!json.is_structured()) return sizeof(json) + (json.is_string() ? json.get_ref<const std::string&>().size() : 0);
+  if (!json.is_structured())
+    return sizeof(json) + (json.is_string() ? json.get_ref<const std::string&>().size() : 0);
   std::size_t bytes = sizeof(json);
-  for (const auto& [key, value] : json.items()) bytes += bytes_of(value) + (json.is_object() ? key.size() + 48 : 0);
+  for (const auto& [key, value] : json.items())
+    bytes += bytes_of(value) + (json.is_object() ? key.size() + 48 : 0);
   return bytes;
 }
 
 std::size_t bytes_of(const JournalEntry& entry) {
-  std::size_t bytes = sizeof(Waiting) + entry.user.size() + bytes_of(entry.record) + bytes_of(entry.answer);
+  std::size_t bytes =
+      sizeof(Waiting) + entry.user.size() + bytes_of(entry.record) + bytes_of(entry.answer);
   for (const auto& revision : entry.revisions)
     bytes += sizeof(revision) + revision.difference.size() + revision.key_tile.size();
   return bytes;
@@ -129,7 +132,8 @@ struct JournalWriter::Impl {
       }
       set_failing(true);
       if (!std::exchange(failed_before, true))
-        log::warning("journal: a commit failed and is tried again: " + outcome.error().problem.detail);
+        log::warning("journal: a commit failed and is tried again: " +
+                     outcome.error().problem.detail);
       if (Clock::now() - started >= options.retry_for) {
         give_up(group, outcome.error().problem);
         return;
@@ -148,8 +152,8 @@ struct JournalWriter::Impl {
     return &*connection;
   }
 
-  // Answers those at the front that an earlier try committed although its answer was lost. A transaction is whole: what
-  // is in the journal is the front of the group.
+  // Answers those at the front that an earlier try committed although its answer was lost. A
+  // transaction is whole: what is in the journal is the front of the group.
   tl::expected<void, CommitFailure> skip_saved(PgConnection& to, std::deque<Waiting>& group) {
     const auto saved = find_saved(to, pointers(group));
     if (!saved) return tl::unexpected(CommitFailure{saved.error(), true});
@@ -162,11 +166,13 @@ struct JournalWriter::Impl {
     if (!to) return tl::unexpected(to.error());
     if (retry)
       if (auto skipped = skip_saved(**to, group); !skipped) return skipped;
-    return group.empty() ? tl::expected<void, CommitFailure>{} : commit_entries(**to, pointers(group));
+    return group.empty() ? tl::expected<void, CommitFailure>{}
+                         : commit_entries(**to, pointers(group));
   }
 
-  // One of the group can never be written: the others are, each in a transaction of its own, except those of the same
-  // model that come after it, since they were made on top of it. (A lower sequence is the model's owner starting anew.)
+  // One of the group can never be written: the others are, each in a transaction of its own, except
+  // those of the same model that come after it, since they were made on top of it. (A lower
+  // sequence is the model's owner starting anew.)
   tl::expected<void, CommitFailure> one_by_one(std::deque<Waiting>& group) {
     struct Broken {
       std::int64_t sequence;
@@ -178,7 +184,8 @@ struct JournalWriter::Impl {
       if (const auto before = broken.find(entry->model_id);
           before != broken.end() && entry->sequence > before->second.sequence) {
         Problem problem = before->second.problem;
-        problem.detail = "An edit before this one was not saved, so this one was not, either: " + problem.detail;
+        problem.detail =
+            "An edit before this one was not saved, so this one was not, either: " + problem.detail;
         answer_front(group, tl::unexpected(problem));
         continue;
       }
@@ -235,7 +242,8 @@ bool JournalWriter::submit(JournalEntry entry, Done done) {
   const std::size_t bytes = bytes_of(entry);
   std::lock_guard lock(impl_->mutex);
   // One entry larger than the bound (a large import) still goes through when nothing else waits.
-  const bool full = impl_->waiting_bytes > 0 && impl_->waiting_bytes + bytes > impl_->options.max_waiting_bytes;
+  const bool full =
+      impl_->waiting_bytes > 0 && impl_->waiting_bytes + bytes > impl_->options.max_waiting_bytes;
   if (impl_->closing || impl_->failing || full) return false;
   impl_->queue.push_back({std::move(entry), std::move(done), bytes});
   impl_->waiting_bytes += bytes;
@@ -246,7 +254,8 @@ bool JournalWriter::submit(JournalEntry entry, Done done) {
 
 bool JournalWriter::accepting() const {
   std::lock_guard lock(impl_->mutex);
-  return !impl_->closing && !impl_->failing && impl_->waiting_bytes < impl_->options.max_waiting_bytes;
+  return !impl_->closing && !impl_->failing &&
+         impl_->waiting_bytes < impl_->options.max_waiting_bytes;
 }
 
 void JournalWriter::drain() {

@@ -45,8 +45,8 @@ Result<Kiosk> load(PgConnection& connection, std::int64_t id) {
 
 }  // namespace
 
-Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<std::int64_t>>& projects, int limit, int offset,
-                                 std::int64_t after) {
+Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<std::int64_t>>& projects,
+                                 int limit, int offset, std::int64_t after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     PgArray ids(oid::kInt8);
     if (projects)
@@ -56,9 +56,10 @@ Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<std::int64_t>>&
         "WHERE ($1 OR m.project_id = any($2)) AND " STRATA_LISTED_KIOSK,
         Params().boolean(!projects).array(ids));
     if (!total) return tl::unexpected(total.error());
-    auto rows = connection.query(STRATA_KIOSKS "WHERE ($1 OR p.id = any($2)) AND " STRATA_LISTED_KIOSK
-                                               " AND k.id > $5 ORDER BY k.id LIMIT $3 OFFSET $4",
-                                 Params().boolean(!projects).array(ids).integer(limit).integer(offset).integer(after));
+    auto rows = connection.query(
+        STRATA_KIOSKS "WHERE ($1 OR p.id = any($2)) AND " STRATA_LISTED_KIOSK
+                      " AND k.id > $5 ORDER BY k.id LIMIT $3 OFFSET $4",
+        Params().boolean(!projects).array(ids).integer(limit).integer(offset).integer(after));
     if (!rows) return tl::unexpected(rows.error());
     Page page;
     page.total = total->integer(0, 0);
@@ -73,7 +74,8 @@ Result<Kiosk> Kiosks::kiosk(std::int64_t id) {
 
 Result<std::vector<std::int64_t>> Kiosks::of_tour(std::int64_t tour_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::vector<std::int64_t>> {
-    auto rows = connection.query("SELECT id FROM kiosks WHERE tour_id = $1", Params().integer(tour_id));
+    auto rows =
+        connection.query("SELECT id FROM kiosks WHERE tour_id = $1", Params().integer(tour_id));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<std::int64_t> ids;
     for (int i = 0; i < rows->rows(); ++i) ids.push_back(rows->integer(i, 0));
@@ -81,24 +83,29 @@ Result<std::vector<std::int64_t>> Kiosks::of_tour(std::int64_t tour_id) {
   });
 }
 
-Result<NewKiosk> Kiosks::create(std::int64_t tour_id, const std::string& name, const std::string& user,
+Result<NewKiosk> Kiosks::create(std::int64_t tour_id, const std::string& name,
+                                const std::string& user,
                                 std::optional<std::chrono::seconds> lifetime) {
   if (auto good = check_name(name); !good) return tl::unexpected(good.error());
   if (auto good = check_texts({{&user, "user"}}); !good) return tl::unexpected(good.error());
   return pool_.write([&](PgConnection& connection) -> Result<NewKiosk> {
     // Locked, so that of two at once the later one counts the earlier.
-    auto tour = connection.query("SELECT 1 FROM tours WHERE id = $1 FOR NO KEY UPDATE", Params().integer(tour_id));
+    auto tour = connection.query("SELECT 1 FROM tours WHERE id = $1 FOR NO KEY UPDATE",
+                                 Params().integer(tour_id));
     if (!tour) return tl::unexpected(tour.error());
     if (tour->rows() == 0) return not_found("tour", std::to_string(tour_id));
-    auto cleared = connection.query("DELETE FROM kiosks k WHERE k.tour_id = $1 AND NOT " STRATA_LISTED_KIOSK,
-                                    Params().integer(tour_id));
+    auto cleared =
+        connection.query("DELETE FROM kiosks k WHERE k.tour_id = $1 AND NOT " STRATA_LISTED_KIOSK,
+                         Params().integer(tour_id));
     if (!cleared) return tl::unexpected(cleared.error());
-    auto count = connection.query("SELECT count(*) FROM kiosks k WHERE k.tour_id = $1 AND " STRATA_GOOD_KIOSK,
-                                  Params().integer(tour_id));
+    auto count = connection.query(
+        "SELECT count(*) FROM kiosks k WHERE k.tour_id = $1 AND " STRATA_GOOD_KIOSK,
+        Params().integer(tour_id));
     if (!count) return tl::unexpected(count.error());
     if (count->integer(0, 0) >= kMostKiosks)
       return fail(409, "Too many kiosks",
-                  "A tour has links for at most " + std::to_string(kMostKiosks) + " kiosks. Revoke some first.");
+                  "A tour has links for at most " + std::to_string(kMostKiosks) +
+                      " kiosks. Revoke some first.");
     NewKiosk made;
     made.secret = random_token();
     std::optional<Time> expires;
@@ -118,7 +125,8 @@ Result<NewKiosk> Kiosks::create(std::int64_t tour_id, const std::string& name, c
 Result<std::optional<Kiosk>> Kiosks::find(const std::string& secret) {
   return pool_.read([&](PgConnection& connection) -> Result<std::optional<Kiosk>> {
     const Sha256 hash = sha256(secret);
-    auto rows = connection.query(STRATA_KIOSKS "WHERE k.hash = $1 AND " STRATA_GOOD_KIOSK, Params().bytes(hash));
+    auto rows = connection.query(STRATA_KIOSKS "WHERE k.hash = $1 AND " STRATA_GOOD_KIOSK,
+                                 Params().bytes(hash));
     if (!rows) return tl::unexpected(rows.error());
     return rows->rows() == 0 ? std::optional<Kiosk>() : read_kiosk(*rows, 0);
   });
@@ -136,9 +144,9 @@ Result<void> Kiosks::seen(std::int64_t id, bool loaded) {
 
 Result<void> Kiosks::revoke(std::int64_t id) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
-    auto done =
-        connection.query("UPDATE kiosks SET revoked = coalesce(revoked, now()), wants_reload = false WHERE id = $1",
-                         Params().integer(id));
+    auto done = connection.query(
+        "UPDATE kiosks SET revoked = coalesce(revoked, now()), wants_reload = false WHERE id = $1",
+        Params().integer(id));
     if (!done) return tl::unexpected(done.error());
     if (done->affected() == 0) return not_found("kiosk", std::to_string(id));
     return {};
@@ -147,12 +155,14 @@ Result<void> Kiosks::revoke(std::int64_t id) {
 
 Result<Kiosk> Kiosks::ask_reload(std::int64_t id) {
   return pool_.write([&](PgConnection& connection) -> Result<Kiosk> {
-    auto done = connection.query("UPDATE kiosks k SET wants_reload = true WHERE k.id = $1 AND " STRATA_GOOD_KIOSK,
-                                 Params().integer(id));
+    auto done = connection.query(
+        "UPDATE kiosks k SET wants_reload = true WHERE k.id = $1 AND " STRATA_GOOD_KIOSK,
+        Params().integer(id));
     if (!done) return tl::unexpected(done.error());
     auto kiosk = load(connection, id);
     if (kiosk && done->affected() == 0)
-      return fail(409, "Link not valid", "The link of this kiosk is revoked or expired: it does not ask any more.");
+      return fail(409, "Link not valid",
+                  "The link of this kiosk is revoked or expired: it does not ask any more.");
     return kiosk;
   });
 }

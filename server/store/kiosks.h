@@ -29,7 +29,8 @@ struct NewKiosk {
   Kiosk kiosk;
 };
 
-// Links of kiosks; of a Store, and as thread-safe and blocking as that, with the same Problems for what is not there or away.
+// Links of kiosks; of a Store, and as thread-safe and blocking as that, with the same Problems for
+// what is not there or away.
 class Kiosks {
  public:
   static constexpr std::int64_t kMostKiosks = 100;  // good ones of a tour
@@ -51,7 +52,8 @@ class Kiosks {
                           std::optional<std::chrono::seconds> lifetime);
   // Nothing: unknown, expired or revoked.
   Result<std::optional<Kiosk>> find(const std::string& secret);
-  // That it is there, to a minute. `loaded`: its page was loaded just now, as it may have been asked to.
+  // That it is there, to a minute. `loaded`: its page was loaded just now, as it may have been
+  // asked to.
   Result<void> seen(std::int64_t id, bool loaded);
   Result<void> revoke(std::int64_t id);       // again is the same
   Result<Kiosk> ask_reload(std::int64_t id);  // 409: it is revoked or expired

@@ -45,32 +45,37 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.slug = rows.text(i, 3);
   layer.kind = rows.text(i, 4) == "database" ? LayerKind::database : LayerKind::numeric;
   const auto type = parse_value_type(rows.text(i, 5));
-  if (!type) return fail(500, "Damaged layer", "Layer " + std::to_string(layer.id) + " has an unknown value type.");
+  if (!type)
+    return fail(500, "Damaged layer",
+                "Layer " + std::to_string(layer.id) + " has an unknown value type.");
   layer.type = *type;
   layer.resolution = static_cast<int>(rows.integer(i, 6));
   layer.unit = rows.text(i, 7);
   layer.description = rows.text(i, 8);
   // One damaged palette must not hide a layer's paint.
-  layer.palette =
-      palette_from_json(rows.json(i, 9)).value_or(default_palette(layer.type, layer.kind == LayerKind::database));
+  layer.palette = palette_from_json(rows.json(i, 9))
+                      .value_or(default_palette(layer.type, layer.kind == LayerKind::database));
   layer.opacity = rows.real(i, 10);
   layer.visible = rows.boolean(i, 11);
   layer.order = static_cast<int>(rows.integer(i, 12));
   if (!rows.null(i, 13)) layer.table = rows.integer(i, 13);
-  if (auto colored = take_term_colors(connection, layer); !colored) return tl::unexpected(colored.error());
+  if (auto colored = take_term_colors(connection, layer); !colored)
+    return tl::unexpected(colored.error());
   layer.sequence = rows.integer(i, 14);
   layer.version = rows.integer(i, 15);
   layer.locked = rows.boolean(i, 22);
   layer.review = rows.boolean(i, 24);
   layer.labels = rows.json(i, 25).get<Labels>();
   layer.descriptions = rows.json(i, 26).get<Labels>();
-  if (!rows.null(i, 27)) layer.origin = rows.text(i, 27) == "shape" ? LayerOrigin::shape : LayerOrigin::expression;
+  if (!rows.null(i, 27))
+    layer.origin = rows.text(i, 27) == "shape" ? LayerOrigin::shape : LayerOrigin::expression;
   layer.edited_by_hand = rows.boolean(i, 28);
   // What cannot be told is not shown.
   layer.visibility = parse_visibility(rows.text(i, 23)).value_or(Visibility::curators);
   if (rows.null(i, 16)) return layer;
-  LayerFormula formula{rows.text(i, 16),   rows.boolean(i, 17), rows.integer(i, 18), rows.boolean(i, 20), {},
-                       rows.boolean(i, 21)};
+  LayerFormula formula{
+      rows.text(i, 16),   rows.boolean(i, 17), rows.integer(i, 18), rows.boolean(i, 20), {},
+      rows.boolean(i, 21)};
   for (const nlohmann::json& input : rows.json(i, 19)) {
     const auto id = [&](const char* member) {
       const nlohmann::json& value = input.at(member);
@@ -83,31 +88,37 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
 }
 
 Result<Layer> load_layer(PgConnection& connection, std::int64_t id) {
-  auto row = connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE id = $1", Params().integer(id));
+  auto row = connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE id = $1",
+                              Params().integer(id));
   if (!row) return tl::unexpected(row.error());
   if (row->rows() == 0) return not_found("layer", std::to_string(id));
   return read_layer(connection, *row, 0);
 }
 
-// What the layer is computed from, in place of what it was computed from before. Refused (422): a layer that is computed from
-// itself, however many others stand between.
+// What the layer is computed from, in place of what it was computed from before. Refused (422): a
+// layer that is computed from itself, however many others stand between.
 Result<void> set_formula(PgConnection& connection, const Layer& layer) {
-  auto gone = connection.query("DELETE FROM layer_inputs WHERE layer_id = $1", Params().integer(layer.id));
+  auto gone =
+      connection.query("DELETE FROM layer_inputs WHERE layer_id = $1", Params().integer(layer.id));
   if (!gone) return tl::unexpected(gone.error());
   if (!layer.formula) {
-    auto plain =
-        connection.query("UPDATE layers SET expression = NULL, automatic = false, computed_sequence = 0 WHERE id = $1",
-                         Params().integer(layer.id));
+    auto plain = connection.query(
+        "UPDATE layers SET expression = NULL, automatic = false, computed_sequence = 0 WHERE id = $1",
+        Params().integer(layer.id));
     return plain ? Result<void>{} : tl::unexpected(plain.error());
   }
   // One at a time in a model: two changes that make a circle only together are not done together.
-  auto locked =
-      connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE", Params().integer(layer.model_id));
+  auto locked = connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
+                                 Params().integer(layer.model_id));
   if (!locked) return tl::unexpected(locked.error());
   for (const LayerFormula::Input& input : layer.formula->inputs) {
     auto put = connection.query(
         "INSERT INTO layer_inputs (layer_id, slug, input_id, table_id) VALUES ($1, $2, $3, $4)",
-        Params().integer(layer.id).text(input.slug).optional_integer(input.layer).optional_integer(input.table));
+        Params()
+            .integer(layer.id)
+            .text(input.slug)
+            .optional_integer(input.layer)
+            .optional_integer(input.table));
     if (!put) return tl::unexpected(put.error());
   }
   auto circle = connection.query(
@@ -116,11 +127,12 @@ Result<void> set_formula(PgConnection& connection, const Layer& layer) {
       Params().integer(layer.id));
   if (!circle) return tl::unexpected(circle.error());
   if (circle->rows() > 0)
-    return fail(422, "Computed from itself", "This expression reads layers that are computed from " + layer.name + ".",
+    return fail(422, "Computed from itself",
+                "This expression reads layers that are computed from " + layer.name + ".",
                 "expression");
-  auto set =
-      connection.query("UPDATE layers SET expression = $2, automatic = $3, computed_sequence = 0 WHERE id = $1",
-                       Params().integer(layer.id).text(layer.formula->expression).boolean(layer.formula->automatic));
+  auto set = connection.query(
+      "UPDATE layers SET expression = $2, automatic = $3, computed_sequence = 0 WHERE id = $1",
+      Params().integer(layer.id).text(layer.formula->expression).boolean(layer.formula->automatic));
   return set ? Result<void>{} : tl::unexpected(set.error());
 }
 
@@ -143,13 +155,17 @@ Result<void> check(const Layer& layer) {
     return fail(400, "Bad opacity", "`opacity` must be between 0 and 1.", "opacity");
   if (auto good = check_json(to_json(layer.palette), "palette"); !good) return good;
   if (auto good = check_labels(layer.labels); !good) return good;
-  if (auto good = check_texts_by_language(layer.descriptions, kLongestDescription, "descriptions"); !good) return good;
-  return check_texts({{&layer.slug, "slug"}, {&layer.unit, "unit"}, {&layer.description, "description"}});
+  if (auto good = check_texts_by_language(layer.descriptions, kLongestDescription, "descriptions");
+      !good)
+    return good;
+  return check_texts(
+      {{&layer.slug, "slug"}, {&layer.unit, "unit"}, {&layer.description, "description"}});
 }
 
 bool same_formula(const std::optional<LayerFormula>& a, const std::optional<LayerFormula>& b) {
   return a.has_value() == b.has_value() &&
-         (!a || (a->expression == b->expression && a->automatic == b->automatic && a->inputs == b->inputs));
+         (!a || (a->expression == b->expression && a->automatic == b->automatic &&
+                 a->inputs == b->inputs));
 }
 
 // The table of a database layer: of its model's project, or a new one.
@@ -165,12 +181,13 @@ Result<void> find_table(PgConnection& connection, Layer& layer, std::int64_t pro
     layer.table = made->id;
     return {};
   }
-  auto known = connection.query("SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2 FOR KEY SHARE",
-                                Params().integer(*layer.table).integer(project_id));
+  auto known = connection.query(
+      "SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2 FOR KEY SHARE",
+      Params().integer(*layer.table).integer(project_id));
   if (!known) return tl::unexpected(known.error());
   if (known->rows() == 0)
-    return fail(422, "No such table", "The model's project has no table " + std::to_string(*layer.table) + ".",
-                "table");
+    return fail(422, "No such table",
+                "The model's project has no table " + std::to_string(*layer.table) + ".", "table");
   return {};
 }
 
@@ -181,9 +198,9 @@ Result<std::vector<Layer>> Store::layers(std::int64_t model_id, Role seen_by) {
     auto known = connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id));
     if (!known) return tl::unexpected(known.error());
     if (known->rows() == 0) return not_found("model", std::to_string(model_id));
-    auto rows =
-        connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 ORDER BY draw_order, id",
-                         Params().integer(model_id));
+    auto rows = connection.query("SELECT " STRATA_LAYER_COLUMNS
+                                 " FROM layers WHERE model_id = $1 ORDER BY draw_order, id",
+                                 Params().integer(model_id));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Layer> layers;
     for (int i = 0; i < rows->rows(); ++i) {
@@ -199,9 +216,11 @@ Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref, Role s
   if (!check_text(ref, "layer")) return not_found("layer", ref);
   return impl_->pool.read([&](PgConnection& connection) -> Result<Layer> {
     const auto id = id_of(ref);
-    auto rows = id ? connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 AND id = $2",
+    auto rows = id ? connection.query("SELECT " STRATA_LAYER_COLUMNS
+                                      " FROM layers WHERE model_id = $1 AND id = $2",
                                       Params().integer(model_id).integer(*id))
-                   : connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 AND slug = $2",
+                   : connection.query("SELECT " STRATA_LAYER_COLUMNS
+                                      " FROM layers WHERE model_id = $1 AND slug = $2",
                                       Params().integer(model_id).text(ref));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return not_found("layer", ref);
@@ -211,19 +230,20 @@ Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref, Role s
   });
 }
 
-Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer, std::vector<Column> columns) {
+Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
+                                  std::vector<Column> columns) {
   if (auto good = check(layer); !good) return tl::unexpected(good.error());
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
-    auto model =
-        connection.query("SELECT project_id FROM models WHERE id = $1 FOR KEY SHARE", Params().integer(layer.model_id));
+    auto model = connection.query("SELECT project_id FROM models WHERE id = $1 FOR KEY SHARE",
+                                  Params().integer(layer.model_id));
     if (!model) return tl::unexpected(model.error());
     if (model->rows() == 0) return not_found("model", std::to_string(layer.model_id));
     if (layer.kind == LayerKind::database)
       if (auto found = find_table(connection, layer, model->integer(0, 0), columns); !found)
         return tl::unexpected(found.error());
     auto row = insert_with_slug(
-        connection, "SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2", layer.model_id,
-        layer.slug.empty() ? layer.name : layer.slug, [&](const std::string& slug) {
+        connection, "SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2",
+        layer.model_id, layer.slug.empty() ? layer.name : layer.slug, [&](const std::string& slug) {
           return connection.query(
               "INSERT INTO layers (model_id, name, slug, kind, type, resolution, unit, description, palette, opacity, visible, "
               "draw_order, table_id, locked, visibility, review, labels, descriptions) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, "
@@ -252,7 +272,8 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
     if (!row || (!layer.formula && !layer.origin))
       return row ? read_layer(connection, *row, 0) : tl::unexpected(row.error());
     layer.id = row->integer(0, 0);
-    if (auto kept = keep_origin(connection, layer.id, layer); !kept) return tl::unexpected(kept.error());
+    if (auto kept = keep_origin(connection, layer.id, layer); !kept)
+      return tl::unexpected(kept.error());
     if (!layer.formula) return load_layer(connection, layer.id);
     if (auto set = set_formula(connection, layer); !set) return tl::unexpected(set.error());
     return load_layer(connection, layer.id);
@@ -286,10 +307,12 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
     if (row->rows() > 0) {
       auto now = read_layer(connection, *row, 0);
       if (!now) return now;
-      const bool same_origin = now->origin == layer.origin && now->edited_by_hand == layer.edited_by_hand;
+      const bool same_origin =
+          now->origin == layer.origin && now->edited_by_hand == layer.edited_by_hand;
       const bool is_same_formula = same_formula(now->formula, layer.formula);
       if (same_origin && is_same_formula) return now;
-      if (auto kept = keep_origin(connection, layer.id, layer); !kept) return tl::unexpected(kept.error());
+      if (auto kept = keep_origin(connection, layer.id, layer); !kept)
+        return tl::unexpected(kept.error());
       if (is_same_formula) return load_layer(connection, layer.id);
       if (auto set = set_formula(connection, layer); !set) return tl::unexpected(set.error());
       return load_layer(connection, layer.id);
@@ -302,7 +325,8 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
 }
 
 Result<std::map<std::int64_t, std::int64_t>> Store::table_sequences_of(std::int64_t layer_id) {
-  return impl_->pool.read([&](PgConnection& connection) -> Result<std::map<std::int64_t, std::int64_t>> {
+  return impl_->pool.read([&](PgConnection& connection)
+                              -> Result<std::map<std::int64_t, std::int64_t>> {
     auto rows = connection.query(
         "SELECT t.id, t.sequence FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = $1",
         Params().integer(layer_id));
@@ -313,11 +337,13 @@ Result<std::map<std::int64_t, std::int64_t>> Store::table_sequences_of(std::int6
   });
 }
 
-Result<Layer> Store::layer_computed(std::int64_t layer_id, const std::string& expression, std::int64_t sequence,
+Result<Layer> Store::layer_computed(std::int64_t layer_id, const std::string& expression,
+                                    std::int64_t sequence,
                                     const std::map<std::int64_t, std::int64_t>& tables) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<Layer> {
-    auto done = connection.query("UPDATE layers SET computed_sequence = $3 WHERE id = $1 AND expression = $2",
-                                 Params().integer(layer_id).text(expression).integer(sequence));
+    auto done = connection.query(
+        "UPDATE layers SET computed_sequence = $3 WHERE id = $1 AND expression = $2",
+        Params().integer(layer_id).text(expression).integer(sequence));
     if (!done) return tl::unexpected(done.error());
     // What was edited by hand is overwritten, and as it was when it was made.
     auto whole = connection.query(
@@ -341,13 +367,13 @@ Result<Layer> Store::layer_computed(std::int64_t layer_id, const std::string& ex
 
 Result<std::vector<Layer>> Store::layers_to_recompute() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
-    auto rows =
-        connection.query("SELECT " STRATA_LAYER_COLUMNS
-                         " FROM layers WHERE automatic AND NOT EXISTS (SELECT 1 FROM layer_origins o WHERE "
-                         "o.layer_id = layers.id AND o.edited_by_hand) AND " STRATA_LAYER_STALE
-                         " AND NOT EXISTS (SELECT 1 FROM layer_inputs i WHERE i.layer_id = layers.id AND NOT EXISTS "
-                         "(SELECT 1 FROM layers l WHERE l.id = i.input_id)) "
-                         "ORDER BY computed_sequence, id LIMIT 100");
+    auto rows = connection.query(
+        "SELECT " STRATA_LAYER_COLUMNS
+        " FROM layers WHERE automatic AND NOT EXISTS (SELECT 1 FROM layer_origins o WHERE "
+        "o.layer_id = layers.id AND o.edited_by_hand) AND " STRATA_LAYER_STALE
+        " AND NOT EXISTS (SELECT 1 FROM layer_inputs i WHERE i.layer_id = layers.id AND NOT EXISTS "
+        "(SELECT 1 FROM layers l WHERE l.id = i.input_id)) "
+        "ORDER BY computed_sequence, id LIMIT 100");
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Layer> layers;
     for (int i = 0; i < rows->rows(); ++i) {
@@ -363,16 +389,19 @@ namespace {
 
 constexpr int kRevisionsAtOnce = 256;
 
-// Bits of differences become those of the wider type as they are: the bits above are the same before and after.
+// Bits of differences become those of the wider type as they are: the bits above are the same
+// before and after.
 Result<void> widen_revisions(PgConnection& connection, const Layer& layer, ValueType type) {
   for (std::int64_t y = -1, x = 0, sequence = 0;;) {
     auto rows = connection.query(
         "SELECT tile_y, tile_x, sequence, difference, key_tile FROM tile_revisions WHERE layer_id = $1 AND "
         "(tile_y, tile_x, sequence) > ($2, $3, $4) ORDER BY tile_y, tile_x, sequence LIMIT $5",
-        Params().integer(layer.id).integer(y).integer(x).integer(sequence).integer(kRevisionsAtOnce));
+        Params().integer(layer.id).integer(y).integer(x).integer(sequence).integer(
+            kRevisionsAtOnce));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return {};
-    PgArray ys(oid::kInt8), xs(oid::kInt8), sequences(oid::kInt8), differences(oid::kBytea), keys(oid::kBytea);
+    PgArray ys(oid::kInt8), xs(oid::kInt8), sequences(oid::kInt8), differences(oid::kBytea),
+        keys(oid::kBytea);
     for (int i = 0; i < rows->rows(); ++i) {
       y = rows->integer(i, 0), x = rows->integer(i, 1), sequence = rows->integer(i, 2);
       const TileAddress address{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
@@ -393,14 +422,21 @@ Result<void> widen_revisions(PgConnection& connection, const Layer& layer, Value
         "UPDATE tile_revisions r SET difference = n.difference, key_tile = n.key_tile FROM "
         "unnest($2::bigint[], $3::bigint[], $4::bigint[], $5::bytea[], $6::bytea[]) AS n (y, x, sequence, difference, "
         "key_tile) WHERE r.layer_id = $1 AND r.tile_y = n.y AND r.tile_x = n.x AND r.sequence = n.sequence",
-        Params().integer(layer.id).array(ys).array(xs).array(sequences).array(differences).array(keys));
+        Params()
+            .integer(layer.id)
+            .array(ys)
+            .array(xs)
+            .array(sequences)
+            .array(differences)
+            .array(keys));
     if (!written) return tl::unexpected(written.error());
   }
 }
 
 }  // namespace
 
-Result<Layer> Store::widen_layer(const Layer& layer, ValueType type, const FirstAnswer<Layer>& answer) {
+Result<Layer> Store::widen_layer(const Layer& layer, ValueType type,
+                                 const FirstAnswer<Layer>& answer) {
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
     auto row = connection.query(
         "UPDATE layers SET type = $3, version = version + 1 WHERE id = $1 AND version = $2 AND type = $4 RETURNING id",
@@ -410,7 +446,8 @@ Result<Layer> Store::widen_layer(const Layer& layer, ValueType type, const First
       auto known = load_layer(connection, layer.id);
       return known ? stale("layer") : tl::unexpected(known.error());
     }
-    if (auto done = widen_revisions(connection, layer, type); !done) return tl::unexpected(done.error());
+    if (auto done = widen_revisions(connection, layer, type); !done)
+      return tl::unexpected(done.error());
     return load_layer(connection, layer.id);
   });
 }

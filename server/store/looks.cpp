@@ -45,8 +45,8 @@ Result<void> check_look(const Look& look) {
 
 Result<Look> insert_look(PgConnection& connection, const Look& look, const Sha256& picture) {
   auto row = insert_with_slug(
-      connection, "SELECT slug::text FROM looks WHERE slug LIKE $1 AND model_id = $2", look.model_id,
-      look.slug.empty() ? look.name : look.slug, [&](const std::string& slug) {
+      connection, "SELECT slug::text FROM looks WHERE slug LIKE $1 AND model_id = $2",
+      look.model_id, look.slug.empty() ? look.name : look.slug, [&](const std::string& slug) {
         return connection.query(
             "INSERT INTO looks (model_id, name, slug, description, media_type, width, height, opacity, visible, draw_order, "
             "picture) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11) "
@@ -73,9 +73,9 @@ Result<std::vector<Look>> Store::looks(std::int64_t model_id) {
     auto known = connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id));
     if (!known) return tl::unexpected(known.error());
     if (known->rows() == 0) return not_found("model", std::to_string(model_id));
-    auto rows =
-        connection.query("SELECT " STRATA_LOOK_COLUMNS " FROM looks WHERE model_id = $1 ORDER BY draw_order, id",
-                         Params().integer(model_id));
+    auto rows = connection.query("SELECT " STRATA_LOOK_COLUMNS
+                                 " FROM looks WHERE model_id = $1 ORDER BY draw_order, id",
+                                 Params().integer(model_id));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Look> looks;
     for (int i = 0; i < rows->rows(); ++i) looks.push_back(read_look(*rows, i));
@@ -87,9 +87,11 @@ Result<Look> Store::look(std::int64_t model_id, const std::string& ref) {
   if (!check_text(ref, "look")) return not_found("look", ref);
   return impl_->pool.read([&](PgConnection& connection) -> Result<Look> {
     const auto id = id_of(ref);
-    auto rows = id ? connection.query("SELECT " STRATA_LOOK_COLUMNS " FROM looks WHERE model_id = $1 AND id = $2",
+    auto rows = id ? connection.query("SELECT " STRATA_LOOK_COLUMNS
+                                      " FROM looks WHERE model_id = $1 AND id = $2",
                                       Params().integer(model_id).integer(*id))
-                   : connection.query("SELECT " STRATA_LOOK_COLUMNS " FROM looks WHERE model_id = $1 AND slug = $2",
+                   : connection.query("SELECT " STRATA_LOOK_COLUMNS
+                                      " FROM looks WHERE model_id = $1 AND slug = $2",
                                       Params().integer(model_id).text(ref));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return not_found("look", ref);
@@ -103,15 +105,17 @@ Result<Look> Store::create_look(const Look& look, std::span<const std::uint8_t> 
   const Content content = content_of(picture);
   const auto work = [&](PgConnection& connection) -> Result<Look> {
     // Locked, so that of two at once the later one counts the earlier.
-    auto model =
-        connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE", Params().integer(look.model_id));
+    auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
+                                  Params().integer(look.model_id));
     if (!model) return tl::unexpected(model.error());
     if (model->rows() == 0) return not_found("model", std::to_string(look.model_id));
-    auto count = connection.query("SELECT count(*) FROM looks WHERE model_id = $1", Params().integer(look.model_id));
+    auto count = connection.query("SELECT count(*) FROM looks WHERE model_id = $1",
+                                  Params().integer(look.model_id));
     if (!count) return tl::unexpected(count.error());
     if (count->integer(0, 0) >= kMostLooks)
-      return fail(409, "Too many looks",
-                  "A model holds at most " + std::to_string(kMostLooks) + " looks. Delete one first.");
+      return fail(
+          409, "Too many looks",
+          "A model holds at most " + std::to_string(kMostLooks) + " looks. Delete one first.");
     if (auto kept = keep_blob(connection, content, {}); !kept) return tl::unexpected(kept.error());
     return insert_look(connection, look, content.hash);
   };
@@ -144,7 +148,8 @@ Result<Look> Store::update_look(const Look& look, const FirstAnswer<Look>& answe
 
 Result<void> Store::delete_look(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
-    auto done = connection.query("DELETE FROM looks WHERE id = $1 RETURNING picture", Params().integer(id));
+    auto done =
+        connection.query("DELETE FROM looks WHERE id = $1 RETURNING picture", Params().integer(id));
     if (!done) return tl::unexpected(done.error());
     if (done->rows() == 0) return not_found("look", std::to_string(id));
     const Bytes hash = done->bytes(0, 0);
@@ -155,9 +160,9 @@ Result<void> Store::delete_look(std::int64_t id, const FirstAnswer<>& answer) {
 
 Result<std::vector<std::uint8_t>> Store::look_picture(std::int64_t id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
-    auto row =
-        connection.query("SELECT b.sha256, b.bytes FROM looks l JOIN blobs b ON b.sha256 = l.picture WHERE l.id = $1",
-                         Params().integer(id));
+    auto row = connection.query(
+        "SELECT b.sha256, b.bytes FROM looks l JOIN blobs b ON b.sha256 = l.picture WHERE l.id = $1",
+        Params().integer(id));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return not_found("look", std::to_string(id));
     return read_blob(connection, row->bytes(0, 0), row->integer(0, 1));

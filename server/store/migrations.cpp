@@ -18,7 +18,9 @@ constexpr const char* kUnlock = "SELECT pg_advisory_unlock(7130915062201)";
 
 Result<Migration> parse(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
-  const auto bad = [&](const std::string& why) { return fail(500, "Bad migration", name + ": " + why, "migrations"); };
+  const auto bad = [&](const std::string& why) {
+    return fail(500, "Bad migration", name + ": " + why, "migrations");
+  };
   std::ifstream in(file, std::ios::binary);
   std::stringstream content;
   content << in.rdbuf();
@@ -32,7 +34,8 @@ Result<Migration> parse(const std::filesystem::path& file) {
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("-- migrate:down")) break;
     if (line.starts_with("-- migrate:up")) {
-      if (line.find("transaction:false") != std::string::npos) return bad("must run in a transaction.");
+      if (line.find("transaction:false") != std::string::npos)
+        return bad("must run in a transaction.");
       up = true;
     } else if (up) {
       migration.sql += line + "\n";
@@ -45,7 +48,8 @@ Result<Migration> parse(const std::filesystem::path& file) {
 Result<void> apply_one(PgConnection& connection, const Migration& migration) {
   auto transaction = Transaction::begin(connection);
   if (!transaction) return tl::unexpected(transaction.error());
-  auto row = connection.query("INSERT INTO schema_migrations (version) VALUES ($1)", Params().text(migration.version));
+  auto row = connection.query("INSERT INTO schema_migrations (version) VALUES ($1)",
+                              Params().text(migration.version));
   if (!row) return tl::unexpected(row.error());
   auto sum = connection.query("INSERT INTO schema_checksums (version, sha256) VALUES ($1, $2)",
                               Params().text(migration.version).text(migration.sha256));
@@ -64,7 +68,8 @@ Result<void> make_tables(PgConnection& connection) {
       "to_regclass('schema_checksums') IS NOT NULL");
   if (!known) return tl::unexpected(known.error());
   if (!known->boolean(0, 0)) {
-    auto made = connection.script("CREATE TABLE schema_migrations (version character varying(128) PRIMARY KEY)");
+    auto made = connection.script(
+        "CREATE TABLE schema_migrations (version character varying(128) PRIMARY KEY)");
     if (!made) return made;
   }
   if (known->boolean(0, 1)) return {};
@@ -80,7 +85,8 @@ Result<std::int64_t> migrate_locked(PgConnection& connection, const std::vector<
       "LEFT JOIN schema_checksums c USING (version) ORDER BY length(m.version), m.version");
   if (!rows) return tl::unexpected(rows.error());
   std::map<std::string, std::string> applied;
-  for (int i = 0; i < rows->rows(); ++i) applied[rows->text(i, 0)] = rows->null(i, 1) ? "" : rows->text(i, 1);
+  for (int i = 0; i < rows->rows(); ++i)
+    applied[rows->text(i, 0)] = rows->null(i, 1) ? "" : rows->text(i, 1);
 
   for (const auto& [version, sum] : applied) {
     const auto ours = std::ranges::find(known, version, &Migration::version);
@@ -120,12 +126,15 @@ Result<std::vector<Migration>> read_migrations(const std::filesystem::path& fold
     migrations.push_back(std::move(*migration));
   }
   if (error || migrations.empty())
-    return fail(500, "No migrations", "No migration files in " + folder.string() + ": is the installation complete?");
-  std::sort(migrations.begin(), migrations.end(),
-            [](const Migration& a, const Migration& b) { return std::stoll(a.version) < std::stoll(b.version); });
+    return fail(500, "No migrations",
+                "No migration files in " + folder.string() + ": is the installation complete?");
+  std::sort(migrations.begin(), migrations.end(), [](const Migration& a, const Migration& b) {
+    return std::stoll(a.version) < std::stoll(b.version);
+  });
   for (std::size_t i = 1; i < migrations.size(); ++i)
     if (std::stoll(migrations[i - 1].version) == std::stoll(migrations[i].version))
-      return fail(500, "Bad migration", migrations[i - 1].name + " and " + migrations[i].name + " have one version.");
+      return fail(500, "Bad migration",
+                  migrations[i - 1].name + " and " + migrations[i].name + " have one version.");
   return migrations;
 }
 

@@ -44,10 +44,11 @@ Model read_model(const PgResult& rows, int i) {
   m.area = rows.real(i, c++);
   m.atlas = atlas_from_json(rows.json(i, c++));
   for (const auto& repair : rows.json(i, c++))
-    m.repairs.push_back({repair.value("what", std::string()), repair.value("count", std::uint64_t{0})});
+    m.repairs.push_back(
+        {repair.value("what", std::string()), repair.value("count", std::uint64_t{0})});
   m.default_resolution = static_cast<int>(rows.integer(i, c++));
-  for (std::string* text : {&m.inventory_number, &m.owner, &m.creator, &m.captured, &m.method, &m.accuracy,
-                            &m.processing, &m.rights_uri, &m.credit})
+  for (std::string* text : {&m.inventory_number, &m.owner, &m.creator, &m.captured, &m.method,
+                            &m.accuracy, &m.processing, &m.rights_uri, &m.credit})
     *text = rows.text(i, c++);
   // What cannot be told is not given away.
   m.source_download = parse_role(rows.text(i, c++)).value_or(Role::curator);
@@ -61,7 +62,8 @@ Model read_model(const PgResult& rows, int i) {
 
 Result<void> check(const Model& m) {
   if (auto good = check_name(m.name); !good) return good;
-  if (!is_up(m.up)) return fail(400, "Bad direction", "`up` must be one of x, y, z, -x, -y and -z.", "up");
+  if (!is_up(m.up))
+    return fail(400, "Bad direction", "`up` must be one of x, y, z, -x, -y and -z.", "up");
   for (const auto& repair : m.repairs)
     if (auto good = check_text(repair.what, "repairs"); !good) return good;
   return check_texts({{&m.slug, "slug"},
@@ -116,7 +118,8 @@ PgArray array_of(const glm::dvec3& v) {
 Result<PgResult> insert_model(PgConnection& connection, const Model& m, const std::string& slug,
                               const Sha256& geometry) {
   auto repairs = nlohmann::json::array();
-  for (const auto& repair : m.repairs) repairs.push_back({{"what", repair.what}, {"count", repair.count}});
+  for (const auto& repair : m.repairs)
+    repairs.push_back({{"what", repair.what}, {"count", repair.count}});
   Params params = metadata(m, slug);
   params.array(array_of(m.origin))
       .array(array_of(m.bounds_min))
@@ -164,12 +167,15 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
   for (const auto& source : fresh.sources) {
     if (source.name.empty() || source.name.size() > kLongestName)
       return fail(400, "Bad file name", "A file's name must have 1 to 255 bytes.", "source_files");
-    if (auto good = check_text(source.name, "source_files"); !good) return tl::unexpected(good.error());
+    if (auto good = check_text(source.name, "source_files"); !good)
+      return tl::unexpected(good.error());
   }
   if (fresh.looks.size() > kMostLooks)
-    return fail(422, "Too many looks", "A model holds at most " + std::to_string(kMostLooks) + " looks.", "looks");
+    return fail(422, "Too many looks",
+                "A model holds at most " + std::to_string(kMostLooks) + " looks.", "looks");
   for (std::size_t i = 0; i < fresh.looks.size(); ++i)
-    if (auto good = check_look(look_of(fresh.looks[i], i)); !good) return tl::unexpected(good.error());
+    if (auto good = check_look(look_of(fresh.looks[i], i)); !good)
+      return tl::unexpected(good.error());
   // The geometry, its coarser copies, the looks, the source files.
   std::vector<Content> contents{content_of(Bytes(fresh.geometry))};
   for (const auto& level : fresh.detail_levels) contents.push_back(content_of(Bytes(level)));
@@ -185,18 +191,22 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
     const Sha256 geometry = contents.front().hash;
     std::vector<const Content*> by_hash;
     for (const Content& content : contents) by_hash.push_back(&content);
-    std::sort(by_hash.begin(), by_hash.end(), [](const Content* a, const Content* b) { return a->hash < b->hash; });
+    std::sort(by_hash.begin(), by_hash.end(),
+              [](const Content* a, const Content* b) { return a->hash < b->hash; });
     for (const Content* content : by_hash)
-      if (auto kept = keep_blob(connection, *content, cancelled); !kept) return tl::unexpected(kept.error());
+      if (auto kept = keep_blob(connection, *content, cancelled); !kept)
+        return tl::unexpected(kept.error());
     const Model& m = fresh.model;
     auto row = insert_with_slug(connection, "SELECT slug::text FROM models WHERE slug LIKE $1", {},
-                                m.slug.empty() ? m.name : m.slug,
-                                [&](const std::string& slug) { return insert_model(connection, m, slug, geometry); });
+                                m.slug.empty() ? m.name : m.slug, [&](const std::string& slug) {
+                                  return insert_model(connection, m, slug, geometry);
+                                });
     if (!row) return tl::unexpected(row.error());
     const std::int64_t id = row->integer(0, 0);
     for (std::size_t i = 1; i < first_look; ++i) {
-      auto kept = connection.query("INSERT INTO detail_levels (model_id, level, geometry) VALUES ($1, $2, $3)",
-                                   Params().integer(id).integer(static_cast<std::int64_t>(i)).bytes(contents[i].hash));
+      auto kept = connection.query(
+          "INSERT INTO detail_levels (model_id, level, geometry) VALUES ($1, $2, $3)",
+          Params().integer(id).integer(static_cast<std::int64_t>(i)).bytes(contents[i].hash));
       if (!kept) return tl::unexpected(kept.error());
     }
     for (std::size_t i = 0; i < fresh.looks.size(); ++i) {
@@ -206,13 +216,13 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
         return tl::unexpected(kept.error());
     }
     for (std::size_t i = 0; i < fresh.sources.size(); ++i) {
-      auto kept =
-          connection.query("INSERT INTO model_sources (model_id, name, position, sha256) VALUES ($1, $2, $3, $4)",
-                           Params()
-                               .integer(id)
-                               .text(fresh.sources[i].name)
-                               .integer(static_cast<std::int64_t>(i))
-                               .bytes(contents[first_source + i].hash));
+      auto kept = connection.query(
+          "INSERT INTO model_sources (model_id, name, position, sha256) VALUES ($1, $2, $3, $4)",
+          Params()
+              .integer(id)
+              .text(fresh.sources[i].name)
+              .integer(static_cast<std::int64_t>(i))
+              .bytes(contents[first_source + i].hash));
       if (!kept) return tl::unexpected(kept.error());
     }
     if (cancelled && cancelled()) return cancelled_problem();
@@ -222,7 +232,8 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
 }
 
 Result<std::vector<Model>> Store::models(std::optional<std::int64_t> project_id) {
-  static const std::string sql = std::string(kSelectModels) + "WHERE $1 IS NULL OR m.project_id = $1 ORDER BY m.id";
+  static const std::string sql =
+      std::string(kSelectModels) + "WHERE $1 IS NULL OR m.project_id = $1 ORDER BY m.id";
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Model>> {
     auto rows = connection.query(sql.c_str(), Params().optional_integer(project_id));
     if (!rows) return tl::unexpected(rows.error());
@@ -264,7 +275,8 @@ Result<Model> Store::update_model(Model m, const FirstAnswer<Model>& answer) {
     if (!layer) return tl::unexpected(layer.error());
     if (layer->rows() > 0)
       return fail(409, "Tables stay",
-                  "The keys of the layer " + layer->text(0, 0) + " are of a table of the model's present project.",
+                  "The keys of the layer " + layer->text(0, 0) +
+                      " are of a table of the model's present project.",
                   "project");
     return now;
   });
@@ -281,9 +293,9 @@ Result<void> Store::delete_model(std::int64_t id, const FirstAnswer<>& answer) {
 
 Result<std::vector<std::uint8_t>> Store::geometry(std::int64_t model_id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
-    auto row =
-        connection.query("SELECT b.sha256, b.bytes FROM models m JOIN blobs b ON b.sha256 = m.geometry WHERE m.id = $1",
-                         Params().integer(model_id));
+    auto row = connection.query(
+        "SELECT b.sha256, b.bytes FROM models m JOIN blobs b ON b.sha256 = m.geometry WHERE m.id = $1",
+        Params().integer(model_id));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return not_found("model", std::to_string(model_id));
     return read_blob(connection, row->bytes(0, 0), row->integer(0, 1));
@@ -308,8 +320,9 @@ Result<std::vector<std::vector<std::uint8_t>>> Store::detail_levels(std::int64_t
   });
 }
 
-Result<SourceFile> Store::read_source(std::int64_t model_id, const std::string& file,
-                                      const std::function<bool(std::span<const std::uint8_t>)>& sink) {
+Result<SourceFile> Store::read_source(
+    std::int64_t model_id, const std::string& file,
+    const std::function<bool(std::span<const std::uint8_t>)>& sink) {
   if (!check_text(file, "name")) return not_found("source file", file);
   auto known = impl_->pool.read([&](PgConnection& connection) {
     return connection.query(
@@ -319,7 +332,8 @@ Result<SourceFile> Store::read_source(std::int64_t model_id, const std::string& 
   });
   if (!known) return tl::unexpected(known.error());
   if (known->rows() == 0) return not_found("source file", file);
-  const SourceFile source{file, to_hex(known->bytes(0, 0)), static_cast<std::uint64_t>(known->integer(0, 1))};
+  const SourceFile source{file, to_hex(known->bytes(0, 0)),
+                          static_cast<std::uint64_t>(known->integer(0, 1))};
   const Bytes hash = known->bytes(0, 0);
   auto sent = stream_blob(impl_->pool, {hash.begin(), hash.end()}, 0, source.bytes, sink);
   if (!sent) return tl::unexpected(sent.error());

@@ -6,8 +6,9 @@ namespace strata::store {
 namespace {
 
 NamedPart read_part(const PgResult& rows, int i) {
-  return {rows.integer(i, 0), rows.integer(i, 1), rows.text(i, 2), rows.text(i, 3),   rows.text(i, 4),
-          rows.json(i, 5),    rows.text(i, 6),    rows.time(i, 7), rows.integer(i, 8)};
+  return {rows.integer(i, 0), rows.integer(i, 1), rows.text(i, 2),
+          rows.text(i, 3),    rows.text(i, 4),    rows.json(i, 5),
+          rows.text(i, 6),    rows.time(i, 7),    rows.integer(i, 8)};
 }
 
 Result<void> check_part(const NamedPart& part) {
@@ -17,7 +18,8 @@ Result<void> check_part(const NamedPart& part) {
 }
 
 void put_for(std::string& text, std::string_view word, std::string_view value) {
-  for (auto at = text.find(word); at != std::string::npos; at = text.find(word)) text.replace(at, word.size(), value);
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word))
+    text.replace(at, word.size(), value);
 }
 
 }  // namespace
@@ -29,13 +31,15 @@ std::string NamedParts::sql(std::string text) const {
   return text;
 }
 
-Result<NamedParts::Page> NamedParts::of_model(std::int64_t model_id, int limit, int offset, std::int64_t after) {
+Result<NamedParts::Page> NamedParts::of_model(std::int64_t model_id, int limit, int offset,
+                                              std::int64_t after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
-    auto total =
-        connection.query(sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(), Params().integer(model_id));
+    auto total = connection.query(sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(),
+                                  Params().integer(model_id));
     if (!total) return tl::unexpected(total.error());
     auto rows = connection.query(
-        sql("SELECT PART FROM TABLE WHERE model_id = $1 AND id > $4 ORDER BY id LIMIT $2 OFFSET $3").c_str(),
+        sql("SELECT PART FROM TABLE WHERE model_id = $1 AND id > $4 ORDER BY id LIMIT $2 OFFSET $3")
+            .c_str(),
         Params().integer(model_id).integer(limit).integer(offset).integer(after));
     if (!rows) return tl::unexpected(rows.error());
     Page page;
@@ -47,8 +51,8 @@ Result<NamedParts::Page> NamedParts::of_model(std::int64_t model_id, int limit, 
 
 Result<std::map<std::int64_t, std::string>> NamedParts::slugs(std::int64_t model_id) {
   return pool_.read([&](PgConnection& connection) -> Result<std::map<std::int64_t, std::string>> {
-    auto rows =
-        connection.query(sql("SELECT id, slug FROM TABLE WHERE model_id = $1").c_str(), Params().integer(model_id));
+    auto rows = connection.query(sql("SELECT id, slug FROM TABLE WHERE model_id = $1").c_str(),
+                                 Params().integer(model_id));
     if (!rows) return tl::unexpected(rows.error());
     std::map<std::int64_t, std::string> slugs;
     for (int i = 0; i < rows->rows(); ++i) slugs[rows->integer(i, 0)] = rows->text(i, 1);
@@ -60,10 +64,12 @@ Result<NamedPart> NamedParts::find(std::int64_t model_id, const std::string& ref
   if (!check_text(ref, kind_.name)) return not_found(kind_.name, ref);
   return pool_.read([&](PgConnection& connection) -> Result<NamedPart> {
     const auto id = id_of(ref);
-    auto rows = id ? connection.query(sql("SELECT PART FROM TABLE WHERE model_id = $1 AND id = $2").c_str(),
-                                      Params().integer(model_id).integer(*id))
-                   : connection.query(sql("SELECT PART FROM TABLE WHERE model_id = $1 AND slug = $2").c_str(),
-                                      Params().integer(model_id).text(ref));
+    auto rows =
+        id ? connection.query(sql("SELECT PART FROM TABLE WHERE model_id = $1 AND id = $2").c_str(),
+                              Params().integer(model_id).integer(*id))
+           : connection.query(
+                 sql("SELECT PART FROM TABLE WHERE model_id = $1 AND slug = $2").c_str(),
+                 Params().integer(model_id).text(ref));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return not_found(kind_.name, ref);
     return read_part(*rows, 0);
@@ -74,8 +80,8 @@ Result<NamedPart> NamedParts::create(const NamedPart& part, const FirstAnswer<Na
   if (auto good = check_part(part); !good) return tl::unexpected(good.error());
   return change(pool_, answer, [&](PgConnection& connection) -> Result<NamedPart> {
     // Locked, so that of two at once the later one counts the earlier.
-    auto model =
-        connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE", Params().integer(part.model_id));
+    auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
+                                  Params().integer(part.model_id));
     if (!model) return tl::unexpected(model.error());
     if (model->rows() == 0) return not_found("model", std::to_string(part.model_id));
     auto count = connection.query(sql("SELECT count(*) FROM TABLE WHERE model_id = $1").c_str(),
@@ -83,20 +89,22 @@ Result<NamedPart> NamedParts::create(const NamedPart& part, const FirstAnswer<Na
     if (!count) return tl::unexpected(count.error());
     if (count->integer(0, 0) >= kind_.most)
       return fail(409, "Too many " + std::string(kind_.table),
-                  "A model has at most " + std::to_string(kind_.most) + " " + kind_.table + ". Delete some first.");
+                  "A model has at most " + std::to_string(kind_.most) + " " + kind_.table +
+                      ". Delete some first.");
     const std::string taken = sql("SELECT slug FROM TABLE WHERE slug LIKE $1 AND model_id = $2");
-    const std::string insert =
-        sql("INSERT INTO TABLE (model_id, slug, name, text, content, user_name) VALUES ($1, $2, $3, $4, $5, $6) "
-            "ON CONFLICT (model_id, slug) DO NOTHING RETURNING PART");
-    auto row = insert_with_slug(connection, taken.c_str(), part.model_id, part.name, [&](const std::string& slug) {
-      return connection.query(insert.c_str(), Params()
-                                                  .integer(part.model_id)
-                                                  .text(slug)
-                                                  .text(part.name)
-                                                  .text(part.text)
-                                                  .json(part.content)
-                                                  .text(part.user));
-    });
+    const std::string insert = sql(
+        "INSERT INTO TABLE (model_id, slug, name, text, content, user_name) VALUES ($1, $2, $3, $4, $5, $6) "
+        "ON CONFLICT (model_id, slug) DO NOTHING RETURNING PART");
+    auto row = insert_with_slug(
+        connection, taken.c_str(), part.model_id, part.name, [&](const std::string& slug) {
+          return connection.query(insert.c_str(), Params()
+                                                      .integer(part.model_id)
+                                                      .text(slug)
+                                                      .text(part.name)
+                                                      .text(part.text)
+                                                      .json(part.content)
+                                                      .text(part.user));
+        });
     if (!row) return tl::unexpected(row.error());
     return read_part(*row, 0);
   });
@@ -105,7 +113,8 @@ Result<NamedPart> NamedParts::create(const NamedPart& part, const FirstAnswer<Na
 namespace {
 
 // Where nothing was changed or deleted: because it is not there, or is of another version.
-tl::unexpected<Problem> missed(const Result<PgResult>& known, const NamedParts::Kind& kind, const NamedPart& part) {
+tl::unexpected<Problem> missed(const Result<PgResult>& known, const NamedParts::Kind& kind,
+                               const NamedPart& part) {
   if (!known) return tl::unexpected(known.error());
   if (known->rows() == 0) return not_found(kind.name, part.slug);
   return stale(kind.name);
@@ -120,11 +129,17 @@ Result<NamedPart> NamedParts::update(const NamedPart& part, const FirstAnswer<Na
         sql("UPDATE TABLE SET name = $3, text = $4, content = $5, version = version + 1 "
             "WHERE id = $1 AND version = $2 RETURNING PART")
             .c_str(),
-        Params().integer(part.id).integer(part.version).text(part.name).text(part.text).json(part.content));
+        Params()
+            .integer(part.id)
+            .integer(part.version)
+            .text(part.name)
+            .text(part.text)
+            .json(part.content));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) return read_part(*row, 0);
-    return missed(connection.query(sql("SELECT 1 FROM TABLE WHERE id = $1").c_str(), Params().integer(part.id)), kind_,
-                  part);
+    return missed(connection.query(sql("SELECT 1 FROM TABLE WHERE id = $1").c_str(),
+                                   Params().integer(part.id)),
+                  kind_, part);
   });
 }
 
@@ -134,8 +149,9 @@ Result<void> NamedParts::remove(const NamedPart& part, const FirstAnswer<>& answ
                                  Params().integer(part.id).integer(part.version));
     if (!done) return tl::unexpected(done.error());
     if (done->affected() > 0) return {};
-    return missed(connection.query(sql("SELECT 1 FROM TABLE WHERE id = $1").c_str(), Params().integer(part.id)), kind_,
-                  part);
+    return missed(connection.query(sql("SELECT 1 FROM TABLE WHERE id = $1").c_str(),
+                                   Params().integer(part.id)),
+                  kind_, part);
   });
 }
 

@@ -14,20 +14,23 @@ namespace strata::store {
 
 class Pool;
 
-// What people make of a model and come back to: a view (where from, and what is shown how) or a tour of views.
+// What people make of a model and come back to: a view (where from, and what is shown how) or a
+// tour of views.
 struct NamedPart {
   std::int64_t id = 0;
   std::int64_t model_id = 0;
   std::string slug;  // unique in the model; made of the name when it is empty
   std::string name;
-  std::string text;        // plain, UTF-8, at most 10 000 characters
-  nlohmann::json content;  // the rest of what the protocol's View or Tour has, with ids in place of slugs
-  std::string user;        // who made it
+  std::string text;  // plain, UTF-8, at most 10 000 characters
+  // the rest of what the protocol's View or Tour has, with ids in place of slugs
+  nlohmann::json content;
+  std::string user;  // who made it
   std::chrono::system_clock::time_point time;
   std::int64_t version = 1;
 };
 
-// Named views of models, or tours; of a Store, and as thread-safe and blocking as that, with the same Problems for what is not there, stale or away.
+// Named views of models, or tours; of a Store, and as thread-safe and blocking as that, with the
+// same Problems for what is not there, stale or away.
 class NamedParts {
  public:
   struct Kind {
@@ -52,7 +55,8 @@ class NamedParts {
   Result<NamedPart> create(const NamedPart& part, const FirstAnswer<NamedPart>& answer = {});
   // Name, text and content, where version equals; the slug stays, so that links go on.
   Result<NamedPart> update(const NamedPart& part, const FirstAnswer<NamedPart>& answer = {});
-  Result<void> remove(const NamedPart& part, const FirstAnswer<>& answer = {});  // where version equals
+  // where version equals
+  Result<void> remove(const NamedPart& part, const FirstAnswer<>& answer = {});
 
  private:
   std::string sql(std::string text) const;

@@ -5,7 +5,8 @@
 #include "store/hash.h"
 #include "store/store_impl.h"
 
-// Who is changed, or gets or loses a secret, is locked first (`lock_person`): what is said of them in that moment holds until it is written.
+// Who is changed, or gets or loses a secret, is locked first (`lock_person`): what is said of them
+// in that moment holds until it is written.
 
 namespace strata::store {
 namespace {
@@ -35,10 +36,11 @@ std::optional<TokenKind> parse_kind(const std::string& text) {
 #define STRATA_GOOD_TOKEN "(revoked IS NULL AND (expires IS NULL OR expires > now()))"
 
 Person read_person(const PgResult& rows, int i) {
-  Person person{
-      rows.integer(i, 0), rows.text(i, 1),    rows.text(i, 2), parse_role(rows.text(i, 3)).value_or(Role::viewer),
-      rows.boolean(i, 4), rows.boolean(i, 5), rows.time(i, 6), std::nullopt,
-      rows.json(i, 8)};
+  Person person{rows.integer(i, 0), rows.text(i, 1),
+                rows.text(i, 2),    parse_role(rows.text(i, 3)).value_or(Role::viewer),
+                rows.boolean(i, 4), rows.boolean(i, 5),
+                rows.time(i, 6),    std::nullopt,
+                rows.json(i, 8)};
   if (!rows.null(i, 7)) person.last_seen = rows.time(i, 7);
   return person;
 }
@@ -51,8 +53,10 @@ Result<Person> load_person(PgConnection& connection, const std::string& name, bo
   // Names are ASCII. Other letters of which one has the same lower case must not lead to them.
   if (!is_ascii(name) || !check_text(name, "user")) return not_found("person", name);
   auto rows = connection.query(
-      lock ? "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL FOR UPDATE"
-           : "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL",
+      lock ? "SELECT " STRATA_PERSON_COLUMNS
+             " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL FOR UPDATE"
+           : "SELECT " STRATA_PERSON_COLUMNS
+             " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL",
       Params().text(name));
   if (!rows) return tl::unexpected(rows.error());
   if (rows->rows() == 0) return not_found("person", name);
@@ -65,15 +69,17 @@ Result<void> run(PgConnection& connection, const char* sql, const Params& params
 
 Result<void> revoke_all(PgConnection& connection, const std::string& user, TokenKind kind,
                         std::optional<std::int64_t> kept) {
-  return run(connection,
-             "UPDATE tokens SET revoked = now() WHERE user_name = $1 AND kind = $2 AND revoked IS NULL AND "
-             "id IS DISTINCT FROM $3",
-             Params().text(user).text(name(kind)).optional_integer(kept));
+  return run(
+      connection,
+      "UPDATE tokens SET revoked = now() WHERE user_name = $1 AND kind = $2 AND revoked IS NULL AND "
+      "id IS DISTINCT FROM $3",
+      Params().text(user).text(name(kind)).optional_integer(kept));
 }
 
 Result<std::int64_t> count_good(PgConnection& connection, const std::string& user, TokenKind kind) {
-  auto rows = connection.query("SELECT count(*) FROM tokens WHERE user_name = $1 AND kind = $2 AND " STRATA_GOOD_TOKEN,
-                               Params().text(user).text(name(kind)));
+  auto rows = connection.query(
+      "SELECT count(*) FROM tokens WHERE user_name = $1 AND kind = $2 AND " STRATA_GOOD_TOKEN,
+      Params().text(user).text(name(kind)));
   return rows ? Result<std::int64_t>(rows->integer(0, 0)) : tl::unexpected(rows.error());
 }
 
@@ -95,11 +101,12 @@ Token read_token(const PgResult& rows, TokenKind kind, int i) {
   "id, label, role, created, expires, last_used, (SELECT slug FROM projects p WHERE p.id = tokens.project_id)"
 
 // Of somebody who is locked.
-Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const std::string& user, Role role,
-                              std::optional<std::chrono::seconds> lifetime, const std::string& label,
-                              std::optional<std::int64_t> project = {}) {
+Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const std::string& user,
+                              Role role, std::optional<std::chrono::seconds> lifetime,
+                              const std::string& label, std::optional<std::int64_t> project = {}) {
   auto cleared = run(
-      connection, "DELETE FROM tokens WHERE user_name = $1 AND coalesce(revoked, expires) < now() - interval '30 days'",
+      connection,
+      "DELETE FROM tokens WHERE user_name = $1 AND coalesce(revoked, expires) < now() - interval '30 days'",
       Params().text(user));
   if (!cleared) return tl::unexpected(cleared.error());
   NewToken made;
@@ -123,13 +130,16 @@ Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const st
 }
 
 Result<NewToken> open_session(PgConnection& connection, const Person& person,
-                              std::optional<std::chrono::seconds> lifetime, const std::string& label) {
-  auto made = insert_token(connection, TokenKind::session, person.name, person.role, lifetime, label);
+                              std::optional<std::chrono::seconds> lifetime,
+                              const std::string& label) {
+  auto made =
+      insert_token(connection, TokenKind::session, person.name, person.role, lifetime, label);
   if (!made) return made;
-  auto fewer = run(connection,
-                   "UPDATE tokens SET revoked = now() WHERE id IN (SELECT id FROM tokens WHERE user_name = $1 AND "
-                   "kind = 'session' AND " STRATA_GOOD_TOKEN " ORDER BY id DESC OFFSET $2)",
-                   Params().text(person.name).integer(kMostTokens));
+  auto fewer = run(
+      connection,
+      "UPDATE tokens SET revoked = now() WHERE id IN (SELECT id FROM tokens WHERE user_name = $1 AND "
+      "kind = 'session' AND " STRATA_GOOD_TOKEN " ORDER BY id DESC OFFSET $2)",
+      Params().text(person.name).integer(kMostTokens));
   if (!fewer) return tl::unexpected(fewer.error());
   return made;
 }
@@ -167,12 +177,14 @@ Result<std::optional<Found>> find(PgConnection& connection, const std::string& s
     roles = {};
     if (there > Role::guest) roles.in_projects[project] = there;
   }
-  return std::optional<Found>({{row->text(0, 0), std::move(roles), *kind, row->integer(0, 4)}, row->boolean(0, 6)});
+  return std::optional<Found>(
+      {{row->text(0, 0), std::move(roles), *kind, row->integer(0, 4)}, row->boolean(0, 6)});
 }
 
-Result<void> put_password(PgConnection& connection, const std::string& user, const std::string& hash,
-                          std::optional<std::int64_t> kept) {
-  auto set = run(connection, "UPDATE users SET password = $2 WHERE name = $1", Params().text(user).text(hash));
+Result<void> put_password(PgConnection& connection, const std::string& user,
+                          const std::string& hash, std::optional<std::int64_t> kept) {
+  auto set = run(connection, "UPDATE users SET password = $2 WHERE name = $1",
+                 Params().text(user).text(hash));
   if (!set) return set;
   if (auto ended = revoke_all(connection, user, TokenKind::session, kept); !ended) return ended;
   for (const TokenKind link : {TokenKind::invitation, TokenKind::owner_link})
@@ -188,8 +200,8 @@ Result<Person> lock_person(PgConnection& connection, const std::string& name) {
 
 Result<std::vector<Person>> Store::people() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
-    auto rows =
-        connection.query("SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE deleted IS NULL ORDER BY lower(name)");
+    auto rows = connection.query("SELECT " STRATA_PERSON_COLUMNS
+                                 " FROM users WHERE deleted IS NULL ORDER BY lower(name)");
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Person> people;
     for (int i = 0; i < rows->rows(); ++i) people.push_back(read_person(*rows, i));
@@ -198,7 +210,8 @@ Result<std::vector<Person>> Store::people() {
 }
 
 Result<Person> Store::person(const std::string& name) {
-  return impl_->pool.read([&](PgConnection& connection) { return load_person(connection, name, false); });
+  return impl_->pool.read(
+      [&](PgConnection& connection) { return load_person(connection, name, false); });
 }
 
 Result<std::vector<Person>> Store::people_called(const std::vector<std::string>& names) {
@@ -206,8 +219,8 @@ Result<std::vector<Person>> Store::people_called(const std::vector<std::string>&
   for (const std::string& name : names)
     if (check_text(name, "user")) asked.add(std::string_view(name));
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
-    auto rows =
-        connection.query("SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE name = any($1)", Params().array(asked));
+    auto rows = connection.query("SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE name = any($1)",
+                                 Params().array(asked));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Person> people;
     for (int i = 0; i < rows->rows(); ++i) people.push_back(read_person(*rows, i));
@@ -215,15 +228,17 @@ Result<std::vector<Person>> Store::people_called(const std::vector<std::string>&
   });
 }
 
-Result<Person> Store::create_person(const std::string& name, const std::string& full_name, Role role,
-                                    const std::vector<std::int64_t>& groups, const std::string& by) {
+Result<Person> Store::create_person(const std::string& name, const std::string& full_name,
+                                    Role role, const std::vector<std::int64_t>& groups,
+                                    const std::string& by) {
   const auto is_plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
   };
   const auto may_stand = [&](char c) {
     return is_plain(c) || std::string_view("._@-").find(c) != std::string_view::npos;
   };
-  if (name.empty() || name.size() > 64 || !is_plain(name.front()) || !std::ranges::all_of(name, may_stand))
+  if (name.empty() || name.size() > 64 || !is_plain(name.front()) ||
+      !std::ranges::all_of(name, may_stand))
     return fail(
         422, "Bad name",
         "A name has 1 to 64 letters (a to z), digits, `.`, `_`, `@` and `-`, and begins with a letter or digit.",
@@ -232,9 +247,11 @@ Result<Person> Store::create_person(const std::string& name, const std::string& 
   for (char& c : lower)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   if (lower.starts_with(kFormer))
-    return fail(409, "Name taken", "Names that begin with `former-` are kept for who is deleted. Choose another name.",
+    return fail(409, "Name taken",
+                "Names that begin with `former-` are kept for who is deleted. Choose another name.",
                 "user");
-  if (auto good = check_texts({{&full_name, "full_name"}}); !good) return tl::unexpected(good.error());
+  if (auto good = check_texts({{&full_name, "full_name"}}); !good)
+    return tl::unexpected(good.error());
   return impl_->pool.write([&](PgConnection& connection) -> Result<Person> {
     auto made = connection.query(
         "INSERT INTO users (name, full_name, role) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING "
@@ -242,7 +259,8 @@ Result<Person> Store::create_person(const std::string& name, const std::string& 
         Params().text(name).text(full_name).text(strata::name(role)));
     if (!made) return tl::unexpected(made.error());
     if (made->rows() == 0)
-      return fail(409, "Name taken", "There is somebody called `" + name + "`. Choose another name.", "user");
+      return fail(409, "Name taken",
+                  "There is somebody called `" + name + "`. Choose another name.", "user");
     if (groups.empty()) return read_person(*made, 0);
     if (auto named = act_as(connection, by); !named) return tl::unexpected(named.error());
     if (auto joined = join_groups(connection, made->integer(0, 0), groups); !joined)
@@ -253,26 +271,32 @@ Result<Person> Store::create_person(const std::string& name, const std::string& 
 
 Result<Person> Store::change_person(std::int64_t id, const PersonChange& change) {
   if (change.full_name)
-    if (auto good = check_texts({{&*change.full_name, "full_name"}}); !good) return tl::unexpected(good.error());
+    if (auto good = check_texts({{&*change.full_name, "full_name"}}); !good)
+      return tl::unexpected(good.error());
   return impl_->pool.write([&](PgConnection& connection) -> Result<Person> {
-    auto rows =
-        connection.query("SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE id = $1 AND deleted IS NULL FOR UPDATE",
-                         Params().integer(id));
+    auto rows = connection.query("SELECT " STRATA_PERSON_COLUMNS
+                                 " FROM users WHERE id = $1 AND deleted IS NULL FOR UPDATE",
+                                 Params().integer(id));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return not_found("person", std::to_string(id));
     Person person = read_person(*rows, 0);
     if (change.full_name) person.full_name = *change.full_name;
     if (change.role) person.role = *change.role;
     if (change.disabled) person.disabled = *change.disabled;
-    auto done =
-        run(connection,
-            "UPDATE users SET full_name = $2, role = $3, disabled = CASE WHEN $4 THEN coalesce(disabled, now()) END "
-            "WHERE id = $1",
-            Params().integer(id).text(person.full_name).text(strata::name(person.role)).boolean(person.disabled));
+    auto done = run(
+        connection,
+        "UPDATE users SET full_name = $2, role = $3, disabled = CASE WHEN $4 THEN coalesce(disabled, now()) END "
+        "WHERE id = $1",
+        Params()
+            .integer(id)
+            .text(person.full_name)
+            .text(strata::name(person.role))
+            .boolean(person.disabled));
     if (!done) return tl::unexpected(done.error());
     if (person.disabled)
       for (const TokenKind kind : {TokenKind::session, TokenKind::invitation})
-        if (auto ended = revoke_all(connection, person.name, kind, {}); !ended) return tl::unexpected(ended.error());
+        if (auto ended = revoke_all(connection, person.name, kind, {}); !ended)
+          return tl::unexpected(ended.error());
     return person;
   });
 }
@@ -281,59 +305,67 @@ Result<void> Store::delete_person(const std::string& name) {
   return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
     auto person = lock_person(connection, name);
     if (!person) return tl::unexpected(person.error());
-    auto ended = run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person->name));
+    auto ended =
+        run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person->name));
     if (!ended) return ended;
-    for (const char* sql :
-         {"DELETE FROM project_members WHERE user_id = $1", "DELETE FROM group_people WHERE user_id = $1",
-          "DELETE FROM personal_views WHERE user_id = $1"})
+    for (const char* sql : {"DELETE FROM project_members WHERE user_id = $1",
+                            "DELETE FROM group_people WHERE user_id = $1",
+                            "DELETE FROM personal_views WHERE user_id = $1"})
       if (auto left = run(connection, sql, Params().integer(person->id)); !left) return left;
     const std::string former = std::string(kFormer) + std::to_string(person->id);
-    for (const char* sql :
-         {"UPDATE users SET name = $2, full_name = '', password = NULL, deleted = now() WHERE name = $1",
-          "UPDATE table_edits SET user_name = $2 WHERE user_name = $1",
-          "UPDATE attachments SET user_name = $2 WHERE user_name = $1",
-          "UPDATE views SET user_name = $2 WHERE user_name = $1",
-          "UPDATE all_models SET binned_by = $2 WHERE binned_by = $1",
-          "UPDATE all_layers SET binned_by = $2 WHERE binned_by = $1",
-          "UPDATE tours SET user_name = $2 WHERE user_name = $1",
-          "UPDATE kiosks SET user_name = $2 WHERE user_name = $1",
-          "UPDATE jobs SET user_name = $2 WHERE user_name = $1"})
-      if (auto done = run(connection, sql, Params().text(person->name).text(former)); !done) return done;
+    for (
+        const char* sql :
+        {"UPDATE users SET name = $2, full_name = '', password = NULL, deleted = now() WHERE name = $1",
+         "UPDATE table_edits SET user_name = $2 WHERE user_name = $1",
+         "UPDATE attachments SET user_name = $2 WHERE user_name = $1",
+         "UPDATE views SET user_name = $2 WHERE user_name = $1",
+         "UPDATE all_models SET binned_by = $2 WHERE binned_by = $1",
+         "UPDATE all_layers SET binned_by = $2 WHERE binned_by = $1",
+         "UPDATE tours SET user_name = $2 WHERE user_name = $1",
+         "UPDATE kiosks SET user_name = $2 WHERE user_name = $1",
+         "UPDATE jobs SET user_name = $2 WHERE user_name = $1"})
+      if (auto done = run(connection, sql, Params().text(person->name).text(former)); !done)
+        return done;
     if (auto done = rename_in_journal(connection, person->name, former); !done) return done;
     if (auto done = rename_in_comments(connection, person->name, former); !done) return done;
     if (auto done = rename_in_activity(connection, person->name, former); !done) return done;
-    // Answers that are kept for calls that come again may tell it, as the name of somebody or in what is said to them; names hold
-    // nothing that JSON writes otherwise.
-    return run(connection,
-               "DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0 "
-               "OR " STRATA_CALLS_THEM("answer::text"),
-               Params().text(person->name));
+    // Answers that are kept for calls that come again may tell it, as the name of somebody or in
+    // what is said to them; names hold nothing that JSON writes otherwise.
+    return run(
+        connection,
+        "DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0 "
+        "OR " STRATA_CALLS_THEM("answer::text"),
+        Params().text(person->name));
   });
 }
 
 Result<std::vector<Membership>> Store::members(std::int64_t project_id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Membership>> {
-    auto rows = connection.query("SELECT " STRATA_PERSON_COLUMNS
-                                 ", in_project FROM users JOIN "
-                                 "(SELECT user_id, role AS in_project FROM project_members WHERE project_id = $1) m "
-                                 "ON user_id = id ORDER BY lower(name)",
-                                 Params().integer(project_id));
+    auto rows = connection.query(
+        "SELECT " STRATA_PERSON_COLUMNS
+        ", in_project FROM users JOIN "
+        "(SELECT user_id, role AS in_project FROM project_members WHERE project_id = $1) m "
+        "ON user_id = id ORDER BY lower(name)",
+        Params().integer(project_id));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Membership> members;
     for (int i = 0; i < rows->rows(); ++i)
-      members.push_back({read_person(*rows, i), parse_role(rows->text(i, 9)).value_or(Role::viewer)});
+      members.push_back(
+          {read_person(*rows, i), parse_role(rows->text(i, 9)).value_or(Role::viewer)});
     return members;
   });
 }
 
 Result<void> check_project_role(Role role) {
   if (role < Role::viewer || role > Role::curator)
-    return fail(422, "No role in a project", "In a project people are viewer, annotator or curator.", "role");
+    return fail(422, "No role in a project",
+                "In a project people are viewer, annotator or curator.", "role");
   return {};
 }
 
 Result<void> lock_project(PgConnection& connection, std::int64_t id) {
-  auto project = connection.query("SELECT 1 FROM projects WHERE id = $1 FOR KEY SHARE", Params().integer(id));
+  auto project =
+      connection.query("SELECT 1 FROM projects WHERE id = $1 FOR KEY SHARE", Params().integer(id));
   if (!project) return tl::unexpected(project.error());
   if (project->rows() == 0) return not_found("project", std::to_string(id));
   return {};
@@ -345,7 +377,8 @@ Result<Membership> Store::put_member(std::int64_t project_id, const std::string&
   return impl_->pool.write([&](PgConnection& connection) -> Result<Membership> {
     auto person = lock_person(connection, user);
     if (!person) return tl::unexpected(person.error());
-    if (auto there = lock_project(connection, project_id); !there) return tl::unexpected(there.error());
+    if (auto there = lock_project(connection, project_id); !there)
+      return tl::unexpected(there.error());
     if (auto named = act_as(connection, by); !named) return tl::unexpected(named.error());
     auto put = run(connection,
                    "INSERT INTO project_members (project_id, user_id, role) VALUES ($1, $2, $3) "
@@ -356,13 +389,15 @@ Result<Membership> Store::put_member(std::int64_t project_id, const std::string&
   });
 }
 
-Result<void> Store::remove_member(std::int64_t project_id, const std::string& user, const std::string& by) {
+Result<void> Store::remove_member(std::int64_t project_id, const std::string& user,
+                                  const std::string& by) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
     auto person = lock_person(connection, user);
     if (!person) return tl::unexpected(person.error());
     if (auto named = act_as(connection, by); !named) return named;
-    auto gone = connection.query("DELETE FROM project_members WHERE project_id = $1 AND user_id = $2 RETURNING 1",
-                                 Params().integer(project_id).integer(person->id));
+    auto gone = connection.query(
+        "DELETE FROM project_members WHERE project_id = $1 AND user_id = $2 RETURNING 1",
+        Params().integer(project_id).integer(person->id));
     if (!gone) return tl::unexpected(gone.error());
     if (gone->rows() == 0) return not_found("member", user);
     return {};
@@ -390,7 +425,8 @@ Result<std::string> Store::password_of(const std::string& name) {
   });
 }
 
-Result<void> Store::set_password(const std::string& name, const std::string& hash, std::optional<std::int64_t> kept) {
+Result<void> Store::set_password(const std::string& name, const std::string& hash,
+                                 std::optional<std::int64_t> kept) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
     auto person = lock_person(connection, name);
     if (!person) return tl::unexpected(person.error());
@@ -399,8 +435,10 @@ Result<void> Store::set_password(const std::string& name, const std::string& has
 }
 
 Result<NewToken> Store::create_token(TokenKind kind, const std::string& user, Role role,
-                                     std::optional<std::chrono::seconds> lifetime, const std::string& label,
-                                     const std::optional<std::string>& hash, std::optional<std::int64_t> project) {
+                                     std::optional<std::chrono::seconds> lifetime,
+                                     const std::string& label,
+                                     const std::optional<std::string>& hash,
+                                     std::optional<std::int64_t> project) {
   if (auto good = check_texts({{&label, "name"}}); !good) return tl::unexpected(good.error());
   return impl_->pool.write([&](PgConnection& connection) -> Result<NewToken> {
     auto person = lock_person(connection, user);
@@ -410,27 +448,32 @@ Result<NewToken> Store::create_token(TokenKind kind, const std::string& user, Ro
       auto same = connection.query("SELECT 1 FROM users WHERE id = $1 AND password = $2",
                                    Params().integer(person->id).text(*hash));
       if (!same) return tl::unexpected(same.error());
-      if (same->rows() == 0) return fail(401, "Not signed in", "The password was changed meanwhile.", "password");
+      if (same->rows() == 0)
+        return fail(401, "Not signed in", "The password was changed meanwhile.", "password");
     }
     if (kind == TokenKind::session) return open_session(connection, *person, lifetime, label);
     const auto good = count_good(connection, person->name, kind);
     if (!good) return tl::unexpected(good.error());
     if (kind == TokenKind::script && *good >= static_cast<std::int64_t>(kMostTokens))
-      return fail(409, "Too many tokens", "There are " + std::to_string(kMostTokens) + " tokens. Revoke some first.");
+      return fail(409, "Too many tokens",
+                  "There are " + std::to_string(kMostTokens) + " tokens. Revoke some first.");
     if (project) {
       if (auto good = check_project_role(role); !good) return tl::unexpected(good.error());
-      if (auto there = lock_project(connection, *project); !there) return tl::unexpected(there.error());
+      if (auto there = lock_project(connection, *project); !there)
+        return tl::unexpected(there.error());
     }
     return insert_token(connection, kind, person->name, role, lifetime, label, project);
   });
 }
 
-Result<NewToken> Store::create_link(TokenKind kind, const std::string& user, std::chrono::seconds lifetime) {
+Result<NewToken> Store::create_link(TokenKind kind, const std::string& user,
+                                    std::chrono::seconds lifetime) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<NewToken> {
     auto person = lock_person(connection, user);
     if (!person) return tl::unexpected(person.error());
     if (person->disabled) return not_found("person", user);
-    if (auto old = revoke_all(connection, person->name, kind, {}); !old) return tl::unexpected(old.error());
+    if (auto old = revoke_all(connection, person->name, kind, {}); !old)
+      return tl::unexpected(old.error());
     return insert_token(connection, kind, person->name, person->role, lifetime, {});
   });
 }
@@ -441,12 +484,14 @@ Result<std::optional<Principal>> Store::find_token(const std::string& secret) {
   if (!*found) return std::optional<Principal>();
   const Principal& principal = (*found)->principal;
   // That it was used is only remembered: whoever asks is let in also where nothing can be written.
-  if (!(*found)->is_fresh && (principal.kind == TokenKind::session || principal.kind == TokenKind::script))
+  if (!(*found)->is_fresh &&
+      (principal.kind == TokenKind::session || principal.kind == TokenKind::script))
     (void)impl_->pool.write([&](PgConnection& connection) {
-      return run(connection,
-                 "WITH used AS (UPDATE tokens SET last_used = now() WHERE id = $1 RETURNING user_name) "
-                 "UPDATE users SET last_seen = now() FROM used WHERE name = used.user_name",
-                 Params().integer(principal.token));
+      return run(
+          connection,
+          "WITH used AS (UPDATE tokens SET last_used = now() WHERE id = $1 RETURNING user_name) "
+          "UPDATE users SET last_seen = now() FROM used WHERE name = used.user_name",
+          Params().integer(principal.token));
     });
   return principal;
 }
@@ -464,12 +509,14 @@ Result<std::vector<Token>> Store::tokens(const std::string& user, TokenKind kind
   });
 }
 
-Result<std::optional<std::string>> Store::redeem_owner_link(const std::string& link, std::chrono::seconds lifetime,
+Result<std::optional<std::string>> Store::redeem_owner_link(const std::string& link,
+                                                            std::chrono::seconds lifetime,
                                                             const std::string& label) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<std::optional<std::string>> {
     auto owner = find(connection, link);
     if (!owner) return tl::unexpected(owner.error());
-    if (!*owner || (*owner)->principal.kind != TokenKind::owner_link) return std::optional<std::string>();
+    if (!*owner || (*owner)->principal.kind != TokenKind::owner_link)
+      return std::optional<std::string>();
     auto person = lock_person(connection, (*owner)->principal.user);
     if (!person) return tl::unexpected(person.error());
     auto session = open_session(connection, *person, lifetime, label);
@@ -478,23 +525,29 @@ Result<std::optional<std::string>> Store::redeem_owner_link(const std::string& l
   });
 }
 
-Result<std::optional<std::string>> Store::accept_invitation(const std::string& invitation, const std::string& hash,
-                                                            const std::optional<std::string>& full_name,
-                                                            std::chrono::seconds lifetime, const std::string& label) {
+Result<std::optional<std::string>> Store::accept_invitation(
+    const std::string& invitation, const std::string& hash,
+    const std::optional<std::string>& full_name, std::chrono::seconds lifetime,
+    const std::string& label) {
   if (full_name)
-    if (auto good = check_texts({{&*full_name, "full_name"}}); !good) return tl::unexpected(good.error());
+    if (auto good = check_texts({{&*full_name, "full_name"}}); !good)
+      return tl::unexpected(good.error());
   return impl_->pool.write([&](PgConnection& connection) -> Result<std::optional<std::string>> {
-    const auto is_good = [](const auto& found) { return found && found->principal.kind == TokenKind::invitation; };
+    const auto is_good = [](const auto& found) {
+      return found && found->principal.kind == TokenKind::invitation;
+    };
     auto invited = find(connection, invitation);
     if (!invited) return tl::unexpected(invited.error());
     if (!is_good(*invited)) return std::optional<std::string>();
     auto person = lock_person(connection, (*invited)->principal.user);
     if (!person) return tl::unexpected(person.error());
-    // Of two who use it at once, one came first; and the person may have been disabled before the lock was had.
+    // Of two who use it at once, one came first; and the person may have been disabled before the
+    // lock was had.
     auto still = find(connection, invitation);
     if (!still) return tl::unexpected(still.error());
     if (!is_good(*still)) return std::optional<std::string>();
-    if (auto set = put_password(connection, person->name, hash, {}); !set) return tl::unexpected(set.error());
+    if (auto set = put_password(connection, person->name, hash, {}); !set)
+      return tl::unexpected(set.error());
     if (full_name) {
       auto named = run(connection, "UPDATE users SET full_name = $2 WHERE name = $1",
                        Params().text(person->name).text(*full_name));
@@ -520,13 +573,16 @@ Result<void> Store::revoke_token(const std::string& user, TokenKind kind, std::i
         " RETURNING id",
         Params().text(user).text(name(kind)).integer(id));
     if (!done) return tl::unexpected(done.error());
-    if (done->rows() == 0) return not_found(kind == TokenKind::session ? "session" : "token", std::to_string(id));
+    if (done->rows() == 0)
+      return not_found(kind == TokenKind::session ? "session" : "token", std::to_string(id));
     return {};
   });
 }
 
-Result<void> Store::revoke_tokens(const std::string& user, TokenKind kind, std::optional<std::int64_t> kept) {
-  return impl_->pool.write([&](PgConnection& connection) { return revoke_all(connection, user, kind, kept); });
+Result<void> Store::revoke_tokens(const std::string& user, TokenKind kind,
+                                  std::optional<std::int64_t> kept) {
+  return impl_->pool.write(
+      [&](PgConnection& connection) { return revoke_all(connection, user, kind, kept); });
 }
 
 }  // namespace strata::store

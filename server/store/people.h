@@ -11,9 +11,11 @@
 namespace strata::store {
 
 inline constexpr std::chrono::hours kInvitationLifetime{24 * 7};
-inline constexpr std::size_t kMostTokens = 100;  // good sessions of a person, and as many for scripts
+// good sessions of a person, and as many for scripts
+inline constexpr std::size_t kMostTokens = 100;
 
-// Someone with an account. `name` is what they sign in with, in any case, and what journals say of them.
+// Someone with an account. `name` is what they sign in with, in any case, and what journals say of
+// them.
 struct Person {
   std::int64_t id = 0;
   std::string name;
@@ -34,8 +36,9 @@ struct PersonChange {
 };
 
 enum class TokenKind {
-  session,     // of a browser; does what its person may do
-  script,      // the same, but no more than its own role, and, where it has a project, nothing elsewhere
+  session,  // of a browser; does what its person may do
+  // the same, but no more than its own role, and, where it has a project, nothing elsewhere
+  script,
   owner_link,  // is traded for sessions until it expires
   invitation,  // is traded for a password and a session, once
 };

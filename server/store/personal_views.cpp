@@ -17,27 +17,32 @@ Result<nlohmann::json> Store::personal_view(const std::string& user, std::int64_
   });
 }
 
-Result<void> Store::keep_personal_view(const std::string& user, std::int64_t model_id, const nlohmann::json& layers) {
+Result<void> Store::keep_personal_view(const std::string& user, std::int64_t model_id,
+                                       const nlohmann::json& layers) {
   if (auto good = check_json(layers, "layers"); !good) return good;
-  // PostgreSQL writes a blank behind every comma and colon: half of the room is enough for any of them.
+  // PostgreSQL writes a blank behind every comma and colon: half of the room is enough for any of
+  // them.
   if (layers.dump().size() > kMostBytes / 2)
-    return fail(413, "Too much to keep", "What is kept of a model for a person has at most 512 KiB.", "layers");
+    return fail(413, "Too much to keep",
+                "What is kept of a model for a person has at most 512 KiB.", "layers");
   return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
-    auto done = layers.empty()
-                    ? connection.query(
-                          "DELETE FROM personal_views v USING users u WHERE u.id = v.user_id AND u.name = $1 "
-                          "AND v.model_id = $2",
-                          Params().text(user).integer(model_id))
-                    : connection.query(
-                          "INSERT INTO personal_views (user_id, model_id, content) SELECT id, $2, $3 FROM users "
-                          "WHERE name = $1 AND deleted IS NULL ON CONFLICT (user_id, model_id) "
-                          "DO UPDATE SET content = excluded.content",
-                          Params().text(user).integer(model_id).json(layers));
+    auto done =
+        layers.empty()
+            ? connection.query(
+                  "DELETE FROM personal_views v USING users u WHERE u.id = v.user_id AND u.name = $1 "
+                  "AND v.model_id = $2",
+                  Params().text(user).integer(model_id))
+            : connection.query(
+                  "INSERT INTO personal_views (user_id, model_id, content) SELECT id, $2, $3 FROM users "
+                  "WHERE name = $1 AND deleted IS NULL ON CONFLICT (user_id, model_id) "
+                  "DO UPDATE SET content = excluded.content",
+                  Params().text(user).integer(model_id).json(layers));
     return done ? Result<void>{} : tl::unexpected(done.error());
   });
 }
 
-Result<void> Store::show_layer_to(const std::string& user, std::int64_t model_id, std::int64_t layer_id) {
+Result<void> Store::show_layer_to(const std::string& user, std::int64_t model_id,
+                                  std::int64_t layer_id) {
   const nlohmann::json shown = nlohmann::json::array({{{"layer", layer_id}, {"visible", true}}});
   return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
     auto done = connection.query(

@@ -18,7 +18,8 @@ std::string one_line(std::string_view message) {
 }
 
 bool starts_with_any(std::string_view sqlstate, std::initializer_list<std::string_view> prefixes) {
-  return std::any_of(prefixes.begin(), prefixes.end(), [&](auto p) { return sqlstate.starts_with(p); });
+  return std::any_of(prefixes.begin(), prefixes.end(),
+                     [&](auto p) { return sqlstate.starts_with(p); });
 }
 
 constexpr const char* kConnectionLost = "08006";
@@ -36,21 +37,29 @@ Problem unknown_outcome(Problem lost) {
 
 Problem unavailable(std::string_view why) {
   return {503, "Database unavailable",
-          "PostgreSQL does not answer (" + one_line(why) + "). Nothing was changed by this call; try again.", ""};
+          "PostgreSQL does not answer (" + one_line(why) +
+              "). Nothing was changed by this call; try again.",
+          ""};
 }
 
 Problem problem_of(std::string_view sqlstate, std::string_view message) {
   const std::string what = one_line(message);
   if (sqlstate.empty() || starts_with_any(sqlstate, {"08", "57P"})) return unavailable(message);
   if (sqlstate == "53100")
-    return {507, "Disk full", "The database's disk is full (" + what + "). Free space on it; nothing was changed.", ""};
+    return {507, "Disk full",
+            "The database's disk is full (" + what + "). Free space on it; nothing was changed.",
+            ""};
   if (sqlstate.starts_with("53"))
-    return {503, "Database overloaded", "PostgreSQL is out of resources (" + what + "). Try again shortly.", ""};
+    return {503, "Database overloaded",
+            "PostgreSQL is out of resources (" + what + "). Try again shortly.", ""};
   if (sqlstate == "23505")
-    return {409, "Already exists", "Something with this name or id exists already (" + what + ").", ""};
+    return {409, "Already exists", "Something with this name or id exists already (" + what + ").",
+            ""};
   if (sqlstate == "23503")
-    return {409, "Conflict", "What this refers to does not exist, or is still in use (" + what + ").", ""};
-  if (sqlstate.starts_with("23")) return {409, "Conflict", "The database refuses these values (" + what + ").", ""};
+    return {409, "Conflict",
+            "What this refers to does not exist, or is still in use (" + what + ").", ""};
+  if (sqlstate.starts_with("23"))
+    return {409, "Conflict", "The database refuses these values (" + what + ").", ""};
   if (sqlstate == "22021" || sqlstate == "22P05")
     return {400, "Text not storable", "Text must be UTF-8 without the character U+0000.", ""};
   if (starts_with_any(sqlstate, {"22", "54"}))
@@ -58,16 +67,21 @@ Problem problem_of(std::string_view sqlstate, std::string_view message) {
   if (starts_with_any(sqlstate, {"40", "55P03", "57014", "25006"}))
     return {503, "Database busy", "PostgreSQL could not do it now (" + what + "). Try again.", ""};
   if (sqlstate.starts_with("58"))
-    return {503, "Database unavailable", "PostgreSQL cannot read or write its files (" + what + "). Check its disk.",
-            ""};
-  return {500, "Database error", "PostgreSQL reported " + std::string(sqlstate) + ": " + what + ".", ""};
+    return {503, "Database unavailable",
+            "PostgreSQL cannot read or write its files (" + what + "). Check its disk.", ""};
+  return {500, "Database error", "PostgreSQL reported " + std::string(sqlstate) + ": " + what + ".",
+          ""};
 }
 
-bool is_transient(std::string_view sqlstate) { return !starts_with_any(sqlstate, {"22", "23", "42", "0A", "54"}); }
+bool is_transient(std::string_view sqlstate) {
+  return !starts_with_any(sqlstate, {"22", "23", "42", "0A", "54"});
+}
 
 Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimits& limits) {
-  // libpq takes whole seconds, and 2 for 1. Settings given in the DSN come later in the list and win.
-  const auto patience = std::chrono::ceil<std::chrono::seconds>(std::min(limits.answer, kConnectFor));
+  // libpq takes whole seconds, and 2 for 1. Settings given in the DSN come later in the list and
+  // win.
+  const auto patience =
+      std::chrono::ceil<std::chrono::seconds>(std::min(limits.answer, kConnectFor));
   const std::string connect_timeout = std::to_string(std::max<std::int64_t>(patience.count(), 2));
   const char* keys[] = {"connect_timeout",  "tcp_user_timeout", "keepalives_idle",
                         "application_name", "dbname",           nullptr};
@@ -80,11 +94,14 @@ Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimit
   PQsetNoticeProcessor(
       raw, [](void*, const char*) {}, nullptr);
   connection.limits_ = {std::min(limits.answer, kConnectFor), {}, {}};
-  auto set = connection.script("SET synchronous_commit = on; SET client_encoding = 'UTF8'; SET jit = off");
+  auto set =
+      connection.script("SET synchronous_commit = on; SET client_encoding = 'UTF8'; SET jit = off");
   if (!set) return tl::unexpected(set.error());
   // A session whose client gave up ends, and lets go of its locks. Not every system can do that.
-  if (PQserverVersion(raw) >= 140000) (void)connection.script("SET client_connection_check_interval = '2s'");
-  if (auto limited = connection.set_limits(limits); !limited) return tl::unexpected(limited.error());
+  if (PQserverVersion(raw) >= 140000)
+    (void)connection.script("SET client_connection_check_interval = '2s'");
+  if (auto limited = connection.set_limits(limits); !limited)
+    return tl::unexpected(limited.error());
   return connection;
 }
 
@@ -101,8 +118,8 @@ Result<void> PgConnection::set_limits(const PgLimits& limits) {
 
 bool PgConnection::alive() {
   PGconn* raw = connection_.get();
-  return raw && PQstatus(raw) == CONNECTION_OK && PQconsumeInput(raw) == 1 && PQstatus(raw) == CONNECTION_OK &&
-         PQtransactionStatus(raw) == PQTRANS_IDLE;
+  return raw && PQstatus(raw) == CONNECTION_OK && PQconsumeInput(raw) == 1 &&
+         PQstatus(raw) == CONNECTION_OK && PQtransactionStatus(raw) == PQTRANS_IDLE;
 }
 
 void PgConnection::close(std::string reason) {
@@ -116,7 +133,8 @@ void PgConnection::close(std::string reason) {
 bool PgConnection::wait_for_socket(short events) {
   const auto deadline = std::chrono::steady_clock::now() + limits_.answer;
   for (;;) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     pollfd socket{PQsocket(connection_.get()), events, 0};
     const int ready = poll(&socket, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
     if (ready > 0) return true;
@@ -126,7 +144,8 @@ bool PgConnection::wait_for_socket(short events) {
   }
 }
 
-// Until all that was queued is sent. What arrives meanwhile is read, so that both sides cannot wait for each other.
+// Until all that was queued is sent. What arrives meanwhile is read, so that both sides cannot wait
+// for each other.
 bool PgConnection::flush() {
   for (;;) {
     const int rest = PQflush(connection_.get());
@@ -180,9 +199,11 @@ Result<void> PgConnection::script(const std::string& sql) {
 }
 
 Result<std::string> PgConnection::prepared(const char* sql, const Params& params) {
-  if (const auto known = prepared_.find(std::string_view(sql)); known != prepared_.end()) return known->second;
+  if (const auto known = prepared_.find(std::string_view(sql)); known != prepared_.end())
+    return known->second;
   const std::string name = "s" + std::to_string(prepared_.size());
-  if (!PQsendPrepare(connection_.get(), name.c_str(), sql, params.count(), params.types())) return failed(nullptr);
+  if (!PQsendPrepare(connection_.get(), name.c_str(), sql, params.count(), params.types()))
+    return failed(nullptr);
   if (auto made = outcome(); !made) return tl::unexpected(made.error());
   prepared_.emplace(sql, name);
   return name;
@@ -191,15 +212,15 @@ Result<std::string> PgConnection::prepared(const char* sql, const Params& params
 Result<PgResult> PgConnection::query(const char* sql, const Params& params) {
   const auto name = prepared(sql, params);
   if (!name) return tl::unexpected(name.error());
-  if (!PQsendQueryPrepared(connection_.get(), name->c_str(), params.count(), params.values(), params.lengths(),
-                           params.formats(), 1))
+  if (!PQsendQueryPrepared(connection_.get(), name->c_str(), params.count(), params.values(),
+                           params.lengths(), params.formats(), 1))
     return failed(nullptr);
   return outcome();
 }
 
 Result<PgResult> PgConnection::query_once(const std::string& sql, const Params& params) {
-  if (!PQsendQueryParams(connection_.get(), sql.c_str(), params.count(), params.types(), params.values(),
-                         params.lengths(), params.formats(), 1))
+  if (!PQsendQueryParams(connection_.get(), sql.c_str(), params.count(), params.types(),
+                         params.values(), params.lengths(), params.formats(), 1))
     return failed(nullptr);
   return outcome();
 }
@@ -208,8 +229,8 @@ Result<void> PgConnection::each_row(const char* sql, const Params& params,
                                     const std::function<Result<void>(const PgResult&)>& on_row) {
   const auto name = prepared(sql, params);
   if (!name) return tl::unexpected(name.error());
-  if (!PQsendQueryPrepared(connection_.get(), name->c_str(), params.count(), params.values(), params.lengths(),
-                           params.formats(), 1))
+  if (!PQsendQueryPrepared(connection_.get(), name->c_str(), params.count(), params.values(),
+                           params.lengths(), params.formats(), 1))
     return failed(nullptr);
   PQsetSingleRowMode(connection_.get());
   if (!flush()) return failed(nullptr);
@@ -243,9 +264,11 @@ Result<std::vector<PgResult>> PgConnection::pipeline(const std::deque<Statement>
   if (!PQenterPipelineMode(raw)) return failed(nullptr);
   for (std::size_t i = 0; i < statements.size(); ++i) {
     const Params& p = statements[i].params;
-    if (!PQsendQueryPrepared(raw, names[i].c_str(), p.count(), p.values(), p.lengths(), p.formats(), 1))
+    if (!PQsendQueryPrepared(raw, names[i].c_str(), p.count(), p.values(), p.lengths(), p.formats(),
+                             1))
       return failed(nullptr);
-    if (!flush()) return failed(nullptr);  // each before the next, so that one copy of the bytes is enough
+    // each before the next, so that one copy of the bytes is enough
+    if (!flush()) return failed(nullptr);
   }
   if (!PQpipelineSync(raw) || !flush()) return failed(nullptr);
 
@@ -308,13 +331,15 @@ Result<Transaction> Transaction::begin_reading(PgConnection& connection) {
 }
 
 Transaction::~Transaction() {
-  if (connection_) (void)connection_->script("ROLLBACK");  // a broken connection is closed by the pool
+  // a broken connection is closed by the pool
+  if (connection_) (void)connection_->script("ROLLBACK");
 }
 
 Result<void> Transaction::commit() {
   PgConnection& connection = *std::exchange(connection_, nullptr);
   auto committed = connection.script("COMMIT");
-  if (!committed && connection.sqlstate() == kConnectionLost) return tl::unexpected(unknown_outcome(committed.error()));
+  if (!committed && connection.sqlstate() == kConnectionLost)
+    return tl::unexpected(unknown_outcome(committed.error()));
   return committed;
 }
 

@@ -24,8 +24,8 @@ using Bytes = std::span<const std::uint8_t>;
 using Time = std::chrono::system_clock::time_point;
 
 namespace oid {
-constexpr Oid kBool = 16, kBytea = 17, kInt8 = 20, kInt2 = 21, kText = 25, kFloat8 = 701, kTimestamptz = 1184,
-              kUuid = 2950, kJsonb = 3802;
+constexpr Oid kBool = 16, kBytea = 17, kInt8 = 20, kInt2 = 21, kText = 25, kFloat8 = 701,
+              kTimestamptz = 1184, kUuid = 2950, kJsonb = 3802;
 }
 
 // A one-dimensional PostgreSQL array in binary form, for `unnest($1)` and `= any($1)`.
@@ -54,7 +54,8 @@ class PgArray {
   std::string body_;
 };
 
-// Values of $1, $2, … in binary form. `bytes` are not copied: they must outlive the call that sends them.
+// Values of $1, $2, … in binary form. `bytes` are not copied: they must outlive the call that sends
+// them.
 class Params {
  public:
   Params() = default;
@@ -69,7 +70,8 @@ class Params {
   Params& optional_text(const std::optional<std::string>& value);
   Params& bytes(Bytes value);
   Params& uuid(const Uuid& value);
-  Params& json(const nlohmann::json& value);  // throws nlohmann::json::type_error on text that is not UTF-8
+  // throws nlohmann::json::type_error on text that is not UTF-8
+  Params& json(const nlohmann::json& value);
   Params& time(std::optional<Time> value);
   Params& array(const PgArray& value);
 
@@ -115,12 +117,15 @@ class PgResult {
   std::unique_ptr<PGresult, Clear> result_;
 };
 
-// One connection, used by one thread at a time. Statements are prepared once per connection. A call that waits longer than the
-// limits closes the connection: its Problem is 503 and its sqlstate "08006", as when the server had closed it.
+// One connection, used by one thread at a time. Statements are prepared once per connection. A call
+// that waits longer than the limits closes the connection: its Problem is 503 and its sqlstate
+// "08006", as when the server had closed it.
 class PgConnection {
  public:
-  // One attempt, of at most 5 seconds. The session writes durably (synchronous_commit on) and speaks UTF-8.
-  static Result<PgConnection> connect(const std::string& dsn, const PgLimits& limits = kRequestLimits);
+  // One attempt, of at most 5 seconds. The session writes durably (synchronous_commit on) and
+  // speaks UTF-8.
+  static Result<PgConnection> connect(const std::string& dsn,
+                                      const PgLimits& limits = kRequestLimits);
   // From the next call on; costs a round trip where they change.
   Result<void> set_limits(const PgLimits& limits);
 
@@ -134,14 +139,17 @@ class PgConnection {
 
   Result<void> script(const std::string& sql);  // any number of statements without parameters
   Result<PgResult> query(const char* sql, const Params& params = {});
-  // The same without preparing it: for statements that name generated tables, of which there is no end.
+  // The same without preparing it: for statements that name generated tables, of which there is no
+  // end.
   Result<PgResult> query_once(const std::string& sql, const Params& params = {});
-  // Hands out rows as they arrive, one result of one row each, so that memory stays small. An error of `on_row` ends it, and
-  // with it the connection, since asking the server to stop could wait for it without end.
+  // Hands out rows as they arrive, one result of one row each, so that memory stays small. An error
+  // of `on_row` ends it, and with it the connection, since asking the server to stop could wait for
+  // it without end.
   Result<void> each_row(const char* sql, const Params& params,
                         const std::function<Result<void>(const PgResult&)>& on_row);
 
-  // Sends statements without waiting between them; the first failure is returned and the rest are skipped by the server.
+  // Sends statements without waiting between them; the first failure is returned and the rest are
+  // skipped by the server.
   struct Statement {
     const char* sql;
     Params params;
@@ -181,7 +189,8 @@ class Transaction {
   static Result<Transaction> begin_reading(PgConnection& connection);
   // For a transaction whose BEGIN goes out with a pipeline.
   static Transaction adopt(PgConnection& connection) { return Transaction(connection); }
-  Transaction(Transaction&& other) noexcept : connection_(std::exchange(other.connection_, nullptr)) {}
+  Transaction(Transaction&& other) noexcept
+      : connection_(std::exchange(other.connection_, nullptr)) {}
   Transaction& operator=(Transaction&&) = delete;
   ~Transaction();
   // Where the answer is lost nobody knows whether it was done: the Problem says so.
@@ -199,10 +208,12 @@ void append_int4(std::string& row, std::int32_t value);  // field
 void append_row_start(std::string& row, std::int16_t fields);
 std::string copy_trailer();
 
-// What a failure of PostgreSQL means to our caller: connection → 503, 23xxx → 409, disk full → 507, bad text → 400 …
+// What a failure of PostgreSQL means to our caller: connection → 503, 23xxx → 409, disk full → 507,
+// bad text → 400 …
 Problem problem_of(std::string_view sqlstate, std::string_view message);
 Problem unavailable(std::string_view why);
-// True where trying the same again later can succeed (connection, resources, deadlocks), false where it never can.
+// True where trying the same again later can succeed (connection, resources, deadlocks), false
+// where it never can.
 bool is_transient(std::string_view sqlstate);
 
 // Refuses text that PostgreSQL cannot keep: invalid UTF-8 and U+0000.

@@ -28,10 +28,13 @@ std::string big_endian(T value) {
 }
 
 std::int64_t to_pg_time(Time time) {
-  return std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count() - kEpoch2000_us;
+  return std::chrono::duration_cast<std::chrono::microseconds>(time.time_since_epoch()).count() -
+         kEpoch2000_us;
 }
 
-std::string_view view_of(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+std::string_view view_of(Bytes bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 }  // namespace
 
@@ -114,7 +117,9 @@ Params& Params::integer(std::int64_t value) { return own(oid::kInt8, big_endian(
 Params& Params::optional_integer(std::optional<std::int64_t> value) {
   return value ? integer(*value) : null(oid::kInt8);
 }
-Params& Params::real(double value) { return own(oid::kFloat8, big_endian(std::bit_cast<std::int64_t>(value))); }
+Params& Params::real(double value) {
+  return own(oid::kFloat8, big_endian(std::bit_cast<std::int64_t>(value)));
+}
 Params& Params::boolean(bool value) { return own(oid::kBool, std::string(1, value ? '\1' : '\0')); }
 Params& Params::text(std::string_view value) { return own(oid::kText, std::string(value)); }
 Params& Params::optional_text(const std::optional<std::string>& value) {
@@ -129,13 +134,16 @@ Params& Params::bytes(Bytes value) {
   return *this;
 }
 Params& Params::uuid(const Uuid& value) {
-  return own(oid::kUuid, std::string(reinterpret_cast<const char*>(value.bytes.data()), value.bytes.size()));
+  return own(oid::kUuid,
+             std::string(reinterpret_cast<const char*>(value.bytes.data()), value.bytes.size()));
 }
 Params& Params::json(const nlohmann::json& value) { return own(oid::kJsonb, '\1' + value.dump()); }
 Params& Params::time(std::optional<Time> value) {
   return value ? own(oid::kTimestamptz, big_endian(to_pg_time(*value))) : null(oid::kTimestamptz);
 }
-Params& Params::array(const PgArray& value) { return own(array_of(value.element()), value.encode()); }
+Params& Params::array(const PgArray& value) {
+  return own(array_of(value.element()), value.encode());
+}
 
 std::int64_t PgResult::affected() const {
   const char* count = PQcmdTuples(result_.get());
@@ -151,8 +159,12 @@ std::int64_t PgResult::integer(int row, int column) const {
 double PgResult::real(int row, int column) const {
   return std::bit_cast<double>(read_big_endian(PQgetvalue(result_.get(), row, column), 8));
 }
-bool PgResult::boolean(int row, int column) const { return *PQgetvalue(result_.get(), row, column) != 0; }
-std::string PgResult::text(int row, int column) const { return std::string(view_of(bytes(row, column))); }
+bool PgResult::boolean(int row, int column) const {
+  return *PQgetvalue(result_.get(), row, column) != 0;
+}
+std::string PgResult::text(int row, int column) const {
+  return std::string(view_of(bytes(row, column)));
+}
 Bytes PgResult::bytes(int row, int column) const {
   return {reinterpret_cast<const std::uint8_t*>(PQgetvalue(result_.get(), row, column)),
           static_cast<std::size_t>(PQgetlength(result_.get(), row, column))};
@@ -165,11 +177,12 @@ Uuid PgResult::uuid(int row, int column) const {
 }
 nlohmann::json PgResult::json(int row, int column) const {
   if (null(row, column)) return nullptr;
-  return nlohmann::json::parse(view_of(bytes(row, column)).substr(1));  // after jsonb's version byte
+  // after jsonb's version byte
+  return nlohmann::json::parse(view_of(bytes(row, column)).substr(1));
 }
 Time PgResult::time(int row, int column) const {
-  return Time(
-      std::chrono::duration_cast<Time::duration>(std::chrono::microseconds(integer(row, column) + kEpoch2000_us)));
+  return Time(std::chrono::duration_cast<Time::duration>(
+      std::chrono::microseconds(integer(row, column) + kEpoch2000_us)));
 }
 std::vector<double> PgResult::reals(int row, int column) const {
   std::vector<double> out;
@@ -196,7 +209,8 @@ std::string copy_trailer() { return big_endian(std::int16_t{-1}); }
 
 Result<void> check_text(std::string_view text, const std::string& field) {
   const auto refuse = [&] {
-    return fail(400, "Text not storable", "`" + field + "` must be UTF-8 without the character U+0000.", field);
+    return fail(400, "Text not storable",
+                "`" + field + "` must be UTF-8 without the character U+0000.", field);
   };
   std::size_t i = 0;
   while (i < text.size()) {

@@ -9,8 +9,9 @@
 
 namespace strata::store {
 
-// Connections shared by threads. A caller waits for a free one, for `slot_for` at most (503); broken ones are replaced. When the
-// database is away, connecting is tried again for `kReconnectFor` (a restart takes about that long) before the Problem 503.
+// Connections shared by threads. A caller waits for a free one, for `slot_for` at most (503);
+// broken ones are replaced. When the database is away, connecting is tried again for
+// `kReconnectFor` (a restart takes about that long) before the Problem 503.
 class Pool {
  public:
   static constexpr std::chrono::milliseconds kReconnectFor{3000};
@@ -49,13 +50,15 @@ class Pool {
     }
   }
 
-  // Runs `work(connection)` in one transaction, committed when it succeeds; from the start again after a deadlock.
+  // Runs `work(connection)` in one transaction, committed when it succeeds; from the start again
+  // after a deadlock.
   template <class Work>
   auto write(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
     return write_within(limits_, std::forward<Work>(work));
   }
   template <class Work>
-  auto write_within(const PgLimits& limits, Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
+  auto write_within(const PgLimits& limits, Work&& work)
+      -> std::invoke_result_t<Work, PgConnection&> {
     using Outcome = std::invoke_result_t<Work, PgConnection&>;
     auto lease = acquire(limits);
     if (!lease) return tl::unexpected(lease.error());
@@ -67,7 +70,8 @@ class Pool {
         if ((**lease).take_deadlock() && tries_left > 0) continue;
         return result;
       }
-      if (auto committed = transaction->commit(); !committed) return tl::unexpected(committed.error());
+      if (auto committed = transaction->commit(); !committed)
+        return tl::unexpected(committed.error());
       return result;
     }
   }

@@ -15,8 +15,8 @@ Result<void> check(const Project& project) {
 
 // What is gone for ever keeps no project, though its content is not erased yet.
 Result<void> erase_models_of(PgConnection& connection, std::int64_t project_id) {
-  auto models =
-      connection.query("SELECT id FROM all_models WHERE project_id = $1 AND erasing", Params().integer(project_id));
+  auto models = connection.query("SELECT id FROM all_models WHERE project_id = $1 AND erasing",
+                                 Params().integer(project_id));
   if (!models) return tl::unexpected(models.error());
   for (int i = 0; i < models->rows(); ++i)
     if (auto gone = erase_model(connection, models->integer(i, 0)); !gone) return gone;
@@ -73,8 +73,9 @@ Result<std::size_t> Store::names_until(const NamedId& place, std::span<const Nam
 Result<std::string> Store::project_state(std::int64_t id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::string> {
     auto row = connection.query(
-#define STRATA_VERSIONS(parts) \
-  "coalesce((SELECT string_agg(concat_ws('.', p.id, p.version), ',' ORDER BY p.id) FROM " parts "), '')"
+#define STRATA_VERSIONS(parts)                                                                  \
+  "coalesce((SELECT string_agg(concat_ws('.', p.id, p.version), ',' ORDER BY p.id) FROM " parts \
+  "), '')"
         "SELECT concat_ws(';', " STRATA_VERSIONS("models p WHERE p.project_id = $1") ", "
         STRATA_VERSIONS("layers p JOIN models m ON m.id = p.model_id WHERE m.project_id = $1") ", "
         STRATA_VERSIONS("looks p JOIN models m ON m.id = p.model_id WHERE m.project_id = $1") ", "
@@ -118,7 +119,8 @@ Result<Project> Store::update_project(Project project, const FirstAnswer<Project
             .boolean(project.require_if_match));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) return read_project(*row, 0);
-    auto known = connection.query("SELECT 1 FROM projects WHERE id = $1", Params().integer(project.id));
+    auto known =
+        connection.query("SELECT 1 FROM projects WHERE id = $1", Params().integer(project.id));
     if (!known) return tl::unexpected(known.error());
     if (known->rows() == 0) return not_found("project", std::to_string(project.id));
     return stale("project");
@@ -136,7 +138,8 @@ Result<void> Store::delete_project(std::int64_t id, const FirstAnswer<>& answer)
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return not_found("project", std::to_string(id));
     if (row->text(0, 0) == "default")
-      return fail(409, "Conflict", "The project `default` stays: models without a project belong to it.");
+      return fail(409, "Conflict",
+                  "The project `default` stays: models without a project belong to it.");
     if (row->integer(0, 1) > 0)
       return fail(409, "Conflict",
                   "The project still has " + std::to_string(row->integer(0, 1)) +
@@ -147,7 +150,8 @@ Result<void> Store::delete_project(std::int64_t id, const FirstAnswer<>& answer)
                       " models. Restore them, or erase them there first.");
     if (row->integer(0, 2) > 0)
       return fail(409, "Conflict",
-                  "The project still has " + std::to_string(row->integer(0, 2)) + " tables. Delete them first.");
+                  "The project still has " + std::to_string(row->integer(0, 2)) +
+                      " tables. Delete them first.");
     if (auto rest = erase_models_of(connection, id); !rest) return rest;
     auto done = connection.query("DELETE FROM projects WHERE id = $1", Params().integer(id));
     return done ? Result<void>{} : tl::unexpected(done.error());

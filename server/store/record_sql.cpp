@@ -49,14 +49,16 @@ Kind kind_of(const Column& column) {
   }
 }
 
-// Part of a statement. A time is two: days since 1970 when it begins and, in `end`, its last moment.
+// Part of a statement. A time is two: days since 1970 when it begins and, in `end`, its last
+// moment.
 struct Sql {
   Kind kind = Kind::number;
   std::string text, end;
   const Column* column = nullptr;  // where it is nothing but that
 };
 
-// A value of a function of one or two numbers where it has one; these are computed once, whatever the function says of them.
+// A value of a function of one or two numbers where it has one; these are computed once, whatever
+// the function says of them.
 std::string of_one(const std::string& a, const std::string& value) {
   return "(SELECT " + value + " FROM (SELECT " + a + " AS a) q)";
 }
@@ -67,7 +69,11 @@ std::string of_two(const std::string& a, const std::string& b, const std::string
 class Writer {
  public:
   Writer(const OpenTable& open, PgConnection& connection, Params& params, const std::string& field)
-      : table_(open.table), seen_by_(open.seen_by), connection_(connection), params_(params), field_(field) {}
+      : table_(open.table),
+        seen_by_(open.seen_by),
+        connection_(connection),
+        params_(params),
+        field_(field) {}
 
   Result<std::string> write(const Expression& expression, Kind wanted) {
     const std::string sql = wanted == Kind::truth ? condition(expression) : number(expression);
@@ -118,7 +124,9 @@ class Writer {
 
   Sql column(const Expression& e) {
     // How a column of the row at hand is reached, by its name in the database.
-    std::function<std::string(const std::string&)> reach = [](const std::string& name) { return "t." + name; };
+    std::function<std::string(const std::string&)> reach = [](const std::string& name) {
+      return "t." + name;
+    };
     const Table* table = &table_;
     for (std::size_t step = 0; step + 1 < e.path.size(); ++step) {
       const Column* column = find_column(table->columns, e.path[step]);
@@ -129,8 +137,8 @@ class Writer {
       if (target == nullptr) return {};
       const std::string alias = "u" + std::to_string(++aliases_), key = reach(name_of(*column));
       reach = [alias, key, id = target->id](const std::string& name) {
-        return "(SELECT " + alias + "." + name + " FROM records.t" + std::to_string(id) + " " + alias + " WHERE " +
-               alias + ".key = " + key + ")";
+        return "(SELECT " + alias + "." + name + " FROM records.t" + std::to_string(id) + " " +
+               alias + " WHERE " + alias + ".key = " + key + ")";
       };
       table = target;
     }
@@ -141,12 +149,13 @@ class Writer {
   }
 
   Sql no_column(const Table& table, const Expression& e, std::size_t step) {
-    return refuse(table.name.substr(0, 100) + " has no column '" + e.path[step].substr(0, 100) + "'; it has " +
-                      some_columns(table),
+    return refuse(table.name.substr(0, 100) + " has no column '" + e.path[step].substr(0, 100) +
+                      "'; it has " + some_columns(table),
                   e);
   }
 
-  static Sql value_of(const Column& column, const std::function<std::string(const std::string&)>& reach) {
+  static Sql value_of(const Column& column,
+                      const std::function<std::string(const std::string&)>& reach) {
     const std::string value = reach(name_of(column));
     Sql sql{kind_of(column), value, {}, &column};
     switch (column.kind) {
@@ -162,8 +171,8 @@ class Writer {
         break;
       case ColumnKind::period: {
         const auto bound = [&](const std::string& which, const char* open) {
-          return "(CASE WHEN " + value + " IS NOT NULL THEN coalesce(" + reach(name_of(column) + which) +
-                 "::float8, '" + open + "') END)";
+          return "(CASE WHEN " + value + " IS NOT NULL THEN coalesce(" +
+                 reach(name_of(column) + which) + "::float8, '" + open + "') END)";
         };
         sql.text = bound("_first", "-Infinity");
         sql.end = "(" + bound("_last", "Infinity") + " + " + kToEndOfDay + ")";
@@ -191,7 +200,8 @@ class Writer {
   }
 
   static std::string wrong(const Expression& e, const Sql& sql, Kind wanted) {
-    const std::string what = e.is_column() ? "'" + e.path.back().substr(0, 100) + "' holds " : "These are ";
+    const std::string what =
+        e.is_column() ? "'" + e.path.back().substr(0, 100) + "' holds " : "These are ";
     std::string advice;
     if (sql.column && sql.column->kind == ColumnKind::term && wanted == Kind::text)
       advice = "; name a column of the record behind the key, as in " + sql.column->slug + ".code";
@@ -210,12 +220,13 @@ class Writer {
     if (const auto period = parse_edtf(e.text)) {
       constexpr double kOpen = std::numeric_limits<double>::infinity();
       sql.text = parameter(period->first_day ? static_cast<double>(*period->first_day) : -kOpen);
-      sql.end = "(" + parameter(period->last_day ? static_cast<double>(*period->last_day) : kOpen) + "::float8 + " +
-                kToEndOfDay + ")";
+      sql.end = "(" + parameter(period->last_day ? static_cast<double>(*period->last_day) : kOpen) +
+                "::float8 + " + kToEndOfDay + ")";
       return sql;
     }
     const auto moment = utc_timestamp(e.text);
-    if (!moment) return refuse("'" + e.text.substr(0, 100) + "' is no date; dates are written 2024-05-02", e);
+    if (!moment)
+      return refuse("'" + e.text.substr(0, 100) + "' is no date; dates are written 2024-05-02", e);
     sql.text = "(extract(epoch from " + parameter(*moment) + "::timestamptz)::float8 / 86400)";
     sql.end = sql.text;
     return sql;
@@ -225,14 +236,16 @@ class Writer {
 
   std::string number(const Expression& e) {
     switch (e.op) {
-      case Op::number: return std::isfinite(e.number) ? parameter(e.number) + "::float8" : "NULL::float8";
+      case Op::number:
+        return std::isfinite(e.number) ? parameter(e.number) + "::float8" : "NULL::float8";
       case Op::column: {
         const Sql sql = column(e);
         if (sql.kind != Kind::number) refuse(wrong(e, sql, Kind::number), e);
         return sql.text;
       }
       case Op::choose: {
-        const std::string when = condition(e.parts[0]), then = number(e.parts[1]), otherwise = number(e.parts[2]);
+        const std::string when = condition(e.parts[0]), then = number(e.parts[1]),
+                          otherwise = number(e.parts[2]);
         return of_one(when, "CASE WHEN a THEN " + then + " WHEN NOT a THEN " + otherwise + " END");
       }
       case Op::negate: return "(- " + number(e.parts[0]) + ")";
@@ -240,11 +253,15 @@ class Writer {
       case Op::add: return infix(e, "+");
       case Op::subtract: return infix(e, "-");
       case Op::multiply: return infix(e, "*");
-      case Op::divide: return "(" + number(e.parts[0]) + " / nullif(" + number(e.parts[1]) + ", 0))";
+      case Op::divide:
+        return "(" + number(e.parts[0]) + " / nullif(" + number(e.parts[1]) + ", 0))";
       case Op::remainder: return binary(e, "CASE WHEN b <> 0 THEN a - b * trunc(a / b) END");
-      case Op::whole_division: return "trunc(" + number(e.parts[0]) + " / nullif(" + number(e.parts[1]) + ", 0))";
+      case Op::whole_division:
+        return "trunc(" + number(e.parts[0]) + " / nullif(" + number(e.parts[1]) + ", 0))";
       case Op::power:
-        return binary(e, "CASE WHEN a > 0 OR (a = 0 AND b >= 0) OR (a < 0 AND b = trunc(b)) THEN power(a, b) END");
+        return binary(
+            e,
+            "CASE WHEN a > 0 OR (a = 0 AND b >= 0) OR (a < 0 AND b = trunc(b)) THEN power(a, b) END");
       case Op::least: return folded(e, "CASE WHEN a <= b THEN a WHEN b < a THEN b END");
       case Op::greatest: return folded(e, "CASE WHEN a >= b THEN a WHEN b > a THEN b END");
       case Op::square_root: return unary(e, "CASE WHEN a >= 0 THEN sqrt(a) END");
@@ -270,14 +287,17 @@ class Writer {
   std::string infix(const Expression& e, const char* sign) {
     return "(" + number(e.parts[0]) + " " + sign + " " + number(e.parts[1]) + ")";
   }
-  std::string unary(const Expression& e, const char* value) { return of_one(number(e.parts[0]), value); }
+  std::string unary(const Expression& e, const char* value) {
+    return of_one(number(e.parts[0]), value);
+  }
   std::string binary(const Expression& e, const char* value) {
     const std::string a = number(e.parts[0]);
     return of_two(a, number(e.parts[1]), value);
   }
   std::string folded(const Expression& e, const char* value) {
     std::string all = number(e.parts[0]);
-    for (std::size_t part = 1; part < e.parts.size(); ++part) all = of_two(all, number(e.parts[part]), value);
+    for (std::size_t part = 1; part < e.parts.size(); ++part)
+      all = of_two(all, number(e.parts[part]), value);
     return all;
   }
 
@@ -351,7 +371,7 @@ class Writer {
       return turned ? comparison_of_times(e.op, b, a) : comparison_of_times(e.op, a, b);
     }
     if (a.kind == Kind::keys || a.kind == Kind::truth || a.kind == Kind::marks)
-      refuse(wrong(first, a, Kind::number) + (a.kind == Kind::keys    ? ": ask a_contains(…, (key))"
+      refuse(wrong(first, a, Kind::number) + (a.kind == Kind::keys ? ": ask a_contains(…, (key))"
                                               : a.kind == Kind::marks ? ": ask whether it is null"
                                                                       : ""),
              first);
@@ -362,13 +382,16 @@ class Writer {
   }
 
   void check_choice(const Sql& column, const Expression& text) {
-    if (!column.column || column.column->kind != ColumnKind::enumeration || text.op != Op::text) return;
+    if (!column.column || column.column->kind != ColumnKind::enumeration || text.op != Op::text)
+      return;
     const auto& choices = column.column->choices;
     if (std::find(choices.begin(), choices.end(), text.text) != choices.end()) return;
     std::string known;
     for (const auto& choice : choices)
       if (known.size() < 300) known += (known.empty() ? "" : ", ") + choice.substr(0, 100);
-    refuse("'" + text.text.substr(0, 100) + "' is no choice of " + column.column->slug + "; there are " + known, text);
+    refuse("'" + text.text.substr(0, 100) + "' is no choice of " + column.column->slug +
+               "; there are " + known,
+           text);
   }
 
   // What lies before has ended, what lies after has not begun; up to and from it include it.
@@ -386,9 +409,11 @@ class Writer {
   std::string of_times(const Expression& e) {
     const Sql a = time(e.parts[0]), b = time(e.parts[1]);
     const auto within = [](const Sql& inner, const Sql& outer) {
-      return "(" + inner.text + " >= " + outer.text + " AND " + inner.end + " <= " + outer.end + ")";
+      return "(" + inner.text + " >= " + outer.text + " AND " + inner.end + " <= " + outer.end +
+             ")";
     };
-    const std::string meet = "(" + a.text + " <= " + b.end + " AND " + b.text + " <= " + a.end + ")";
+    const std::string meet =
+        "(" + a.text + " <= " + b.end + " AND " + b.text + " <= " + a.end + ")";
     switch (e.op) {
       case Op::before: return "(" + a.end + " < " + b.text + ")";
       case Op::after: return "(" + a.text + " > " + b.end + ")";
@@ -432,20 +457,21 @@ class Writer {
 
 }  // namespace
 
-Result<std::string> condition_sql(const Expression& condition, const OpenTable& open, PgConnection& connection,
-                                  Params& params, const std::string& field) {
+Result<std::string> condition_sql(const Expression& condition, const OpenTable& open,
+                                  PgConnection& connection, Params& params,
+                                  const std::string& field) {
   return Writer(open, connection, params, field).write(condition, Kind::truth);
 }
 
-Result<std::string> number_sql(const Expression& number, const OpenTable& open, PgConnection& connection,
-                               Params& params, const std::string& field) {
+Result<std::string> number_sql(const Expression& number, const OpenTable& open,
+                               PgConnection& connection, Params& params, const std::string& field) {
   return Writer(open, connection, params, field).write(number, Kind::number);
 }
 
 Problem unanswerable(const PgConnection& connection, Problem problem, const std::string& field) {
   if (!connection.sqlstate().starts_with("22")) return problem;
-  return {422, "Number out of range", "A number that this expression computes leaves the range of double precision.",
-          field};
+  return {422, "Number out of range",
+          "A number that this expression computes leaves the range of double precision.", field};
 }
 
 }  // namespace strata::store

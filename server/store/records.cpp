@@ -13,8 +13,9 @@ namespace strata::store {
 namespace {
 
 nlohmann::json keys_json(const std::vector<std::int64_t>& keys) {
-  return nlohmann::json(
-      std::vector(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(std::min(keys.size(), kMostRowProblems))));
+  return nlohmann::json(std::vector(
+      keys.begin(),
+      keys.begin() + static_cast<std::ptrdiff_t>(std::min(keys.size(), kMostRowProblems))));
 }
 
 // Whole numbers without a fraction, also of columns that may have one.
@@ -85,20 +86,23 @@ class Intake {
     const auto now = input.key ? now_.find(*input.key) : now_.end();
     const bool exists = now != now_.end();
     if (exists ? !asked_.may_change : !asked_.may_create)
-      return exists
-                 ? fail(409, "Record exists", "There is a record " + std::to_string(*input.key) + " already.", "key")
-                 : Result<std::pair<std::int64_t, Cells>>(not_found("record", std::to_string(input.key.value_or(0))));
+      return exists ? fail(409, "Record exists",
+                           "There is a record " + std::to_string(*input.key) + " already.", "key")
+                    : Result<std::pair<std::int64_t, Cells>>(
+                          not_found("record", std::to_string(input.key.value_or(0))));
     if (exists && input.version && *input.version != now->second.version) return stale("record");
     if (!exists && input.key && gone_.contains(*input.key))
       return fail(409, "Key used before",
-                  "Key " + std::to_string(*input.key) + " was a record's that is deleted. Keys are not given again.",
+                  "Key " + std::to_string(*input.key) +
+                      " was a record's that is deleted. Keys are not given again.",
                   "key");
     while (!input.key && named_.contains(next_key_)) ++next_key_;
     if (!input.key && next_key_ > kHighestKey)
       return fail(409, "No keys left", "All keys up to 4294967295 were given.", "key");
     const std::int64_t key = input.key ? *input.key : next_key_++;
     if (!index_of_.emplace(key, index).second)
-      return fail(422, "Record named twice", "Record " + std::to_string(key) + " stands here twice.", "key");
+      return fail(422, "Record named twice",
+                  "Record " + std::to_string(key) + " stands here twice.", "key");
     Cells cells;
     if (!exists) cells["exists"] = true;
     for (const auto& [id, value] : input.values)
@@ -108,12 +112,14 @@ class Intake {
     for (const Column& column : open_.table.columns) {
       const auto given = input.values.find(column.id);
       if (given == input.values.end() && exists) continue;
-      auto value = check_value(column, given == input.values.end() ? column.default_value : given->second,
-                               "values." + column.slug);
+      auto value =
+          check_value(column, given == input.values.end() ? column.default_value : given->second,
+                      "values." + column.slug);
       if (!value) return tl::unexpected(value.error());
       nlohmann::json held;
       if (exists)
-        if (const auto cell = now->second.values.find(column.id); cell != now->second.values.end()) held = cell->second;
+        if (const auto cell = now->second.values.find(column.id); cell != now->second.values.end())
+          held = cell->second;
       if (*value != held) cells[std::to_string(column.id)] = std::move(*value);
     }
     return std::pair(key, std::move(cells));
@@ -135,8 +141,8 @@ class Intake {
   std::vector<RowProblem> problems_;
 };
 
-Result<TableChange> write(PgConnection& connection, std::int64_t table_id, const WriteRecords& asked,
-                          const std::string& user) {
+Result<TableChange> write(PgConnection& connection, std::int64_t table_id,
+                          const WriteRecords& asked, const std::string& user) {
   auto open = lock_table(connection, table_id);
   if (!open) return tl::unexpected(open.error());
   Intake intake(connection, *open, asked);
@@ -153,12 +159,14 @@ Result<TableChange> write(PgConnection& connection, std::int64_t table_id, const
   return done;
 }
 
-// The rows after a sequence, with `open` as it was then; nothing where that is now. Refused: what has not happened yet.
+// The rows after a sequence, with `open` as it was then; nothing where that is now. Refused: what
+// has not happened yet.
 Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection, OpenTable& open,
                                                         std::optional<std::int64_t> at) {
   if (at && *at > open.table.sequence)
     return fail(422, "Not yet there",
-                "The newest sequence of this table is " + std::to_string(open.table.sequence) + ".", "at");
+                "The newest sequence of this table is " + std::to_string(open.table.sequence) + ".",
+                "at");
   if (!at || *at == open.table.sequence) return std::optional<std::vector<Record>>();
   auto rows = rows_at(connection, open, *at);
   if (!rows) return tl::unexpected(rows.error());
@@ -167,11 +175,13 @@ Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection
 
 }  // namespace
 
-Result<TableChange> Store::write_records(std::int64_t table_id, const WriteRecords& asked, const std::string& user,
+Result<TableChange> Store::write_records(std::int64_t table_id, const WriteRecords& asked,
+                                         const std::string& user,
                                          const FirstAnswer<TableChange>& answer) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   if (asked.records.size() > kMostRecordsAtOnce)
-    return fail(413, "Too many records", "At most " + std::to_string(kMostRecordsAtOnce) + " records go in one call.");
+    return fail(413, "Too many records",
+                "At most " + std::to_string(kMostRecordsAtOnce) + " records go in one call.");
   // What is only tried, and what has problems, is rolled back, and told all the same.
   std::optional<TableChange> told;
   auto done = impl_->change(
@@ -187,7 +197,8 @@ Result<TableChange> Store::write_records(std::int64_t table_id, const WriteRecor
   return done;
 }
 
-Result<TableChange> Store::delete_record(std::int64_t table_id, std::int64_t key, std::optional<std::int64_t> version,
+Result<TableChange> Store::delete_record(std::int64_t table_id, std::int64_t key,
+                                         std::optional<std::int64_t> version,
                                          const std::string& user, bool dry_run,
                                          const FirstAnswer<TableChange>& answer) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
@@ -199,12 +210,14 @@ Result<TableChange> Store::delete_record(std::int64_t table_id, std::int64_t key
     if (!rows) return tl::unexpected(rows.error());
     if (rows->empty()) return not_found("record", std::to_string(key));
     if (version && *version != rows->front().version) return stale("record");
-    TableEdit edit{user, "delete", {{"records", 1}, {"keys", nlohmann::json::array({key})}}, {}, {}};
+    TableEdit edit{
+        user, "delete", {{"records", 1}, {"keys", nlohmann::json::array({key})}}, {}, {}};
     Cells& cells = edit.records[key];
     cells["exists"] = false;
     for (const Column& column : open->all) cells[std::to_string(column.id)] = nullptr;
     auto change = apply_edit(connection, *open, std::move(edit));
-    if (change && !change->problems.empty()) return tl::unexpected(change->problems.front().problem);
+    if (change && !change->problems.empty())
+      return tl::unexpected(change->problems.front().problem);
     if (!change || !dry_run) return change;
     told = std::move(*change);
     return fail(409, "Not kept", "Nothing was written.");
@@ -213,8 +226,10 @@ Result<TableChange> Store::delete_record(std::int64_t table_id, std::int64_t key
   return done;
 }
 
-Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, Role seen_by, const Expression& expression,
-                                                     std::optional<std::int64_t> at, const std::string& field) {
+Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, Role seen_by,
+                                                     const Expression& expression,
+                                                     std::optional<std::int64_t> at,
+                                                     const std::string& field) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyNumber>> {
     auto transaction = Transaction::begin_reading(connection);
     if (!transaction) return tl::unexpected(transaction.error());
@@ -223,27 +238,31 @@ Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, Role
     auto past = rows_if_past(connection, *open, at);
     if (!past) return tl::unexpected(past.error());
     Params params;
-    auto sql = expression.is_condition() ? condition_sql(expression, *open, connection, params, field)
-                                         : number_sql(expression, *open, connection, params, field);
+    auto sql = expression.is_condition()
+                   ? condition_sql(expression, *open, connection, params, field)
+                   : number_sql(expression, *open, connection, params, field);
     if (!sql) return tl::unexpected(sql.error());
     auto numbers = load_numbers(connection, table_id, open->table.columns, *past,
-                                expression.is_condition() ? "(" + *sql + ")::integer" : *sql, std::move(params));
+                                expression.is_condition() ? "(" + *sql + ")::integer" : *sql,
+                                std::move(params));
     if (!numbers) return tl::unexpected(unanswerable(connection, numbers.error(), field));
     if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
     return numbers;
   });
 }
 
-Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, Role seen_by, const std::string& ref,
-                                                 const std::string& field) {
+Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, Role seen_by,
+                                                 const std::string& ref, const std::string& field) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyText>> {
     auto open = read_table(connection, table_id, seen_by);
     if (!open) return tl::unexpected(open.error());
     const Column* column = find_column(open->table.columns, ref);
     if (!column)
-      return fail(422, "No such column", "The table '" + open->table.name + "' has no column '" + ref + "'.", field);
+      return fail(422, "No such column",
+                  "The table '" + open->table.name + "' has no column '" + ref + "'.", field);
     if (holds_lists(column->kind))
-      return fail(422, "Column holds lists", "'" + column->name + "' may hold several values in one record.", field);
+      return fail(422, "Column holds lists",
+                  "'" + column->name + "' may hold several values in one record.", field);
     auto rows = load_all_rows(connection, table_id, {*column});
     if (!rows) return tl::unexpected(rows.error());
     std::vector<KeyText> texts;
@@ -256,8 +275,8 @@ Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, Role see
   });
 }
 
-Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, Role seen_by, std::int64_t model_id,
-                                          std::optional<std::int64_t> at) {
+Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, Role seen_by,
+                                          std::int64_t model_id, std::optional<std::int64_t> at) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyMark>> {
     auto transaction = Transaction::begin_reading(connection);
     if (!transaction) return tl::unexpected(transaction.error());
@@ -270,7 +289,8 @@ Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, Role seen_by, s
       if (holds_marks(column.kind)) columns.push_back(column);
     std::vector<KeyMark> found;
     if (columns.empty()) return found;
-    auto rows = *past ? Result<std::vector<Record>>(std::move(**past)) : load_all_rows(connection, table_id, columns);
+    auto rows = *past ? Result<std::vector<Record>>(std::move(**past))
+                      : load_all_rows(connection, table_id, columns);
     if (!rows) return tl::unexpected(rows.error());
     for (const Record& row : *rows)
       for (const Column& column : columns)
@@ -282,7 +302,8 @@ Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, Role seen_by, s
   });
 }
 
-Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by, const RecordQuery& query) {
+Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by,
+                                         const RecordQuery& query) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<RecordPage> {
     auto transaction = Transaction::begin_reading(connection);
     if (!transaction) return tl::unexpected(transaction.error());
@@ -293,7 +314,8 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by, co
     if (!past) return tl::unexpected(past.error());
     page.table = open->table;
     std::vector<RecordOrder> order;
-    auto collation = query.order.empty() ? Result<std::string>() : collation_of(connection, query.language);
+    auto collation =
+        query.order.empty() ? Result<std::string>() : collation_of(connection, query.language);
     if (!collation) return tl::unexpected(collation.error());
     for (const auto& [ref, descending] : query.order) {
       if (ref == "key") {
@@ -302,7 +324,8 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by, co
       }
       const Column* column = find_column(open->table.columns, ref);
       if (!column)
-        return fail(422, "No such column", "The table has no column `" + ref.substr(0, 100) + "`.", "sortby");
+        return fail(422, "No such column", "The table has no column `" + ref.substr(0, 100) + "`.",
+                    "sortby");
       order.push_back({column->id, descending, *collation});
       if (column->kind != ColumnKind::term) continue;
       auto keys = keys_in_order(connection, *column->target, seen_by, *collation);
@@ -329,8 +352,8 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by, co
         if (!sql) return tl::unexpected(sql.error());
         where = std::move(*sql);
       }
-      auto rows = load_page(connection, table_id, open->table.columns, *past, where, std::move(params), order,
-                            {query.limit, query.offset, query.after});
+      auto rows = load_page(connection, table_id, open->table.columns, *past, where,
+                            std::move(params), order, {query.limit, query.offset, query.after});
       if (!rows && rows.error().field == "after") return tl::unexpected(rows.error());
       if (!rows) return tl::unexpected(unanswerable(connection, rows.error(), "filter"));
       page.records = std::move(rows->rows);
@@ -342,8 +365,10 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by, co
   });
 }
 
-Result<std::vector<std::int64_t>> Store::missing_records(std::int64_t table_id, std::span<const std::int64_t> keys) {
-  return impl_->pool.read([&](PgConnection& connection) { return missing_rows(connection, table_id, keys); });
+Result<std::vector<std::int64_t>> Store::missing_records(std::int64_t table_id,
+                                                         std::span<const std::int64_t> keys) {
+  return impl_->pool.read(
+      [&](PgConnection& connection) { return missing_rows(connection, table_id, keys); });
 }
 
 Result<std::int64_t> Store::table_sequence_at(std::int64_t table_id, const std::string& utc) {
@@ -358,7 +383,8 @@ Result<std::int64_t> Store::table_sequence_at(std::int64_t table_id, const std::
   });
 }
 
-Result<std::int64_t> Store::table_sequence_when(std::int64_t table_id, std::int64_t model_id, std::int64_t sequence) {
+Result<std::int64_t> Store::table_sequence_when(std::int64_t table_id, std::int64_t model_id,
+                                                std::int64_t sequence) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
     auto row = connection.query(
         "SELECT coalesce(max(sequence), 0) FROM table_edits WHERE table_id = $1 AND "
@@ -369,8 +395,9 @@ Result<std::int64_t> Store::table_sequence_when(std::int64_t table_id, std::int6
   });
 }
 
-Result<Store::TableHistory> Store::table_history(std::int64_t table_id, Role seen_by, std::optional<std::int64_t> key,
-                                                 int limit, int offset, std::optional<std::int64_t> before) {
+Result<Store::TableHistory> Store::table_history(std::int64_t table_id, Role seen_by,
+                                                 std::optional<std::int64_t> key, int limit,
+                                                 int offset, std::optional<std::int64_t> before) {
   return impl_->pool.read([&](PgConnection& connection) {
     return read_history(connection, table_id, seen_by, key, limit, offset, before);
   });
@@ -388,7 +415,8 @@ Result<UndoPlan> Store::plan_table_undo(std::int64_t table_id, const std::string
 }
 
 Result<TableChange> Store::undo_table(std::int64_t table_id, const std::string& user, bool redo,
-                                      std::int64_t planned_at, const FirstAnswer<TableChange>& answer) {
+                                      std::int64_t planned_at,
+                                      const FirstAnswer<TableChange>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
     auto open = lock_table(connection, table_id);
     if (!open) return tl::unexpected(open.error());
@@ -400,15 +428,16 @@ Result<TableChange> Store::undo_table(std::int64_t table_id, const std::string& 
     if (!change) return change;
     if (!change->problems.empty()) {
       Problem problem = change->problems.front().problem;
-      return fail(409, redo ? "Cannot be redone" : "Cannot be undone", problem.detail, problem.field);
+      return fail(409, redo ? "Cannot be redone" : "Cannot be undone", problem.detail,
+                  problem.field);
     }
-    auto flipped =
-        connection.query("UPDATE table_edits SET in_force = $3, undone_by = $4 WHERE table_id = $1 AND sequence = $2",
-                         Params()
-                             .integer(table_id)
-                             .integer(undo->plan.edit)
-                             .boolean(redo)
-                             .optional_integer(redo ? std::nullopt : std::optional(sequence)));
+    auto flipped = connection.query(
+        "UPDATE table_edits SET in_force = $3, undone_by = $4 WHERE table_id = $1 AND sequence = $2",
+        Params()
+            .integer(table_id)
+            .integer(undo->plan.edit)
+            .boolean(redo)
+            .optional_integer(redo ? std::nullopt : std::optional(sequence)));
     if (!flipped) return tl::unexpected(flipped.error());
     return change;
   };

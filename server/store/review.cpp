@@ -2,7 +2,8 @@
 
 namespace strata::store {
 
-Result<ReviewQueue> Store::review_queue(std::int64_t layer_id, const std::optional<std::string>& user, int limit,
+Result<ReviewQueue> Store::review_queue(std::int64_t layer_id,
+                                        const std::optional<std::string>& user, int limit,
                                         int offset, std::int64_t after) {
   if (user)
     if (auto good = check_text(*user, "user"); !good) return tl::unexpected(good.error());
@@ -18,7 +19,8 @@ Result<ReviewQueue> Store::review_queue(std::int64_t layer_id, const std::option
       if (!user || *user == queue.people.back().user) queue.total += queue.people.back().strokes;
     }
     auto rows = connection.query(
-        // A stroke's id is its author's choice: two people's strokes are two. Records, which hold whole paths, are read of a page only.
+        // A stroke's id is its author's choice: two people's strokes are two. Records, which hold
+        // whole paths, are read of a page only.
         "SELECT w.stroke, w.first, w.last, w.user_name, e.op, w.begun, w.time, w.texels, w.area, e.record FROM "
         "(SELECT model_id, stroke, user_name, min(sequence) AS first, max(sequence) AS last, min(time) AS begun, "
         "max(time) AS time, sum((answer ->> 'texels_changed')::bigint)::bigint AS texels, "
@@ -34,14 +36,16 @@ Result<ReviewQueue> Store::review_queue(std::int64_t layer_id, const std::option
             .integer(after));
     if (!rows) return tl::unexpected(rows.error());
     for (int i = 0; i < rows->rows(); ++i)
-      queue.strokes.push_back({rows->uuid(i, 0), rows->integer(i, 1), rows->integer(i, 2), rows->text(i, 3),
-                               rows->text(i, 4), rows->time(i, 5), rows->time(i, 6),
-                               static_cast<std::uint64_t>(rows->integer(i, 7)), rows->real(i, 8), rows->json(i, 9)});
+      queue.strokes.push_back({rows->uuid(i, 0), rows->integer(i, 1), rows->integer(i, 2),
+                               rows->text(i, 3), rows->text(i, 4), rows->time(i, 5),
+                               rows->time(i, 6), static_cast<std::uint64_t>(rows->integer(i, 7)),
+                               rows->real(i, 8), rows->json(i, 9)});
     return queue;
   });
 }
 
-Result<std::vector<UnderReview>> Store::under_review(std::int64_t layer_id, Decision decision, const Reviewees& which) {
+Result<std::vector<UnderReview>> Store::under_review(std::int64_t layer_id, Decision decision,
+                                                     const Reviewees& which) {
   if (which.user)
     if (auto good = check_text(*which.user, "user"); !good) return tl::unexpected(good.error());
   PgArray named(oid::kInt8);
@@ -49,16 +53,20 @@ Result<std::vector<UnderReview>> Store::under_review(std::int64_t layer_id, Deci
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<UnderReview>> {
     const std::string sql =
         std::string("SELECT sequence, stroke, user_name FROM edits WHERE layer_id = $1 AND ") +
-        (decision == Decision::reopen ? "((review = 'accepted' AND in_force) OR review = 'rejected')"
-                                      : "review = 'pending' AND in_force") +
-        // With the batches of the same stroke that stand alike: of one that was decided in parts, one decision is meant.
+        (decision == Decision::reopen
+             ? "((review = 'accepted' AND in_force) OR review = 'rejected')"
+             : "review = 'pending' AND in_force") +
+        // With the batches of the same stroke that stand alike: of one that was decided in parts,
+        // one decision is meant.
         " AND ($2::text IS NULL OR user_name = $2) AND (cardinality($3) = 0 OR "
         "(stroke, user_name, coalesce(reviewed_by, 0)) IN (SELECT stroke, user_name, coalesce(reviewed_by, 0) "
         "FROM edits WHERE layer_id = $1 AND sequence = any($3))) ORDER BY sequence";
-    auto rows = connection.query(sql.c_str(), Params().integer(layer_id).optional_text(which.user).array(named));
+    auto rows = connection.query(sql.c_str(),
+                                 Params().integer(layer_id).optional_text(which.user).array(named));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<UnderReview> found;
-    for (int i = 0; i < rows->rows(); ++i) found.push_back({rows->integer(i, 0), rows->uuid(i, 1), rows->text(i, 2)});
+    for (int i = 0; i < rows->rows(); ++i)
+      found.push_back({rows->integer(i, 0), rows->uuid(i, 1), rows->text(i, 2)});
     return found;
   });
 }

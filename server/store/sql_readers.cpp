@@ -34,10 +34,12 @@ Result<std::string> password_in(const fs::path& file) {
   std::string password;
   std::ifstream(file) >> password;
   const auto is_plain = [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' ||
+           c == '_';
   };
   if (password.size() < 16 || !std::ranges::all_of(password, is_plain))
-    return trouble("holds no password of 16 letters, digits, - and _ or more. Remove it, and a new one is made.");
+    return trouble(
+        "holds no password of 16 letters, digits, - and _ or more. Remove it, and a new one is made.");
   return password;
 }
 
@@ -58,9 +60,10 @@ Result<void> admit_readers(const std::string& dsn, const fs::path& password_file
          " LOGIN NOSUPERUSER NOCREATEDB NOCREATEROLE NOINHERIT NOREPLICATION NOBYPASSRLS "
          "CONNECTION LIMIT 10 PASSWORD '" +
          *password + "'; ";
-  for (const char* setting : {"default_transaction_read_only = on", "statement_timeout = '30s'",
-                              "idle_in_transaction_session_timeout = '60s'", "idle_session_timeout = '1h'",
-                              "lock_timeout = '5s'", "temp_file_limit = '2GB'", "search_path = analysis"})
+  for (const char* setting :
+       {"default_transaction_read_only = on", "statement_timeout = '30s'",
+        "idle_in_transaction_session_timeout = '60s'", "idle_session_timeout = '1h'",
+        "lock_timeout = '5s'", "temp_file_limit = '2GB'", "search_path = analysis"})
     sql += "ALTER ROLE " + role + " SET " + setting + "; ";
   sql += "REVOKE ALL ON DATABASE strata FROM PUBLIC; GRANT CONNECT ON DATABASE strata TO " + role +
          "; "
@@ -72,7 +75,8 @@ Result<void> admit_readers(const std::string& dsn, const fs::path& password_file
          "; "
          "ALTER DEFAULT PRIVILEGES IN SCHEMA analysis GRANT SELECT ON TABLES TO " +
          role + "; ";
-  // Functions that everybody may call in a fresh database, and that keep something or hold others up.
+  // Functions that everybody may call in a fresh database, and that keep something or hold others
+  // up.
   sql +=
       "DO $$ DECLARE f regprocedure; BEGIN FOR f IN SELECT p.oid::regprocedure FROM pg_proc p "
       "WHERE p.pronamespace = 'pg_catalog'::regnamespace AND p.proname ~ '^(lo_|lowrite|loread|pg_(try_)?advisory_|pg_notify)' "

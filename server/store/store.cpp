@@ -10,7 +10,8 @@ namespace strata::store {
 Store::Store() = default;
 Store::~Store() = default;
 
-Result<std::unique_ptr<Store>> Store::open(StoreOptions options, const std::filesystem::path& migrations_dir) {
+Result<std::unique_ptr<Store>> Store::open(StoreOptions options,
+                                           const std::filesystem::path& migrations_dir) {
   auto migrations = read_migrations(migrations_dir);
   if (!migrations) return tl::unexpected(migrations.error());
   std::unique_ptr<Store> store(new Store);
@@ -21,7 +22,8 @@ Result<std::unique_ptr<Store>> Store::open(StoreOptions options, const std::file
   if (!encoding) return tl::unexpected(encoding.error());
   if (encoding->text(0, 0) != "UTF8")
     return fail(500, "Database not usable",
-                "The database's encoding is " + encoding->text(0, 0) + "; Strata needs one made with ENCODING 'UTF8'.");
+                "The database's encoding is " + encoding->text(0, 0) +
+                    "; Strata needs one made with ENCODING 'UTF8'.");
   auto version = migrate(*connection, *migrations);
   if (!version) return tl::unexpected(version.error());
   store->impl_->schema_version = *version;
@@ -38,14 +40,17 @@ Bin& Store::bin() { return impl_->bin; }
 
 Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {
-    auto row = connection.query("SELECT current_setting('server_version'), pg_database_size(current_database())");
+    auto row = connection.query(
+        "SELECT current_setting('server_version'), pg_database_size(current_database())");
     if (!row) return tl::unexpected(row.error());
-    return StoreInfo{row->text(0, 0), impl_->schema_version, static_cast<std::uint64_t>(row->integer(0, 1))};
+    return StoreInfo{row->text(0, 0), impl_->schema_version,
+                     static_cast<std::uint64_t>(row->integer(0, 1))};
   });
 }
 
 bool Store::ready() {
-  constexpr PgLimits kQuick{std::chrono::seconds(2), std::chrono::seconds(2), std::chrono::seconds(2)};
+  constexpr PgLimits kQuick{std::chrono::seconds(2), std::chrono::seconds(2),
+                            std::chrono::seconds(2)};
   const std::unique_lock lock(impl_->probe_mutex, std::try_to_lock);
   if (!lock) return impl_->was_ready;
   auto& probe = impl_->probe;
@@ -60,7 +65,9 @@ bool Store::ready() {
 
 Result<void> check_name(const std::string& name) {
   if (name.empty() || name.size() > kLongestName)
-    return fail(400, "Bad name", "`name` must have 1 to " + std::to_string(kLongestName) + " bytes of UTF-8.", "name");
+    return fail(400, "Bad name",
+                "`name` must have 1 to " + std::to_string(kLongestName) + " bytes of UTF-8.",
+                "name");
   return check_text(name, "name");
 }
 
@@ -102,9 +109,9 @@ std::string free_slug(const std::string& wished, const PgResult& taken) {
   return slug;
 }
 
-Result<PgResult> insert_with_slug(PgConnection& connection, const char* taken_sql, std::optional<std::int64_t> parent,
-                                  const std::string& wished,
-                                  const std::function<Result<PgResult>(const std::string&)>& insert) {
+Result<PgResult> insert_with_slug(
+    PgConnection& connection, const char* taken_sql, std::optional<std::int64_t> parent,
+    const std::string& wished, const std::function<Result<PgResult>(const std::string&)>& insert) {
   const std::string base = make_slug(wished);
   for (;;) {
     Params params;

@@ -16,18 +16,24 @@
 namespace strata::store {
 
 // In the transaction at hand; 409 where a call with this key was answered already.
-Result<void> insert_answer(PgConnection& connection, const std::string& key, const nlohmann::json& answer);
+Result<void> insert_answer(PgConnection& connection, const std::string& key,
+                           const nlohmann::json& answer);
 
 // In the transaction at hand: the job ended well, with that as its result.
 Result<void> finish_job(PgConnection& connection, std::int64_t job, nlohmann::json result);
 
-// In the transaction at hand: what it changes is told as this person's doing (db/migrations/000018_activity.sql). Empty: as nobody's.
+// In the transaction at hand: what it changes is told as this person's doing
+// (db/migrations/000018_activity.sql). Empty: as nobody's.
 Result<void> act_as(PgConnection& connection, const std::string& user);
 
-// Of somebody who is deleted, in the transaction at hand: $1 and $2 of the SQL are the name and the one that stands for it from now on.
-Result<void> rename_in_activity(PgConnection& connection, const std::string& name, const std::string& former);
-Result<void> rename_in_journal(PgConnection& connection, const std::string& name, const std::string& former);
-// Texts that may call them with @: in any case, as names are, and where no longer name and no address of a mail begins or ends there.
+// Of somebody who is deleted, in the transaction at hand: $1 and $2 of the SQL are the name and the
+// one that stands for it from now on.
+Result<void> rename_in_activity(PgConnection& connection, const std::string& name,
+                                const std::string& former);
+Result<void> rename_in_journal(PgConnection& connection, const std::string& name,
+                               const std::string& former);
+// Texts that may call them with @: in any case, as names are, and where no longer name and no
+// address of a mail begins or ends there.
 #define STRATA_CALLS_THEM(text) "position('@' || lower($1) IN lower(" text ")) > 0"
 #define STRATA_CALL_RENAMED(text, longest)                   \
   "left(regexp_replace(" text                                \
@@ -37,7 +43,8 @@ Result<void> rename_in_journal(PgConnection& connection, const std::string& name
 // In the transaction at hand: what is said of them holds until it is written.
 Result<Person> lock_person(PgConnection& connection, const std::string& name);
 Result<void> lock_project(PgConnection& connection, std::int64_t id);  // against its being deleted
-Result<void> join_groups(PgConnection& connection, std::int64_t person_id, const std::vector<std::int64_t>& groups);
+Result<void> join_groups(PgConnection& connection, std::int64_t person_id,
+                         const std::vector<std::int64_t>& groups);
 
 Result<void> check_project_role(Role role);  // 422: not one that is given in projects
 
@@ -45,9 +52,11 @@ template <class T>
 Result<void> keep(PgConnection& connection, const FirstAnswer<T>& answer, const Result<T>& effect) {
   if (answer.job != 0)
     if (auto done = finish_job(connection, answer.job, answer.make(*effect)); !done) return done;
-  return answer.key.empty() ? Result<void>{} : insert_answer(connection, answer.key, answer.make(*effect));
+  return answer.key.empty() ? Result<void>{}
+                            : insert_answer(connection, answer.key, answer.make(*effect));
 }
-inline Result<void> keep(PgConnection& connection, const FirstAnswer<>& answer, const Result<void>&) {
+inline Result<void> keep(PgConnection& connection, const FirstAnswer<>& answer,
+                         const Result<void>&) {
   return answer.key.empty() ? Result<void>{} : insert_answer(connection, answer.key, answer.make());
 }
 
@@ -60,14 +69,16 @@ auto change(Pool& pool, const Answer& answer, Work&& work, const PgLimits& limit
       return std::invoke_result_t<Work, PgConnection&>(tl::unexpected(named.error()));
     auto effect = work(connection);
     if (effect)
-      if (auto kept = keep(connection, answer, effect); !kept) effect = tl::unexpected(kept.error());
+      if (auto kept = keep(connection, answer, effect); !kept)
+        effect = tl::unexpected(kept.error());
     return effect;
   });
 }
 
 struct Store::Impl {
   Impl(StoreOptions given)
-      : options(std::move(given)), pool(options.dsn, options.connections, options.limits, options.slot_for) {}
+      : options(std::move(given)),
+        pool(options.dsn, options.connections, options.limits, options.slot_for) {}
   const StoreOptions options;
   Pool pool;
   Comments comments{pool};
@@ -100,11 +111,13 @@ PgArray visibilities_seen_by(Role role);
 inline constexpr std::size_t kLongestName = 255;
 
 inline tl::unexpected<Problem> not_found(std::string_view kind, const std::string& ref) {
-  return fail(404, "Not found", "There is no " + std::string(kind) + " `" + ref.substr(0, 100) + "`.");
+  return fail(404, "Not found",
+              "There is no " + std::string(kind) + " `" + ref.substr(0, 100) + "`.");
 }
 inline tl::unexpected<Problem> stale(std::string_view kind) {
   return fail(412, "Changed meanwhile",
-              "The " + std::string(kind) + " was changed since you read it. Read it again and repeat your change.",
+              "The " + std::string(kind) +
+                  " was changed since you read it. Read it again and repeat your change.",
               "version");
 }
 
@@ -114,17 +127,18 @@ Result<void> check_texts(std::initializer_list<std::pair<const std::string*, con
 // Refuses JSON whose strings PostgreSQL cannot keep.
 Result<void> check_json(const nlohmann::json& json, const std::string& field);
 
-// An id for a reference in digits; nothing for a slug, and 0 (no row has it) for digits beyond 64 bits.
+// An id for a reference in digits; nothing for a slug, and 0 (no row has it) for digits beyond 64
+// bits.
 std::optional<std::int64_t> id_of(const std::string& ref);
 
 // `wished`, or `wished-2`, `wished-3`… that `taken` (one text column) does not list.
 std::string free_slug(const std::string& wished, const PgResult& taken);
 
-// Inserts with a free slug. `taken_sql` lists the slugs in use that start with the wished one ($1 = like pattern, $2 = parent
-// if any); `insert` runs an INSERT … ON CONFLICT DO NOTHING RETURNING …: no row means that another one took the slug
-// meanwhile, and the next is tried.
-Result<PgResult> insert_with_slug(PgConnection& connection, const char* taken_sql, std::optional<std::int64_t> parent,
-                                  const std::string& wished,
-                                  const std::function<Result<PgResult>(const std::string&)>& insert);
+// Inserts with a free slug. `taken_sql` lists the slugs in use that start with the wished one ($1 =
+// like pattern, $2 = parent if any); `insert` runs an INSERT … ON CONFLICT DO NOTHING RETURNING …:
+// no row means that another one took the slug meanwhile, and the next is tried.
+Result<PgResult> insert_with_slug(
+    PgConnection& connection, const char* taken_sql, std::optional<std::int64_t> parent,
+    const std::string& wished, const std::function<Result<PgResult>(const std::string&)>& insert);
 
 }  // namespace strata::store

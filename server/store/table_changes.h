@@ -21,8 +21,8 @@ inline constexpr std::size_t kLongestUniqueText = 1000;     // bytes: what an in
 // What is asked of one record.
 struct RecordInput {
   std::optional<std::int64_t> key;  // none: a new record with the next key
-  std::map<std::int64_t, nlohmann::json>
-      values;                             // by column id; a new record gets the defaults of those that are not named
+  // by column id; a new record gets the defaults of those that are not named
+  std::map<std::int64_t, nlohmann::json> values;
   std::optional<std::int64_t> version{};  // of the record as it was read: otherwise it is 412
 };
 struct WriteRecords {

@@ -11,8 +11,8 @@ namespace {
 
 Cells cells_from(const nlohmann::json& json) { return json.get<Cells>(); }
 
-// The entry that undo takes: the person's newest in force. Redo: the one that the newest undo took, unless what the person did after
-// that undo is in force (as for layers, store/edits.cpp).
+// The entry that undo takes: the person's newest in force. Redo: the one that the newest undo took,
+// unless what the person did after that undo is in force (as for layers, store/edits.cpp).
 Result<std::optional<std::int64_t>> edit_to_flip(PgConnection& connection, std::int64_t table_id,
                                                  const std::string& user, bool redo) {
   auto row = connection.query(
@@ -29,9 +29,10 @@ Result<std::optional<std::int64_t>> edit_to_flip(PgConnection& connection, std::
 }
 
 // Resolves the given cells of records or columns, as if the edit were flipped.
-Result<std::map<std::int64_t, Cells>> resolve(PgConnection& connection, std::int64_t table_id, const char* subject,
-                                              const std::map<std::int64_t, std::set<std::string>>& names,
-                                              std::int64_t flipped, bool in_force) {
+Result<std::map<std::int64_t, Cells>> resolve(
+    PgConnection& connection, std::int64_t table_id, const char* subject,
+    const std::map<std::int64_t, std::set<std::string>>& names, std::int64_t flipped,
+    bool in_force) {
   std::map<std::int64_t, CellResolver> resolvers;
   PgArray ids(oid::kInt8);
   for (const auto& [id, wanted] : names) {
@@ -42,11 +43,13 @@ Result<std::map<std::int64_t, Cells>> resolve(PgConnection& connection, std::int
       "SELECT c.subject_id, c.sequence, e.writer, e.in_force, c.before, c.after FROM table_changes c "
       "JOIN table_edits e ON e.table_id = c.table_id AND e.sequence = c.sequence "
       "WHERE c.table_id = $1 AND c.subject = $2 AND c.subject_id = any($3) ORDER BY c.subject_id, c.sequence DESC",
-      Params().integer(table_id).text(subject).array(ids), [&](const PgResult& row) -> Result<void> {
+      Params().integer(table_id).text(subject).array(ids),
+      [&](const PgResult& row) -> Result<void> {
         CellResolver& resolver = resolvers.at(row.integer(0, 0));
         if (!resolver.is_open()) return {};
         const std::int64_t sequence = row.integer(0, 1);
-        resolver.add({sequence, row.boolean(0, 2), sequence == flipped ? in_force : row.boolean(0, 3),
+        resolver.add({sequence, row.boolean(0, 2),
+                      sequence == flipped ? in_force : row.boolean(0, 3),
                       cells_from(row.json(0, 4)), cells_from(row.json(0, 5))});
         return {};
       });
@@ -56,7 +59,8 @@ Result<std::map<std::int64_t, Cells>> resolve(PgConnection& connection, std::int
   return resolved;
 }
 
-Result<std::set<std::int64_t>> unseen_columns(PgConnection& connection, std::int64_t table_id, Role role) {
+Result<std::set<std::int64_t>> unseen_columns(PgConnection& connection, std::int64_t table_id,
+                                              Role role) {
   auto open = read_table(connection, table_id);
   if (!open) return tl::unexpected(open.error());
   std::set<std::int64_t> unseen;
@@ -69,9 +73,11 @@ void leave_out(TableEditRow& row, const std::set<std::int64_t>& columns) {
   if (columns.empty()) return;
   const auto names = [&](const char* member) {
     const auto named = row.record.find(member);
-    return named != row.record.end() && named->is_number_integer() && columns.contains(named->get<std::int64_t>());
+    return named != row.record.end() && named->is_number_integer() &&
+           columns.contains(named->get<std::int64_t>());
   };
-  if (row.record.is_object() && (names("column") || names("from"))) row.record = nlohmann::json::object();
+  if (row.record.is_object() && (names("column") || names("from")))
+    row.record = nlohmann::json::object();
   for (TableEditRow::Change& change : row.changes) {
     if (change.is_column) continue;
     for (const std::int64_t column : columns) {
@@ -80,14 +86,16 @@ void leave_out(TableEditRow& row, const std::set<std::int64_t>& columns) {
     }
   }
   const auto gone = std::erase_if(row.changes, [&](const TableEditRow::Change& change) {
-    return change.is_column ? columns.contains(change.id) : change.before.empty() && change.after.empty();
+    return change.is_column ? columns.contains(change.id)
+                            : change.before.empty() && change.after.empty();
   });
   row.total_changes -= static_cast<std::int64_t>(gone);
 }
 
 }  // namespace
 
-Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open, std::int64_t sequence) {
+Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
+                                    std::int64_t sequence) {
   auto rows = load_all_rows(connection, open.table.id, open.all);
   if (!rows) return tl::unexpected(rows.error());
   std::map<std::int64_t, Record> then;
@@ -140,9 +148,9 @@ Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open, s
   return past;
 }
 
-Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t table_id, Role seen_by,
-                                         std::optional<std::int64_t> key, int limit, int offset,
-                                         std::optional<std::int64_t> before) {
+Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t table_id,
+                                         Role seen_by, std::optional<std::int64_t> key, int limit,
+                                         int offset, std::optional<std::int64_t> before) {
   auto total = connection.query(
       "SELECT count(*) FROM table_edits e WHERE table_id = $1 AND ($2::bigint IS NULL OR EXISTS (SELECT 1 FROM table_changes c "
       "WHERE c.table_id = $1 AND c.subject = 'record' AND c.subject_id = $2 AND c.sequence = e.sequence))",
@@ -173,22 +181,28 @@ Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t 
     auto changes = connection.query(
         "SELECT subject = 'column', subject_id, before, after FROM table_changes WHERE table_id = $1 AND sequence = $2 "
         "AND ($3::bigint IS NULL OR (subject = 'record' AND subject_id = $3)) ORDER BY subject, subject_id LIMIT $4",
-        Params().integer(table_id).integer(row.sequence).optional_integer(key).integer(kMostToldChanges));
+        Params()
+            .integer(table_id)
+            .integer(row.sequence)
+            .optional_integer(key)
+            .integer(kMostToldChanges));
     if (!changes) return tl::unexpected(changes.error());
     for (int c = 0; c < changes->rows(); ++c)
-      row.changes.push_back({changes->boolean(c, 0), changes->integer(c, 1), cells_from(changes->json(c, 2)),
-                             cells_from(changes->json(c, 3))});
+      row.changes.push_back({changes->boolean(c, 0), changes->integer(c, 1),
+                             cells_from(changes->json(c, 2)), cells_from(changes->json(c, 3))});
     leave_out(row, *unseen);
     history.rows.push_back(std::move(row));
   }
   return history;
 }
 
-Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open, const std::string& user, bool redo) {
+Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
+                              const std::string& user, bool redo) {
   auto edit = edit_to_flip(connection, open.table.id, user, redo);
   if (!edit) return tl::unexpected(edit.error());
   if (!*edit)
-    return redo ? fail(409, "Nothing to redo", "Nothing of yours in this table is undone, or you changed it since.")
+    return redo ? fail(409, "Nothing to redo",
+                       "Nothing of yours in this table is undone, or you changed it since.")
                 : fail(409, "Nothing to undo", "Nothing of yours in this table is in force.");
   std::map<std::int64_t, std::set<std::string>> records, columns;
   auto written = connection.query(

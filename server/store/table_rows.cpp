@@ -38,7 +38,8 @@ const char* sql_type(ColumnKind kind) {
   }
 }
 
-// The value as columns keep it: PostgreSQL prints times in its own way, and whole numbers without a point.
+// The value as columns keep it: PostgreSQL prints times in its own way, and whole numbers without a
+// point.
 nlohmann::json value_of(const Column& column, const nlohmann::json& stored) {
   if (stored.is_null()) return stored;
   if (column.kind == ColumnKind::numeric) return stored.get<double>();
@@ -55,7 +56,8 @@ std::vector<Record> read_rows(const PgResult& rows, const std::vector<Column>& c
     Record record{rows.integer(i, 0), rows.integer(i, 1), {}};
     const nlohmann::json stored = rows.json(i, 2);
     for (const Column& column : columns)
-      if (const auto found = stored.find(column_name(column)); found != stored.end() && !found->is_null())
+      if (const auto found = stored.find(column_name(column));
+          found != stored.end() && !found->is_null())
         record.values[column.id] = value_of(column, *found);
     records.push_back(std::move(record));
   }
@@ -87,7 +89,8 @@ PgArray array_of(std::span<const std::int64_t> keys) {
   return array;
 }
 
-// One of the things by which rows are sorted, as SQL: of a row `t`, and of a value that the end of a page keeps as text.
+// One of the things by which rows are sorted, as SQL: of a row `t`, and of a value that the end of
+// a page keeps as text.
 struct SortKey {
   std::string value;                                               // that is kept
   std::string here;                                                // what is compared, of a row
@@ -99,32 +102,42 @@ struct SortKeys {
   std::string joins;          // behind FROM
 };
 
-// Texts are compared by as many characters, so that the end of a page stays short enough for an address.
+// Texts are compared by as many characters, so that the end of a page stays short enough for an
+// address.
 constexpr int kSortedCharacters = 120;
 
 SortKey plain_key(const std::string& value, const std::string& type, bool descending) {
-  return {value, value, [type](const std::string& parameter) { return parameter + "::" + type; }, descending};
+  return {value, value, [type](const std::string& parameter) { return parameter + "::" + type; },
+          descending};
 }
 
-SortKey text_key(const std::string& column, const std::string& before, const std::string& behind, bool descending) {
+SortKey text_key(const std::string& column, const std::string& before, const std::string& behind,
+                 bool descending) {
   const std::string value = "left(" + column + ", " + std::to_string(kSortedCharacters) + ")";
-  const auto compared = [before, behind](const std::string& text) { return before + text + behind; };
+  const auto compared = [before, behind](const std::string& text) {
+    return before + text + behind;
+  };
   return {value, compared(value), compared, descending};
 }
 
 // By the place among what terms name.
-void add_term_key(SortKeys& sort, const std::string& column, const RecordOrder& by, Params& params) {
+void add_term_key(SortKeys& sort, const std::string& column, const RecordOrder& by,
+                  Params& params) {
   params.array(array_of(*by.keys));
-  const std::string places = "unnest($" + std::to_string(params.count()) + "::bigint[]) WITH ORDINALITY AS ",
+  const std::string places = "unnest($" + std::to_string(params.count()) +
+                             "::bigint[]) WITH ORDINALITY AS ",
                     alias = "p" + std::to_string(params.count());
-  sort.joins += " LEFT JOIN " + places + alias + " (named, place) ON " + alias + ".named = " + column;
+  sort.joins +=
+      " LEFT JOIN " + places + alias + " (named, place) ON " + alias + ".named = " + column;
   const auto there = [places](const std::string& parameter) {
-    return "(SELECT place FROM " + places + "n (named, place) WHERE named = " + parameter + "::bigint)";
+    return "(SELECT place FROM " + places + "n (named, place) WHERE named = " + parameter +
+           "::bigint)";
   };
   sort.keys.push_back({column, alias + ".place", there, by.descending});
 }
 
-SortKeys sort_keys(const std::vector<Column>& columns, std::span<const RecordOrder> order, Params& params) {
+SortKeys sort_keys(const std::vector<Column>& columns, std::span<const RecordOrder> order,
+                   Params& params) {
   SortKeys sort;
   for (const RecordOrder& by : order) {
     if (by.column == 0) {
@@ -136,15 +149,18 @@ SortKeys sort_keys(const std::vector<Column>& columns, std::span<const RecordOrd
     const std::string name = "t." + column_name(*column), type(sql_type(column->kind));
     if (by.keys) add_term_key(sort, name, by, params);
     if (column->kind == ColumnKind::period) {
-      for (const char* day : {"_first", "_last"}) sort.keys.push_back(plain_key(name + day, "bigint", by.descending));
+      for (const char* day : {"_first", "_last"})
+        sort.keys.push_back(plain_key(name + day, "bigint", by.descending));
     } else if (type == "text") {
       const bool in_language = !by.collation.empty();
       sort.keys.push_back(text_key(name, in_language ? "(" : "lower(",
-                                   in_language ? " COLLATE \"" + by.collation + "\")" : ")", by.descending));
+                                   in_language ? " COLLATE \"" + by.collation + "\")" : ")",
+                                   by.descending));
       sort.keys.push_back(text_key(name, "(", " COLLATE \"C\")", by.descending));
     } else if (holds_lists(column->kind) || type == "jsonb") {
       sort.keys.push_back(
-          text_key(name + "::text", "(", " COLLATE \"C\")", by.descending));  // in any order, but always the same
+          // in any order, but always the same
+          text_key(name + "::text", "(", " COLLATE \"C\")", by.descending));
     } else {
       sort.keys.push_back(plain_key(name, type, by.descending));
     }
@@ -156,7 +172,8 @@ SortKeys sort_keys(const std::vector<Column>& columns, std::span<const RecordOrd
 std::string order_by(const std::vector<SortKey>& keys) {
   std::string sql;
   for (const SortKey& key : keys)
-    sql += (sql.empty() ? " ORDER BY " : ", ") + key.here + (key.descending ? " DESC" : " ASC") + " NULLS LAST";
+    sql += (sql.empty() ? " ORDER BY " : ", ") + key.here + (key.descending ? " DESC" : " ASC") +
+           " NULLS LAST";
   return sql;
 }
 
@@ -169,8 +186,10 @@ std::string place_of_row(const std::vector<SortKey>& keys) {
   return "to_jsonb(ARRAY[" + sql + "])";
 }
 
-// Whether a row stands behind a place, by the keys in turn; what has no value stands behind all that has one.
-Result<std::string> stands_behind(const std::vector<SortKey>& keys, const nlohmann::json& place, Params& params) {
+// Whether a row stands behind a place, by the keys in turn; what has no value stands behind all
+// that has one.
+Result<std::string> stands_behind(const std::vector<SortKey>& keys, const nlohmann::json& place,
+                                  Params& params) {
   std::string sql, equal_so_far = "true";
   std::size_t next = 0;
   for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -180,12 +199,15 @@ Result<std::string> stands_behind(const std::vector<SortKey>& keys, const nlohma
       const auto& value = place[next++];
       if (!value.is_string() && !value.is_null()) return wrong_place();
       if (value.is_string())
-        if (auto good = check_text(value.get_ref<const std::string&>(), "after"); !good) return wrong_place();
-      params.optional_text(value.is_null() ? std::nullopt : std::optional(value.get<std::string>()));
+        if (auto good = check_text(value.get_ref<const std::string&>(), "after"); !good)
+          return wrong_place();
+      params.optional_text(value.is_null() ? std::nullopt
+                                           : std::optional(value.get<std::string>()));
     }
     const std::string there = key.there("$" + std::to_string(params.count())), &here = key.here;
-    sql += (sql.empty() ? "" : " OR ") + ("(" + equal_so_far) + " AND " + there + " IS NOT NULL AND (" + here +
-           " IS NULL OR " + here + (key.descending ? " < " : " > ") + there + "))";
+    sql += (sql.empty() ? "" : " OR ") + ("(" + equal_so_far) + " AND " + there +
+           " IS NOT NULL AND (" + here + " IS NULL OR " + here + (key.descending ? " < " : " > ") +
+           there + "))";
     equal_so_far += " AND " + here + " IS NOT DISTINCT FROM " + there;
   }
   if (next != place.size()) return wrong_place();
@@ -197,8 +219,8 @@ std::string from_rows(std::int64_t table_id, const std::vector<Column>& columns,
                       const std::optional<std::vector<Record>>& past, Params& params) {
   if (!past) return " FROM " + table_name(table_id) + " t";
   params.json(rows_json(columns, *past));
-  return " FROM jsonb_populate_recordset(NULL::" + table_name(table_id) + ", $" + std::to_string(params.count()) +
-         ") t";
+  return " FROM jsonb_populate_recordset(NULL::" + table_name(table_id) + ", $" +
+         std::to_string(params.count()) + ") t";
 }
 
 Result<void> run(PgConnection& connection, const std::string& sql) {
@@ -214,53 +236,63 @@ Result<void> make_way(PgConnection& connection, std::int64_t table_id) {
 }  // namespace
 
 Result<void> make_rows_table(PgConnection& connection, std::int64_t table_id) {
-  return run(connection, "CREATE TABLE " + table_name(table_id) + " (key bigint PRIMARY KEY CHECK (key BETWEEN 0 AND " +
+  return run(connection, "CREATE TABLE " + table_name(table_id) +
+                             " (key bigint PRIMARY KEY CHECK (key BETWEEN 0 AND " +
                              std::to_string(kHighestKey) + "), version bigint NOT NULL)");
 }
 
 Result<void> drop_rows_table(PgConnection& connection, std::int64_t table_id) {
   if (auto free = make_way(connection, table_id); !free) return free;
-  return run(connection, "DROP TABLE " + table_name(table_id) + " CASCADE");  // with its view (db/migrations/000011)
+  // with its view (db/migrations/000011)
+  return run(connection, "DROP TABLE " + table_name(table_id) + " CASCADE");
 }
 
-Result<void> add_rows_column(PgConnection& connection, std::int64_t table_id, const Column& column) {
+Result<void> add_rows_column(PgConnection& connection, std::int64_t table_id,
+                             const Column& column) {
   const std::string name = column_name(column);
   if (auto free = make_way(connection, table_id); !free) return free;
-  std::string sql = "ALTER TABLE " + table_name(table_id) + " ADD COLUMN " + name + " " + sql_type(column.kind);
+  std::string sql =
+      "ALTER TABLE " + table_name(table_id) + " ADD COLUMN " + name + " " + sql_type(column.kind);
   if (column.kind == ColumnKind::period)
     sql += ", ADD COLUMN " + name + "_first bigint, ADD COLUMN " + name + "_last bigint";
   return run(connection, sql);
 }
 
-Result<void> make_unique_index(PgConnection& connection, std::int64_t table_id, const Column& column) {
-  return run(connection, "CREATE UNIQUE INDEX IF NOT EXISTS " + index_name(table_id, column) + " ON " +
-                             table_name(table_id) + " (" + column_name(column) + ")");
+Result<void> make_unique_index(PgConnection& connection, std::int64_t table_id,
+                               const Column& column) {
+  return run(connection, "CREATE UNIQUE INDEX IF NOT EXISTS " + index_name(table_id, column) +
+                             " ON " + table_name(table_id) + " (" + column_name(column) + ")");
 }
 
-Result<void> drop_unique_index(PgConnection& connection, std::int64_t table_id, const Column& column) {
+Result<void> drop_unique_index(PgConnection& connection, std::int64_t table_id,
+                               const Column& column) {
   return run(connection, "DROP INDEX IF EXISTS records." + index_name(table_id, column));
 }
 
 Result<std::vector<Record>> load_rows(PgConnection& connection, std::int64_t table_id,
-                                      const std::vector<Column>& columns, std::span<const std::int64_t> keys) {
-  auto rows = connection.query_once(
-      "SELECT key, version, to_jsonb(t) FROM " + table_name(table_id) + " t WHERE key = any($1) ORDER BY key",
-      Params().array(array_of(keys)));
+                                      const std::vector<Column>& columns,
+                                      std::span<const std::int64_t> keys) {
+  auto rows =
+      connection.query_once("SELECT key, version, to_jsonb(t) FROM " + table_name(table_id) +
+                                " t WHERE key = any($1) ORDER BY key",
+                            Params().array(array_of(keys)));
   if (!rows) return tl::unexpected(rows.error());
   return read_rows(*rows, columns);
 }
 
 Result<std::vector<Record>> load_all_rows(PgConnection& connection, std::int64_t table_id,
                                           const std::vector<Column>& columns) {
-  auto rows =
-      connection.query_once("SELECT key, version, to_jsonb(t) FROM " + table_name(table_id) + " t ORDER BY key");
+  auto rows = connection.query_once("SELECT key, version, to_jsonb(t) FROM " +
+                                    table_name(table_id) + " t ORDER BY key");
   if (!rows) return tl::unexpected(rows.error());
   return read_rows(*rows, columns);
 }
 
-Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id, const std::vector<Column>& columns,
-                           const std::optional<std::vector<Record>>& past, const std::string& where, Params params,
-                           std::span<const RecordOrder> order, const RowsPart& part) {
+Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id,
+                           const std::vector<Column>& columns,
+                           const std::optional<std::vector<Record>>& past, const std::string& where,
+                           Params params, std::span<const RecordOrder> order,
+                           const RowsPart& part) {
   const std::string from = from_rows(table_id, columns, past, params);
   std::string only = where.empty() ? "" : " WHERE (" + where + ")";
   RowsPage page;
@@ -273,12 +305,14 @@ Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id, cons
     if (!behind) return tl::unexpected(behind.error());
     only += (only.empty() ? " WHERE " : " AND ") + *behind;
   }
-  params.integer(part.limit + 1).integer(part.offset);  // one more tells whether there is a next page
+  // one more tells whether there is a next page
+  params.integer(part.limit + 1).integer(part.offset);
   const int count = params.count();
-  auto rows = connection.query_once("SELECT key, version, to_jsonb(t), " + place_of_row(keys) + from + joins + only +
-                                        order_by(keys) + " LIMIT $" + std::to_string(count - 1) + " OFFSET $" +
-                                        std::to_string(count),
-                                    params);
+  auto rows =
+      connection.query_once("SELECT key, version, to_jsonb(t), " + place_of_row(keys) + from +
+                                joins + only + order_by(keys) + " LIMIT $" +
+                                std::to_string(count - 1) + " OFFSET $" + std::to_string(count),
+                            params);
   // Of the values only those in the place are from outside and no texts of a condition.
   if (!rows && part.after && connection.sqlstate().starts_with("22")) return wrong_place();
   if (!rows) return tl::unexpected(rows.error());
@@ -309,9 +343,11 @@ Result<std::string> collation_of(PgConnection& connection, const std::string& la
   return row->rows() == 0 ? std::string() : row->text(0, 0);
 }
 
-Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::int64_t table_id, Role seen_by,
-                                                const std::string& collation, int depth) {
-  constexpr int kDeepest = 3;  // a table may be called by the records of another, and so on, round in circles
+Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::int64_t table_id,
+                                                Role seen_by, const std::string& collation,
+                                                int depth) {
+  // a table may be called by the records of another, and so on, round in circles
+  constexpr int kDeepest = 3;
   auto open = read_table(connection, table_id, seen_by);
   if (!open) return tl::unexpected(open.error());
   std::vector<RecordOrder> order;
@@ -319,13 +355,15 @@ Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::i
   if (const Column* title = name_column(open->table); !terms && title) {
     order.push_back({title->id, false, collation});
     if (title->kind == ColumnKind::term) {
-      auto keys = depth == kDeepest ? Result<std::vector<std::int64_t>>(std::vector<std::int64_t>())
-                                    : keys_in_order(connection, *title->target, seen_by, collation, depth + 1);
+      auto keys = depth == kDeepest
+                      ? Result<std::vector<std::int64_t>>(std::vector<std::int64_t>())
+                      : keys_in_order(connection, *title->target, seen_by, collation, depth + 1);
       if (!keys) return tl::unexpected(keys.error());
       order.back().keys = std::move(*keys);
     }
   }
-  auto page = load_page(connection, table_id, open->table.columns, {}, {}, Params(), order, {kMostRecords});
+  auto page =
+      load_page(connection, table_id, open->table.columns, {}, {}, Params(), order, {kMostRecords});
   if (!page) return tl::unexpected(page.error());
   std::vector<std::int64_t> keys;
   if (terms)
@@ -337,12 +375,12 @@ Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::i
 
 Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, std::int64_t table_id,
                                             const std::vector<Column>& columns,
-                                            const std::optional<std::vector<Record>>& past, const std::string& number,
-                                            Params params) {
+                                            const std::optional<std::vector<Record>>& past,
+                                            const std::string& number, Params params) {
   const std::string from = from_rows(table_id, columns, past, params);
-  auto rows = connection.query_once(
-      "SELECT key, value FROM (SELECT key, (" + number + ")::float8 AS value" + from + ") n WHERE value IS NOT NULL",
-      params);
+  auto rows = connection.query_once("SELECT key, value FROM (SELECT key, (" + number +
+                                        ")::float8 AS value" + from + ") n WHERE value IS NOT NULL",
+                                    params);
   if (!rows) return tl::unexpected(rows.error());
   std::vector<KeyNumber> numbers;
   numbers.reserve(static_cast<std::size_t>(rows->rows()));
@@ -351,27 +389,28 @@ Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, std::int64
   return numbers;
 }
 
-Result<void> delete_rows(PgConnection& connection, std::int64_t table_id, std::span<const std::int64_t> keys) {
+Result<void> delete_rows(PgConnection& connection, std::int64_t table_id,
+                         std::span<const std::int64_t> keys) {
   auto done = connection.query_once("DELETE FROM " + table_name(table_id) + " WHERE key = any($1)",
                                     Params().array(array_of(keys)));
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
 
-Result<void> insert_rows(PgConnection& connection, std::int64_t table_id, const std::vector<Column>& columns,
-                         std::span<const Record> rows) {
+Result<void> insert_rows(PgConnection& connection, std::int64_t table_id,
+                         const std::vector<Column>& columns, std::span<const Record> rows) {
   const std::string name = table_name(table_id);
   for (std::size_t begin = 0; begin < rows.size(); begin += kRowsAtOnce) {
     const auto part = rows.subspan(begin, std::min(kRowsAtOnce, rows.size() - begin));
-    auto done =
-        connection.query_once("INSERT INTO " + name + " SELECT * FROM jsonb_populate_recordset(NULL::" + name + ", $1)",
-                              Params().json(rows_json(columns, part)));
+    auto done = connection.query_once(
+        "INSERT INTO " + name + " SELECT * FROM jsonb_populate_recordset(NULL::" + name + ", $1)",
+        Params().json(rows_json(columns, part)));
     if (!done) return tl::unexpected(done.error());
   }
   return {};
 }
 
-Result<std::optional<Taken>> taken_value(PgConnection& connection, std::int64_t table_id, const Column& column,
-                                         std::span<const Record> rows) {
+Result<std::optional<Taken>> taken_value(PgConnection& connection, std::int64_t table_id,
+                                         const Column& column, std::span<const Record> rows) {
   const std::string name = table_name(table_id), of_column = column_name(column);
   std::map<std::string, std::int64_t> met;
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -381,9 +420,10 @@ Result<std::optional<Taken>> taken_value(PgConnection& connection, std::int64_t 
     if (!is_first) return std::optional(Taken{i, first->second, true});
   }
   if (met.empty()) return std::optional<Taken>();
-  auto row = connection.query_once("SELECT i.key, t.key FROM jsonb_populate_recordset(NULL::" + name + ", $1) i JOIN " +
-                                       name + " t ON t." + of_column + " = i." + of_column + " LIMIT 1",
-                                   Params().json(rows_json({column}, rows)));
+  auto row = connection.query_once(
+      "SELECT i.key, t.key FROM jsonb_populate_recordset(NULL::" + name + ", $1) i JOIN " + name +
+          " t ON t." + of_column + " = i." + of_column + " LIMIT 1",
+      Params().json(rows_json({column}, rows)));
   if (!row) return tl::unexpected(row.error());
   if (row->rows() == 0) return std::optional<Taken>();
   std::size_t at = 0;
@@ -391,11 +431,13 @@ Result<std::optional<Taken>> taken_value(PgConnection& connection, std::int64_t 
   return std::optional(Taken{at, row->integer(0, 1)});
 }
 
-Result<std::optional<std::pair<std::int64_t, std::int64_t>>> twins(PgConnection& connection, std::int64_t table_id,
+Result<std::optional<std::pair<std::int64_t, std::int64_t>>> twins(PgConnection& connection,
+                                                                   std::int64_t table_id,
                                                                    const Column& column) {
   const std::string of_column = column_name(column);
-  auto row = connection.query_once("SELECT min(key), max(key) FROM " + table_name(table_id) + " WHERE " + of_column +
-                                   " IS NOT NULL GROUP BY " + of_column + " HAVING count(*) > 1 LIMIT 1");
+  auto row = connection.query_once("SELECT min(key), max(key) FROM " + table_name(table_id) +
+                                   " WHERE " + of_column + " IS NOT NULL GROUP BY " + of_column +
+                                   " HAVING count(*) > 1 LIMIT 1");
   if (!row) return tl::unexpected(row.error());
   if (row->rows() == 0) return std::optional<std::pair<std::int64_t, std::int64_t>>();
   return std::optional(std::pair(row->integer(0, 0), row->integer(0, 1)));
@@ -403,34 +445,36 @@ Result<std::optional<std::pair<std::int64_t, std::int64_t>>> twins(PgConnection&
 
 Result<std::vector<std::int64_t>> missing_rows(PgConnection& connection, std::int64_t table_id,
                                                std::span<const std::int64_t> keys) {
-  auto rows = connection.query_once("SELECT DISTINCT k FROM unnest($1::bigint[]) k WHERE NOT EXISTS (SELECT 1 FROM " +
-                                        table_name(table_id) + " t WHERE t.key = k) ORDER BY k",
-                                    Params().array(array_of(keys)));
+  auto rows = connection.query_once(
+      "SELECT DISTINCT k FROM unnest($1::bigint[]) k WHERE NOT EXISTS (SELECT 1 FROM " +
+          table_name(table_id) + " t WHERE t.key = k) ORDER BY k",
+      Params().array(array_of(keys)));
   if (!rows) return tl::unexpected(rows.error());
   std::vector<std::int64_t> missing;
   for (int i = 0; i < rows->rows(); ++i) missing.push_back(rows->integer(i, 0));
   return missing;
 }
 
-Result<std::optional<std::pair<std::int64_t, std::int64_t>>> row_naming(PgConnection& connection, std::int64_t table_id,
-                                                                        const Column& column,
-                                                                        std::span<const std::int64_t> keys) {
+Result<std::optional<std::pair<std::int64_t, std::int64_t>>> row_naming(
+    PgConnection& connection, std::int64_t table_id, const Column& column,
+    std::span<const std::int64_t> keys) {
   const std::string name = column_name(column);
-  const std::string sql =
-      column.kind == ColumnKind::term
-          ? "SELECT key, " + name + " FROM " + table_name(table_id) + " WHERE " + name + " = any($1) LIMIT 1"
-          : "SELECT key, k FROM " + table_name(table_id) + ", unnest(" + name + ") k WHERE k = any($1) LIMIT 1";
+  const std::string sql = column.kind == ColumnKind::term
+                              ? "SELECT key, " + name + " FROM " + table_name(table_id) +
+                                    " WHERE " + name + " = any($1) LIMIT 1"
+                              : "SELECT key, k FROM " + table_name(table_id) + ", unnest(" + name +
+                                    ") k WHERE k = any($1) LIMIT 1";
   auto row = connection.query_once(sql, Params().array(array_of(keys)));
   if (!row) return tl::unexpected(row.error());
   if (row->rows() == 0) return std::optional<std::pair<std::int64_t, std::int64_t>>();
   return std::optional(std::pair(row->integer(0, 0), row->integer(0, 1)));
 }
 
-Result<std::vector<std::int64_t>> rows_holding(PgConnection& connection, std::int64_t table_id, const Column& column,
-                                               std::int64_t attachment) {
-  auto rows = connection.query_once(
-      "SELECT key FROM " + table_name(table_id) + " WHERE $1 = any(" + column_name(column) + ") ORDER BY key",
-      Params().integer(attachment));
+Result<std::vector<std::int64_t>> rows_holding(PgConnection& connection, std::int64_t table_id,
+                                               const Column& column, std::int64_t attachment) {
+  auto rows = connection.query_once("SELECT key FROM " + table_name(table_id) + " WHERE $1 = any(" +
+                                        column_name(column) + ") ORDER BY key",
+                                    Params().integer(attachment));
   if (!rows) return tl::unexpected(rows.error());
   std::vector<std::int64_t> keys;
   for (int i = 0; i < rows->rows(); ++i) keys.push_back(rows->integer(i, 0));

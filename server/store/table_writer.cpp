@@ -15,7 +15,9 @@ namespace {
 constexpr const char* kExists = "exists";
 constexpr const char* kHidden = "hidden";
 
-Labels labels_of(const nlohmann::json& json) { return json.is_object() ? json.get<Labels>() : Labels(); }
+Labels labels_of(const nlohmann::json& json) {
+  return json.is_object() ? json.get<Labels>() : Labels();
+}
 
 template <class T>
 std::optional<T> optional_of(const nlohmann::json& json) {
@@ -55,7 +57,8 @@ void set_properties(Column& column, const nlohmann::json& properties) {
 void show_columns(OpenTable& open) {
   open.table.columns.clear();
   for (const Column& column : open.all)
-    if (!column.hidden && sees(open.seen_by, column.visibility)) open.table.columns.push_back(column);
+    if (!column.hidden && sees(open.seen_by, column.visibility))
+      open.table.columns.push_back(column);
   std::stable_sort(open.table.columns.begin(), open.table.columns.end(),
                    [](const Column& a, const Column& b) { return a.order < b.order; });
 }
@@ -117,7 +120,8 @@ class Writer {
         const Column& column = *column_by_id(open_, id);
         if (column.hidden != hidden) continue;
         if (column.hidden || !column.unique)
-          if (auto gone = drop_unique_index(connection_, open_.table.id, column); !gone) return gone;
+          if (auto gone = drop_unique_index(connection_, open_.table.id, column); !gone)
+            return gone;
         if (auto set = update_column(column); !set) return set;
       }
     change_.columns_changed = !edit_.columns.empty();
@@ -130,10 +134,12 @@ class Writer {
         Params().integer(open_.table.id).integer(column.id).text(column.slug));
     if (!slugs) return tl::unexpected(slugs.error());
     if (!column.hidden && slugs->rows() > 0)
-      return fail(409, "Slug taken", "The table has another column `" + column.slug + "`. Rename that one first.",
+      return fail(409, "Slug taken",
+                  "The table has another column `" + column.slug + "`. Rename that one first.",
                   "slug");
-    auto done = connection_.query("UPDATE record_columns SET properties = $2, hidden = $3 WHERE id = $1",
-                                  Params().integer(column.id).json(properties_of(column)).boolean(column.hidden));
+    auto done = connection_.query(
+        "UPDATE record_columns SET properties = $2, hidden = $3 WHERE id = $1",
+        Params().integer(column.id).json(properties_of(column)).boolean(column.hidden));
     return done ? Result<void>{} : tl::unexpected(done.error());
   }
 
@@ -159,7 +165,8 @@ class Writer {
       if (exists) {
         Record record{key, sequence_, {}};
         for (const Column& column : open_.all)
-          if (const auto cell = cells.find(std::to_string(column.id)); cell != cells.end() && !cell->second.is_null())
+          if (const auto cell = cells.find(std::to_string(column.id));
+              cell != cells.end() && !cell->second.is_null())
             record.values[column.id] = cell->second;
         then.push_back(std::move(record));
       }
@@ -169,7 +176,8 @@ class Writer {
     records_ = open_.table.records + static_cast<std::int64_t>(change_.created.size()) -
                static_cast<std::int64_t>(change_.deleted.size());
     if (records_ > kMostRecords)
-      return fail(409, "Table full", "A table has at most " + std::to_string(kMostRecords) + " records.");
+      return fail(409, "Table full",
+                  "A table has at most " + std::to_string(kMostRecords) + " records.");
     for (const Record& record : then) check_record(record);
     if (!change_.problems.empty()) return {};
     if (auto gone = delete_rows(connection_, open_.table.id, keys); !gone) return gone;
@@ -181,12 +189,14 @@ class Writer {
         add_problem(then[(*taken)->row].key,
                     {409, "Not unique",
                      ((*taken)->by_sent ? "Another record that was sent has this value of \""
-                                        : "Record " + std::to_string((*taken)->by_key) + " has this value of \"") +
+                                        : "Record " + std::to_string((*taken)->by_key) +
+                                              " has this value of \"") +
                          column.name + "\".",
                      field_of(column)});
     }
     if (!change_.problems.empty()) return {};
-    if (auto inserted = insert_rows(connection_, open_.table.id, open_.all, then); !inserted) return inserted;
+    if (auto inserted = insert_rows(connection_, open_.table.id, open_.all, then); !inserted)
+      return inserted;
     for (const Column& column : open_.table.columns) {
       if (column.target)
         if (auto known = check_targets(column, then); !known) return known;
@@ -200,20 +210,23 @@ class Writer {
     return {};
   }
 
-  // Values that the edit writes were checked by who made it, but those of the past fit the columns of the past.
+  // Values that the edit writes were checked by who made it, but those of the past fit the columns
+  // of the past.
   void check_record(const Record& record) {
     const Cells& after = edit_.records.at(record.key);
     for (const Column& column : open_.table.columns) {
       const auto value = record.values.find(column.id);
       const nlohmann::json held = value == record.values.end() ? nlohmann::json() : value->second;
-      if (column.unique && held.is_string() && held.get_ref<const std::string&>().size() > kLongestUniqueText)
-        add_problem(record.key,
-                    {422, "Text too long",
-                     "Texts of a unique column have at most " + std::to_string(kLongestUniqueText) + " bytes.",
-                     field_of(column)});
+      if (column.unique && held.is_string() &&
+          held.get_ref<const std::string&>().size() > kLongestUniqueText)
+        add_problem(record.key, {422, "Text too long",
+                                 "Texts of a unique column have at most " +
+                                     std::to_string(kLongestUniqueText) + " bytes.",
+                                 field_of(column)});
       const bool is_written = after.contains(std::to_string(column.id)) || after.contains(kExists);
       if (!is_written || (!edit_.checks_values && !(column.required && held.is_null()))) continue;
-      if (auto good = check_value(column, held, field_of(column)); !good) add_problem(record.key, good.error());
+      if (auto good = check_value(column, held, field_of(column)); !good)
+        add_problem(record.key, good.error());
     }
   }
 
@@ -221,16 +234,21 @@ class Writer {
   Result<void> check_targets(const Column& column, std::span<const Record> rows) {
     std::set<std::int64_t> named;
     for (const Record& row : rows)
-      if (const auto value = row.values.find(column.id); value != row.values.end()) add_keys(value->second, named);
-    auto missing = missing_rows(connection_, *column.target, std::vector(named.begin(), named.end()));
-    if (!missing || missing->empty()) return missing ? Result<void>{} : tl::unexpected(missing.error());
+      if (const auto value = row.values.find(column.id); value != row.values.end())
+        add_keys(value->second, named);
+    auto missing =
+        missing_rows(connection_, *column.target, std::vector(named.begin(), named.end()));
+    if (!missing || missing->empty())
+      return missing ? Result<void>{} : tl::unexpected(missing.error());
     for (const Record& row : rows) {
       std::set<std::int64_t> keys;
-      if (const auto value = row.values.find(column.id); value != row.values.end()) add_keys(value->second, keys);
+      if (const auto value = row.values.find(column.id); value != row.values.end())
+        add_keys(value->second, keys);
       for (const auto key : keys)
         if (std::binary_search(missing->begin(), missing->end(), key)) {
           add_problem(row.key, {422, "No such record",
-                                "\"" + column.name + "\" names record " + std::to_string(key) + ", which is not there.",
+                                "\"" + column.name + "\" names record " + std::to_string(key) +
+                                    ", which is not there.",
                                 field_of(column)});
           break;
         }
@@ -242,12 +260,14 @@ class Writer {
   Result<void> check_attached(const Column& column, std::span<const Record> rows) {
     std::set<std::int64_t> listed;
     for (const Record& row : rows)
-      if (const auto value = row.values.find(column.id); value != row.values.end()) add_keys(value->second, listed);
+      if (const auto value = row.values.find(column.id); value != row.values.end())
+        add_keys(value->second, listed);
     if (listed.empty()) return {};
     PgArray ids(oid::kInt8);
     for (const auto id : listed) ids.add(id);
-    auto known = connection_.query("SELECT id, media_type FROM attachments WHERE table_id = $1 AND id = any($2)",
-                                   Params().integer(open_.table.id).array(ids));
+    auto known = connection_.query(
+        "SELECT id, media_type FROM attachments WHERE table_id = $1 AND id = any($2)",
+        Params().integer(open_.table.id).array(ids));
     if (!known) return tl::unexpected(known.error());
     std::map<std::int64_t, std::string> types;
     for (int i = 0; i < known->rows(); ++i) types[known->integer(i, 0)] = known->text(i, 1);
@@ -258,10 +278,12 @@ class Writer {
         const std::string id = std::to_string(item.get<std::int64_t>());
         const auto type = types.find(item.get<std::int64_t>());
         const bool is_there = type != types.end();
-        if (is_there && (column.kind == ColumnKind::document || is_raster_picture(type->second))) continue;
+        if (is_there && (column.kind == ColumnKind::document || is_raster_picture(type->second)))
+          continue;
         add_problem(row.key, {422, is_there ? "No picture" : "No such attachment",
                               "\"" + column.name + "\" lists attachment " + id +
-                                  (is_there ? ", which is " + type->second + ": attach it to a column of documents."
+                                  (is_there ? ", which is " + type->second +
+                                                  ": attach it to a column of documents."
                                             : ", which the table does not have."),
                               field_of(column)});
         break;
@@ -270,12 +292,12 @@ class Writer {
     return {};
   }
 
-  // Lines and points that are written lie on models of the project. Those that are there may lie on one that is gone, and undo may
-  // bring such ones back.
+  // Lines and points that are written lie on models of the project. Those that are there may lie on
+  // one that is gone, and undo may bring such ones back.
   Result<void> check_marked(const Column& column, std::span<const Record> rows) {
     if (edit_.checks_values) return {};
-    auto models =
-        connection_.query("SELECT id FROM models WHERE project_id = $1", Params().integer(open_.table.project_id));
+    auto models = connection_.query("SELECT id FROM models WHERE project_id = $1",
+                                    Params().integer(open_.table.project_id));
     if (!models) return tl::unexpected(models.error());
     std::set<std::int64_t> known;
     for (int i = 0; i < models->rows(); ++i) known.insert(models->integer(i, 0));
@@ -315,8 +337,9 @@ class Writer {
       const auto [by, key] = **naming;
       add_problem(key, {409,
                         "Record in use",
-                        "Record " + std::to_string(by) + " of " + rows->text(i, 4) + " names record " +
-                            std::to_string(key) + " as \"" + rows->text(i, 3) + "\". Change that one first.",
+                        "Record " + std::to_string(by) + " of " + rows->text(i, 4) +
+                            " names record " + std::to_string(key) + " as \"" + rows->text(i, 3) +
+                            "\". Change that one first.",
                         {}});
     }
     return {};
@@ -327,8 +350,8 @@ class Writer {
     for (const auto& [id, after] : edit_.columns) {
       const Column& column = *column_by_id(open_, id);
       const bool asks = std::any_of(after.begin(), after.end(), [](const auto& cell) {
-        return cell.first == kHidden || cell.first == "required" || cell.first == "unique" || cell.first == "choices" ||
-               cell.first == "minimum" || cell.first == "maximum";
+        return cell.first == kHidden || cell.first == "required" || cell.first == "unique" ||
+               cell.first == "choices" || cell.first == "minimum" || cell.first == "maximum";
       });
       if (column.hidden || !asks) continue;
       auto rows = load_all_rows(connection_, open_.table.id, {column});
@@ -339,11 +362,14 @@ class Writer {
         auto good = check_value(column, held, "column");
         if (!good)
           return fail(409, "Values do not fit",
-                      "Record " + std::to_string(row.key) + ": " + good.error().detail + " Change the records first.",
+                      "Record " + std::to_string(row.key) + ": " + good.error().detail +
+                          " Change the records first.",
                       "column");
-        if (column.unique && held.is_string() && held.get_ref<const std::string&>().size() > kLongestUniqueText)
+        if (column.unique && held.is_string() &&
+            held.get_ref<const std::string&>().size() > kLongestUniqueText)
           return fail(409, "Values do not fit",
-                      "Record " + std::to_string(row.key) + ": texts of a unique column have at most " +
+                      "Record " + std::to_string(row.key) +
+                          ": texts of a unique column have at most " +
                           std::to_string(kLongestUniqueText) + " bytes.",
                       "unique");
       }
@@ -352,8 +378,10 @@ class Writer {
         if (!known) return known;
         if (!change_.problems.empty()) {
           Problem problem = change_.problems.front().problem;
-          return fail(409, "Values do not fit",
-                      "Record " + std::to_string(change_.problems.front().key) + ": " + problem.detail, "column");
+          return fail(
+              409, "Values do not fit",
+              "Record " + std::to_string(change_.problems.front().key) + ": " + problem.detail,
+              "column");
         }
       }
       if (!column.unique) continue;
@@ -361,8 +389,9 @@ class Writer {
       if (!same) return tl::unexpected(same.error());
       if (*same)
         return fail(409, "Not unique",
-                    "Records " + std::to_string((*same)->first) + " and " + std::to_string((*same)->second) +
-                        " have the same value of \"" + column.name + "\".",
+                    "Records " + std::to_string((*same)->first) + " and " +
+                        std::to_string((*same)->second) + " have the same value of \"" +
+                        column.name + "\".",
                     "unique");
       if (auto made = make_unique_index(connection_, open_.table.id, column); !made) return made;
     }
@@ -372,7 +401,12 @@ class Writer {
   Result<void> keep_entry() {
     auto entry = connection_.query(
         "INSERT INTO table_edits (table_id, sequence, user_name, op, record) VALUES ($1, $2, $3, $4, $5)",
-        Params().integer(open_.table.id).integer(sequence_).text(edit_.user).text(edit_.op).json(edit_.record));
+        Params()
+            .integer(open_.table.id)
+            .integer(sequence_)
+            .text(edit_.user)
+            .text(edit_.op)
+            .json(edit_.record));
     if (!entry) return tl::unexpected(entry.error());
     if (auto kept = keep_cells("record", edit_.records, before_records_); !kept) return kept;
     if (auto kept = keep_cells("column", edit_.columns, before_columns_); !kept) return kept;
@@ -388,8 +422,10 @@ class Writer {
             .integer(records_)
             .integer(open_.next_key)
             .integer(open_.table.version));
-    if (!counted || !term_columns(open_.table)) return counted ? Result<void>{} : tl::unexpected(counted.error());
-    // Layers that take their colours from the terms are others now (core/term_list, takes_term_colors).
+    if (!counted || !term_columns(open_.table))
+      return counted ? Result<void>{} : tl::unexpected(counted.error());
+    // Layers that take their colours from the terms are others now (core/term_list,
+    // takes_term_colors).
     auto colored = connection_.query(
         "UPDATE layers SET version = version + 1 WHERE table_id = $1 AND palette ->> 'mode' = 'categorical' AND "
         "palette -> 'points' = '[]' AND coalesce(palette ->> 'column', '') = ''",
@@ -410,14 +446,21 @@ class Writer {
       auto kept = connection_.query(
           "INSERT INTO table_changes (table_id, sequence, subject, subject_id, before, after) "
           "SELECT $1, $2, $3, * FROM unnest($4::bigint[], $5::jsonb[], $6::jsonb[])",
-          Params().integer(open_.table.id).integer(sequence_).text(subject).array(ids).array(befores).array(afters));
+          Params()
+              .integer(open_.table.id)
+              .integer(sequence_)
+              .text(subject)
+              .array(ids)
+              .array(befores)
+              .array(afters));
       if (!kept) return tl::unexpected(kept.error());
     }
     return {};
   }
 
   void add_problem(std::int64_t key, Problem problem) {
-    if (change_.problems.size() < kMostRowProblems) change_.problems.push_back({key, std::move(problem), {}});
+    if (change_.problems.size() < kMostRowProblems)
+      change_.problems.push_back({key, std::move(problem), {}});
   }
 
   PgConnection& connection_;
@@ -479,7 +522,9 @@ Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role see
     Column column;
     column.id = columns->integer(i, 0);
     const auto kind = parse_column_kind(columns->text(i, 1));
-    if (!kind) return fail(500, "Damaged table", "Column " + std::to_string(column.id) + " has an unknown kind.");
+    if (!kind)
+      return fail(500, "Damaged table",
+                  "Column " + std::to_string(column.id) + " has an unknown kind.");
     column.kind = *kind;
     if (!columns->null(i, 2)) column.target = columns->integer(i, 2);
     set_properties(column, columns->json(i, 3));
@@ -511,13 +556,16 @@ Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column&
                                   Params().integer(*column.target).integer(open.table.project_id));
     if (!known) return tl::unexpected(known.error());
     if (known->rows() == 0)
-      return fail(422, "No such table", "The project has no table " + std::to_string(*column.target) + ".", "target");
+      return fail(422, "No such table",
+                  "The project has no table " + std::to_string(*column.target) + ".", "target");
     std::set<std::int64_t> named;
     add_keys(column.default_value, named);
-    auto missing = missing_rows(connection, *column.target, std::vector(named.begin(), named.end()));
+    auto missing =
+        missing_rows(connection, *column.target, std::vector(named.begin(), named.end()));
     if (!missing) return tl::unexpected(missing.error());
     if (!missing->empty())
-      return fail(422, "No such record", "There is no record " + std::to_string(missing->front()) + ".", "default");
+      return fail(422, "No such record",
+                  "There is no record " + std::to_string(missing->front()) + ".", "default");
   }
   const std::string wished = make_slug(column.slug.empty() ? column.name : column.slug);
   // What a list of records calls its own.
@@ -533,9 +581,9 @@ Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column&
 
 Result<Column> insert_column(PgConnection& connection, const OpenTable& open, Column column) {
   if (open.all.size() >= static_cast<std::size_t>(kMostColumns))
-    return fail(
-        409, "Too many columns",
-        "A table has at most " + std::to_string(kMostColumns) + " columns, those that were dropped among them.");
+    return fail(409, "Too many columns",
+                "A table has at most " + std::to_string(kMostColumns) +
+                    " columns, those that were dropped among them.");
   column.hidden = true;
   auto row = connection.query(
       "INSERT INTO record_columns (table_id, kind, target, properties, hidden, visibility) VALUES ($1, $2, $3, $4, true, $5) "
@@ -548,17 +596,19 @@ Result<Column> insert_column(PgConnection& connection, const OpenTable& open, Co
           .text(name(column.visibility)));
   if (!row) return tl::unexpected(row.error());
   column.id = row->integer(0, 0);
-  if (auto added = add_rows_column(connection, open.table.id, column); !added) return tl::unexpected(added.error());
+  if (auto added = add_rows_column(connection, open.table.id, column); !added)
+    return tl::unexpected(added.error());
   return column;
 }
 
 Result<Table> insert_table(PgConnection& connection, Table table) {
   if (auto good = check_name(table.name); !good) return tl::unexpected(good.error());
   if (auto good = check_text(table.slug, "slug"); !good) return tl::unexpected(good.error());
-  if (auto good = check_text(table.description, "description"); !good) return tl::unexpected(good.error());
+  if (auto good = check_text(table.description, "description"); !good)
+    return tl::unexpected(good.error());
   if (auto good = check_labels(table.labels); !good) return tl::unexpected(good.error());
-  auto project =
-      connection.query("SELECT 1 FROM projects WHERE id = $1 FOR NO KEY UPDATE", Params().integer(table.project_id));
+  auto project = connection.query("SELECT 1 FROM projects WHERE id = $1 FOR NO KEY UPDATE",
+                                  Params().integer(table.project_id));
   if (!project) return tl::unexpected(project.error());
   if (project->rows() == 0) return not_found("project", std::to_string(table.project_id));
   auto row = insert_with_slug(
@@ -567,7 +617,12 @@ Result<Table> insert_table(PgConnection& connection, Table table) {
         return connection.query(
             "INSERT INTO record_tables (project_id, name, slug, labels, description) VALUES ($1, $2, $3, $4, $5) "
             "ON CONFLICT (slug) DO NOTHING RETURNING id",
-            Params().integer(table.project_id).text(table.name).text(slug).json(table.labels).text(table.description));
+            Params()
+                .integer(table.project_id)
+                .text(table.name)
+                .text(slug)
+                .json(table.labels)
+                .text(table.description));
       });
   if (!row) return tl::unexpected(row.error());
   const std::int64_t id = row->integer(0, 0);
@@ -579,18 +634,20 @@ Result<Table> insert_table(PgConnection& connection, Table table) {
     column.order = static_cast<int>(i);
     if (column.target == kOwnTable) column.target = id;
     const auto in_place = [&](Problem problem) {
-      problem.field = "columns[" + std::to_string(i) + "]" + (problem.field.empty() ? "" : "." + problem.field);
+      problem.field =
+          "columns[" + std::to_string(i) + "]" + (problem.field.empty() ? "" : "." + problem.field);
       return tl::unexpected(std::move(problem));
     };
     if (auto fits = fit_column(connection, *open, column); !fits) return in_place(fits.error());
     auto inserted = insert_column(connection, *open, std::move(column));
     if (!inserted) return in_place(inserted.error());
     inserted->hidden = false;
-    auto shown =
-        connection.query("UPDATE record_columns SET hidden = false WHERE id = $1", Params().integer(inserted->id));
+    auto shown = connection.query("UPDATE record_columns SET hidden = false WHERE id = $1",
+                                  Params().integer(inserted->id));
     if (!shown) return tl::unexpected(shown.error());
     if (inserted->unique)
-      if (auto made = make_unique_index(connection, id, *inserted); !made) return tl::unexpected(made.error());
+      if (auto made = make_unique_index(connection, id, *inserted); !made)
+        return tl::unexpected(made.error());
     open->all.push_back(std::move(*inserted));
     show_columns(*open);
   }

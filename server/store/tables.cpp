@@ -17,7 +17,8 @@ Result<Table> table_of(PgConnection& connection, std::int64_t id, Role seen_by =
 }
 
 // Refuses a column that the table does not show, and (412) a version that is not the table's.
-Result<const Column*> shown_column(const OpenTable& open, std::int64_t column_id, std::optional<std::int64_t> version) {
+Result<const Column*> shown_column(const OpenTable& open, std::int64_t column_id,
+                                   std::optional<std::int64_t> version) {
   if (version && *version != open.table.version) return stale("table");
   for (const Column& column : open.table.columns)
     if (column.id == column_id) return &column;
@@ -29,9 +30,10 @@ Result<TableChange> refused_by_records(Result<TableChange> change) {
   return change;
 }
 
-// The values of a column in a new one that takes its place; those that it cannot hold are lost, and named.
-Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Column& old, Column column,
-                           const std::string& user) {
+// The values of a column in a new one that takes its place; those that it cannot hold are lost, and
+// named.
+Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Column& old,
+                           Column column, const std::string& user) {
   auto made = insert_column(connection, open, column);
   if (!made) return tl::unexpected(made.error());
   open.all.push_back(*made);
@@ -66,8 +68,9 @@ Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Colu
 
 Result<std::vector<Table>> Store::tables(std::int64_t project_id, Role seen_by) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Table>> {
-    auto rows = connection.query("SELECT id FROM record_tables WHERE project_id = $1 ORDER BY lower(name), id",
-                                 Params().integer(project_id));
+    auto rows = connection.query(
+        "SELECT id FROM record_tables WHERE project_id = $1 ORDER BY lower(name), id",
+        Params().integer(project_id));
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Table> tables;
     for (int i = 0; i < rows->rows(); ++i) {
@@ -92,25 +95,30 @@ Result<Table> Store::table(const std::string& ref, Role seen_by) {
 }
 
 Result<Table> Store::create_table(const Table& table, const FirstAnswer<Table>& answer) {
-  return impl_->change(answer, [&](PgConnection& connection) { return insert_table(connection, table); });
+  return impl_->change(answer,
+                       [&](PgConnection& connection) { return insert_table(connection, table); });
 }
 
 Result<Table> Store::update_table(const Table& table, const FirstAnswer<Table>& answer) {
   if (auto good = check_name(table.name); !good) return tl::unexpected(good.error());
-  if (auto good = check_text(table.description, "description"); !good) return tl::unexpected(good.error());
+  if (auto good = check_text(table.description, "description"); !good)
+    return tl::unexpected(good.error());
   if (auto good = check_labels(table.labels); !good) return tl::unexpected(good.error());
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Table> {
-    // As for every other change: the analysts' view of the new name is made while nobody alters the rows that it reads.
+    // As for every other change: the analysts' view of the new name is made while nobody alters the
+    // rows that it reads.
     auto open = lock_table(connection, table.id);
     if (!open) return tl::unexpected(open.error());
     if (table.title_column && table.title_column != open->table.title_column) {
       const auto title = std::ranges::find(open->table.columns, *table.title_column, &Column::id);
       if (title == open->table.columns.end())
-        return fail(422, "No such column", "The table has no column " + std::to_string(*table.title_column) + ".",
+        return fail(422, "No such column",
+                    "The table has no column " + std::to_string(*table.title_column) + ".",
                     "title_column");
       if (!can_be_title(*title))
         return fail(422, "No title",
-                    "What '" + title->name + "' holds cannot name a record: it is yes or no, or several things.",
+                    "What '" + title->name +
+                        "' holds cannot name a record: it is yes or no, or several things.",
                     "title_column");
     }
     auto row = connection.query(
@@ -151,27 +159,31 @@ Result<void> Store::delete_table(std::int64_t id, const FirstAnswer<>& answer) {
         Params().integer(id));
     if (!users) return tl::unexpected(users.error());
     if (users->rows() > 0 && users->boolean(0, 1))
-      return fail(
-          409, "Table in use",
-          "The table is named by " + users->text(0, 0) + ", which lies in the Bin. Erase that one there first.");
+      return fail(409, "Table in use",
+                  "The table is named by " + users->text(0, 0) +
+                      ", which lies in the Bin. Erase that one there first.");
     if (users->rows() > 0)
-      return fail(409, "Table in use", "The table is named by " + users->text(0, 0) + ". Delete that one first.");
+      return fail(409, "Table in use",
+                  "The table is named by " + users->text(0, 0) + ". Delete that one first.");
     if (auto dropped = drop_rows_table(connection, id); !dropped) return dropped;
     // Its own columns may point at it.
-    auto columns = connection.query("DELETE FROM record_columns WHERE table_id = $1", Params().integer(id));
+    auto columns =
+        connection.query("DELETE FROM record_columns WHERE table_id = $1", Params().integer(id));
     if (!columns) return tl::unexpected(columns.error());
     auto table = connection.query("DELETE FROM record_tables WHERE id = $1", Params().integer(id));
     return table ? Result<void>{} : tl::unexpected(table.error());
   });
-  // Afterwards, since those who attach hold a blob while they wait for the tables. What fails here is done at the next start.
+  // Afterwards, since those who attach hold a blob while they wait for the tables. What fails here
+  // is done at the next start.
   if (gone) (void)drop_orphans();
   return gone;
 }
 
 Result<std::vector<Layer>> Store::layers_of_table(std::int64_t table_id, Role seen_by) {
   auto refs = impl_->pool.read([&](PgConnection& connection) {
-    return connection.query("SELECT model_id, id FROM layers WHERE table_id = $1 ORDER BY model_id, draw_order, id",
-                            Params().integer(table_id));
+    return connection.query(
+        "SELECT model_id, id FROM layers WHERE table_id = $1 ORDER BY model_id, draw_order, id",
+        Params().integer(table_id));
   });
   if (!refs) return tl::unexpected(refs.error());
   std::vector<Layer> layers;
@@ -184,14 +196,16 @@ Result<std::vector<Layer>> Store::layers_of_table(std::int64_t table_id, Role se
   return layers;
 }
 
-Result<TableChange> Store::create_column(std::int64_t table_id, const Column& column, const std::string& user,
+Result<TableChange> Store::create_column(std::int64_t table_id, const Column& column,
+                                         const std::string& user,
                                          const FirstAnswer<TableChange>& answer) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
     auto open = lock_table(connection, table_id);
     if (!open) return tl::unexpected(open.error());
     Column fresh = column;
-    if (auto fits = fit_column(connection, *open, fresh); !fits) return tl::unexpected(fits.error());
+    if (auto fits = fit_column(connection, *open, fresh); !fits)
+      return tl::unexpected(fits.error());
     auto made = insert_column(connection, *open, std::move(fresh));
     if (!made) return tl::unexpected(made.error());
     open->all.push_back(*made);
@@ -200,7 +214,8 @@ Result<TableChange> Store::create_column(std::int64_t table_id, const Column& co
     if (!made->default_value.is_null()) {
       auto rows = load_all_rows(connection, table_id, {});
       if (!rows) return tl::unexpected(rows.error());
-      for (const Record& row : *rows) edit.records[row.key][std::to_string(made->id)] = made->default_value;
+      for (const Record& row : *rows)
+        edit.records[row.key][std::to_string(made->id)] = made->default_value;
     }
     return refused_by_records(apply_edit(connection, *open, std::move(edit)));
   };
@@ -208,7 +223,8 @@ Result<TableChange> Store::create_column(std::int64_t table_id, const Column& co
 }
 
 Result<TableChange> Store::update_column(std::int64_t table_id, const Column& column,
-                                         std::optional<std::int64_t> version, const std::string& user,
+                                         std::optional<std::int64_t> version,
+                                         const std::string& user,
                                          const FirstAnswer<TableChange>& answer) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
@@ -218,7 +234,8 @@ Result<TableChange> Store::update_column(std::int64_t table_id, const Column& co
     if (!found) return tl::unexpected(found.error());
     const Column old = **found;
     Column wished = column;
-    if (auto fits = fit_column(connection, *open, wished); !fits) return tl::unexpected(fits.error());
+    if (auto fits = fit_column(connection, *open, wished); !fits)
+      return tl::unexpected(fits.error());
     if (wished.kind != old.kind || wished.target != old.target)
       return retype(connection, *open, old, std::move(wished), user);
     TableEdit edit{user, "change-column", {{"column", old.id}}, {}, {}};
@@ -235,8 +252,9 @@ Result<TableChange> Store::update_column(std::int64_t table_id, const Column& co
   return impl_->change(answer, work, kBulkLimits);
 }
 
-Result<Table> Store::show_column(std::int64_t table_id, std::int64_t column_id, Visibility visibility,
-                                 std::int64_t version, const FirstAnswer<Table>& answer) {
+Result<Table> Store::show_column(std::int64_t table_id, std::int64_t column_id,
+                                 Visibility visibility, std::int64_t version,
+                                 const FirstAnswer<Table>& answer) {
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Table> {
     auto open = lock_table(connection, table_id);
     if (!open) return tl::unexpected(open.error());
@@ -251,13 +269,14 @@ Result<Table> Store::show_column(std::int64_t table_id, std::int64_t column_id, 
       for (const auto& [language, label] : terms->labels) used.insert(label);
       if (used.contains(*found))
         return fail(422, "Column of a list of terms",
-                    "What terms are is seen by everybody who sees records that name them.", "visibility");
+                    "What terms are is seen by everybody who sees records that name them.",
+                    "visibility");
     }
     auto row = connection.query("UPDATE record_columns SET visibility = $2 WHERE id = $1",
                                 Params().integer(column_id).text(name(visibility)));
     if (!row) return tl::unexpected(row.error());
-    auto counted =
-        connection.query("UPDATE record_tables SET version = version + 1 WHERE id = $1", Params().integer(table_id));
+    auto counted = connection.query("UPDATE record_tables SET version = version + 1 WHERE id = $1",
+                                    Params().integer(table_id));
     if (!counted) return tl::unexpected(counted.error());
     return table_of(connection, table_id);
   });
@@ -270,7 +289,8 @@ Result<TableChange> Store::drop_column(std::int64_t table_id, std::int64_t colum
   return impl_->change(answer, [&](PgConnection& connection) -> Result<TableChange> {
     auto open = lock_table(connection, table_id);
     if (!open) return tl::unexpected(open.error());
-    if (auto found = shown_column(*open, column_id, version); !found) return tl::unexpected(found.error());
+    if (auto found = shown_column(*open, column_id, version); !found)
+      return tl::unexpected(found.error());
     TableEdit edit{user, "drop-column", {{"column", column_id}}, {}, {}};
     edit.columns[column_id] = {{"hidden", true}};
     return apply_edit(connection, *open, std::move(edit));

@@ -10,7 +10,9 @@
 namespace strata::store {
 namespace {
 
-nlohmann::json text_or_null(const std::string& text) { return text.empty() ? nlohmann::json() : nlohmann::json(text); }
+nlohmann::json text_or_null(const std::string& text) {
+  return text.empty() ? nlohmann::json() : nlohmann::json(text);
+}
 
 // Terms on their way into a list: finds what each of them is there, and makes cells of what is new.
 class TermIntake {
@@ -36,20 +38,23 @@ class TermIntake {
     auto done = apply_edit(connection_, open_, std::move(edit_));
     if (!done) return done;
     for (RowProblem& problem : done->problems)
-      if (const auto index = index_of_.find(problem.key); index != index_of_.end()) problem.index = index->second;
+      if (const auto index = index_of_.find(problem.key); index != index_of_.end())
+        problem.index = index->second;
     return done;
   }
 
  private:
   // What the text has and the list has no column for, with the terms as one entry.
   Result<void> add_columns() {
-    // What is written is found among all columns: those that come are hidden until the edit shows them.
+    // What is written is found among all columns: those that come are hidden until the edit shows
+    // them.
     for (const Column& column : open_.table.columns) columns_[column.slug] = column;
     for (const std::string& slug : list_.columns) {
       if (columns_.contains(slug)) continue;
       Column column = new_term_column(slug);
       if (auto fits = fit_column(connection_, open_, column); !fits) return fits;
-      for (const auto& [other, known] : columns_) column.order = std::max(column.order, known.order + 1);
+      for (const auto& [other, known] : columns_)
+        column.order = std::max(column.order, known.order + 1);
       auto made = insert_column(connection_, open_, std::move(column));
       if (!made) return tl::unexpected(made.error());
       open_.all.push_back(*made);
@@ -59,13 +64,16 @@ class TermIntake {
     return {};
   }
 
-  // The records that the terms are: those of their URI, otherwise of their code, otherwise new ones.
+  // The records that the terms are: those of their URI, otherwise of their code, otherwise new
+  // ones.
   Result<void> find_keys() {
     auto rows = load_all_rows(connection_, open_.table.id, open_.all);
     if (!rows) return tl::unexpected(rows.error());
     for (Record& row : *rows) {
-      if (const std::string code = held_text(row, "code"); !code.empty()) key_of_code_[code] = row.key;
-      if (const std::string uri = held_text(row, "uri"); !uri.empty()) key_of_uri_.emplace(uri, row.key);
+      if (const std::string code = held_text(row, "code"); !code.empty())
+        key_of_code_[code] = row.key;
+      if (const std::string uri = held_text(row, "uri"); !uri.empty())
+        key_of_uri_.emplace(uri, row.key);
       now_[row.key] = std::move(row);
     }
     std::int64_t next = open_.next_key;
@@ -90,9 +98,11 @@ class TermIntake {
                         "uri"});
       keys_.push_back(key);
       if (!term.uri.empty() && !uris.insert(term.uri).second)
-        add_problem(i, {422, "URI twice", "Two terms have this URI: " + term.uri.substr(0, 300) + ".", "uri"});
+        add_problem(i, {422, "URI twice",
+                        "Two terms have this URI: " + term.uri.substr(0, 300) + ".", "uri"});
     }
-    // From here on codes and URIs mean what they will mean then: a code that a term gives up may be another one's.
+    // From here on codes and URIs mean what they will mean then: a code that a term gives up may be
+    // another one's.
     for (const auto& [key, index] : index_of_) {
       const auto held = now_.find(key);
       if (held == now_.end()) continue;
@@ -116,15 +126,18 @@ class TermIntake {
     if (!exists) cells["exists"] = true;
     if (!exists)
       for (const Column& column : open_.table.columns)
-        if (!column.default_value.is_null()) cells[std::to_string(column.id)] = column.default_value;
+        if (!column.default_value.is_null())
+          cells[std::to_string(column.id)] = column.default_value;
     for (const std::string& slug : list_.columns) {
       auto value = value_of(term, slug);
       if (!value) return tl::unexpected(value.error());
       const Column& column = columns_.at(slug);
-      if (auto checked = check_value(column, *value, slug); !checked) return tl::unexpected(checked.error());
+      if (auto checked = check_value(column, *value, slug); !checked)
+        return tl::unexpected(checked.error());
       nlohmann::json now;
       if (exists)
-        if (const auto cell = held->second.values.find(column.id); cell != held->second.values.end())
+        if (const auto cell = held->second.values.find(column.id);
+            cell != held->second.values.end())
           now = cell->second;
       if (*value != now || !exists) cells[std::to_string(column.id)] = std::move(*value);
     }
@@ -145,12 +158,13 @@ class TermIntake {
     if (!term.parent.empty()) {
       const auto parent = key_of_code_.find(term.parent);
       if (parent == key_of_code_.end())
-        return fail(422, "No such parent", "Neither the list nor the text has a term \"" + term.parent + "\".",
-                    "parent");
+        return fail(422, "No such parent",
+                    "Neither the list nor the text has a term \"" + term.parent + "\".", "parent");
       return nlohmann::json(parent->second);
     }
     // A vocabulary may be part of another one, whose terms are not here.
-    const auto parent = term.parent_uri.empty() ? key_of_uri_.end() : key_of_uri_.find(term.parent_uri);
+    const auto parent =
+        term.parent_uri.empty() ? key_of_uri_.end() : key_of_uri_.find(term.parent_uri);
     return parent == key_of_uri_.end() ? nlohmann::json() : nlohmann::json(parent->second);
   }
 
@@ -162,7 +176,8 @@ class TermIntake {
       if (parent.is_number()) relation[key] = {parent.get<std::int64_t>()};
     };
     for (const auto& [key, row] : now_)
-      if (const auto parent = row.values.find(column); parent != row.values.end()) name(key, parent->second);
+      if (const auto parent = row.values.find(column); parent != row.values.end())
+        name(key, parent->second);
     for (const auto& [key, cells] : edit_.records)
       if (const auto parent = cells.find(std::to_string(column)); parent != cells.end()) {
         relation.erase(key);
@@ -172,15 +187,17 @@ class TermIntake {
       std::string path;
       for (const auto key : circle)
         if (path.size() < 500) path += "\"" + code_of(key) + "\" is below ";
-      const auto sent = std::find_if(circle.begin(), circle.end(), [&](auto key) { return index_of_.contains(key); });
+      const auto sent = std::find_if(circle.begin(), circle.end(),
+                                     [&](auto key) { return index_of_.contains(key); });
       if (sent == circle.end()) continue;
-      add_problem(index_of_.at(*sent),
-                  {422, "Terms in a circle", path + "\"" + code_of(circle.front()) + "\".", "parent"});
+      add_problem(index_of_.at(*sent), {422, "Terms in a circle",
+                                        path + "\"" + code_of(circle.front()) + "\".", "parent"});
     }
   }
 
   std::string code_of(std::int64_t key) const {
-    if (const auto sent = index_of_.find(key); sent != index_of_.end()) return list_.terms[sent->second].code;
+    if (const auto sent = index_of_.find(key); sent != index_of_.end())
+      return list_.terms[sent->second].code;
     const auto held = now_.find(key);
     return held == now_.end() ? std::to_string(key) : held_text(held->second, "code");
   }
@@ -189,7 +206,8 @@ class TermIntake {
     const auto column = columns_.find(slug);
     if (column == columns_.end()) return {};
     const auto value = row.values.find(column->second.id);
-    return value != row.values.end() && value->second.is_string() ? value->second.get<std::string>() : std::string();
+    return value != row.values.end() && value->second.is_string() ? value->second.get<std::string>()
+                                                                  : std::string();
   }
 
   void add_problem(std::size_t index, const Problem& problem) {
@@ -212,9 +230,9 @@ class TermIntake {
 // The table with its terms, or (`told`) why they cannot be in it.
 Result<TableChange> insert_with_terms(PgConnection& connection, Table table, const TermList* terms,
                                       const std::string& user, const std::string& op) {
-  auto taken =
-      connection.query("SELECT slug::text FROM record_tables WHERE project_id = $1 AND lower(name) = lower($2)",
-                       Params().integer(table.project_id).text(table.name));
+  auto taken = connection.query(
+      "SELECT slug::text FROM record_tables WHERE project_id = $1 AND lower(name) = lower($2)",
+      Params().integer(table.project_id).text(table.name));
   if (!taken) return tl::unexpected(taken.error());
   if (taken->rows() > 0)
     return fail(409, "Name taken",
@@ -233,9 +251,9 @@ Result<TableChange> insert_with_terms(PgConnection& connection, Table table, con
 
 }  // namespace
 
-Result<std::vector<TableChange>> Store::create_tables(const std::vector<NewTable>& tables, bool dry_run,
-                                                      const std::string& user, const std::string& op,
-                                                      const FirstAnswer<std::vector<TableChange>>& answer) {
+Result<std::vector<TableChange>> Store::create_tables(
+    const std::vector<NewTable>& tables, bool dry_run, const std::string& user,
+    const std::string& op, const FirstAnswer<std::vector<TableChange>>& answer) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   std::optional<std::vector<TableChange>> told;
   const auto work = [&](PgConnection& connection) -> Result<std::vector<TableChange>> {
@@ -245,8 +263,10 @@ Result<std::vector<TableChange>> Store::create_tables(const std::vector<NewTable
       Table table = wished.table;
       if (auto good = check_text(table.name, "name"); !good) return tl::unexpected(good.error());
       // The tables before it, by their places; then they have ids.
-      for (const auto& [column, place] : wished.targets) table.columns.at(column).target = made.at(place).table.id;
-      auto change = insert_with_terms(connection, std::move(table), wished.terms ? &*wished.terms : nullptr, user, op);
+      for (const auto& [column, place] : wished.targets)
+        table.columns.at(column).target = made.at(place).table.id;
+      auto change = insert_with_terms(connection, std::move(table),
+                                      wished.terms ? &*wished.terms : nullptr, user, op);
       if (!change) return tl::unexpected(change.error());
       refused = refused || !change->problems.empty();
       made.push_back(std::move(*change));
@@ -261,7 +281,8 @@ Result<std::vector<TableChange>> Store::create_tables(const std::vector<NewTable
 }
 
 Result<TableChange> Store::import_terms(std::int64_t table_id, const TermList& list, bool dry_run,
-                                        const std::string& user, const FirstAnswer<TableChange>& answer) {
+                                        const std::string& user,
+                                        const FirstAnswer<TableChange>& answer) {
   if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
   std::optional<TableChange> told;
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {

@@ -9,12 +9,15 @@ namespace strata::store {
 
 void write_tile_sums(const TileKeysByPlace& tiles, std::deque<PgConnection::Statement>& out) {
   PgArray empty_layers(oid::kInt8), empty_ys(oid::kInt2), empty_xs(oid::kInt2);
-  PgArray layers(oid::kInt8), ys(oid::kInt2), xs(oid::kInt2), keys(oid::kInt8), texels(oid::kInt8), areas(oid::kFloat8);
-  std::array<PgArray, 9> places{PgArray(oid::kFloat8), PgArray(oid::kFloat8), PgArray(oid::kFloat8),
-                                PgArray(oid::kFloat8), PgArray(oid::kFloat8), PgArray(oid::kFloat8),
-                                PgArray(oid::kFloat8), PgArray(oid::kFloat8), PgArray(oid::kFloat8)};
+  PgArray layers(oid::kInt8), ys(oid::kInt2), xs(oid::kInt2), keys(oid::kInt8), texels(oid::kInt8),
+      areas(oid::kFloat8);
+  std::array<PgArray, 9> places{
+      PgArray(oid::kFloat8), PgArray(oid::kFloat8), PgArray(oid::kFloat8),
+      PgArray(oid::kFloat8), PgArray(oid::kFloat8), PgArray(oid::kFloat8),
+      PgArray(oid::kFloat8), PgArray(oid::kFloat8), PgArray(oid::kFloat8)};
   for (const auto& [place, sums] : tiles) {
-    const auto y = static_cast<std::int16_t>(place.second.y), x = static_cast<std::int16_t>(place.second.x);
+    const auto y = static_cast<std::int16_t>(place.second.y),
+               x = static_cast<std::int16_t>(place.second.x);
     if (sums.empty()) {
       empty_layers.add(place.first);
       empty_ys.add_int2(y);
@@ -61,7 +64,8 @@ void write_tile_sums(const TileKeysByPlace& tiles, std::deque<PgConnection::Stat
        std::move(params)});
 }
 
-void write_tile_sums(std::span<const JournalEntry* const> entries, std::deque<PgConnection::Statement>& out) {
+void write_tile_sums(std::span<const JournalEntry* const> entries,
+                     std::deque<PgConnection::Statement>& out) {
   TileKeysByPlace tiles;
   std::set<std::int64_t> unknown;
   for (const JournalEntry* entry : entries) {
@@ -70,7 +74,8 @@ void write_tile_sums(std::span<const JournalEntry* const> entries, std::deque<Pg
       unknown.insert(entry->layer_id);
       continue;
     }
-    for (TileKeys& tile : entry->sum_tiles()) tiles[{entry->layer_id, tile.tile}] = std::move(tile.keys);
+    for (TileKeys& tile : entry->sum_tiles())
+      tiles[{entry->layer_id, tile.tile}] = std::move(tile.keys);
   }
   write_tile_sums(tiles, out);
   if (unknown.empty()) return;
@@ -78,22 +83,26 @@ void write_tile_sums(std::span<const JournalEntry* const> entries, std::deque<Pg
   for (const std::int64_t layer : unknown) layers.add(layer);
   Params params;
   params.array(layers);
-  out.push_back({"UPDATE layers SET summed = false WHERE id = any($1) AND summed", std::move(params)});
+  out.push_back(
+      {"UPDATE layers SET summed = false WHERE id = any($1) AND summed", std::move(params)});
 }
 
 Result<std::vector<Layer>> Store::layers_to_sum() {
-  auto ids =
-      impl_->pool.read([](PgConnection& connection) -> Result<std::vector<std::pair<std::int64_t, std::int64_t>>> {
-        auto rows = connection.query("SELECT model_id, id FROM layers WHERE NOT summed ORDER BY id");
+  auto ids = impl_->pool.read(
+      [](PgConnection& connection) -> Result<std::vector<std::pair<std::int64_t, std::int64_t>>> {
+        auto rows =
+            connection.query("SELECT model_id, id FROM layers WHERE NOT summed ORDER BY id");
         if (!rows) return tl::unexpected(rows.error());
         std::vector<std::pair<std::int64_t, std::int64_t>> found;
-        for (int i = 0; i < rows->rows(); ++i) found.emplace_back(rows->integer(i, 0), rows->integer(i, 1));
+        for (int i = 0; i < rows->rows(); ++i)
+          found.emplace_back(rows->integer(i, 0), rows->integer(i, 1));
         return found;
       });
   if (!ids) return tl::unexpected(ids.error());
   std::vector<Layer> layers;
   for (const auto& [model, id] : *ids)
-    if (auto found = layer(model, std::to_string(id), Role::owner)) layers.push_back(std::move(*found));
+    if (auto found = layer(model, std::to_string(id), Role::owner))
+      layers.push_back(std::move(*found));
   return layers;
 }
 

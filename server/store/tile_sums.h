@@ -15,7 +15,9 @@ using TileKeysByPlace = std::map<std::pair<std::int64_t, TileAddress>, std::vect
 // The statements that write them in place of what was there.
 void write_tile_sums(const TileKeysByPlace& tiles, std::deque<PgConnection::Statement>& out);
 
-// The same with what the entries say of their tiles, of which the last counts; layers of entries that do not say it are marked.
-void write_tile_sums(std::span<const JournalEntry* const> entries, std::deque<PgConnection::Statement>& out);
+// The same with what the entries say of their tiles, of which the last counts; layers of entries
+// that do not say it are marked.
+void write_tile_sums(std::span<const JournalEntry* const> entries,
+                     std::deque<PgConnection::Statement>& out);
 
 }  // namespace strata::store

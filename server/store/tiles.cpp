@@ -33,17 +33,20 @@ Result<Decoded> decode(std::vector<StoredTile> tiles, ValueType type) {
       if (!revision) return tl::unexpected(revision.error());
       apply(*revision, tile);
     }
-    if (tile.valid.any()) decoded.emplace_back(stored.address, std::make_shared<const TileData>(std::move(tile)));
+    if (tile.valid.any())
+      decoded.emplace_back(stored.address, std::make_shared<const TileData>(std::move(tile)));
   }
   return decoded;
 }
 
-// Collects rows into tiles and decodes batches of them on other threads, a bounded number at a time.
+// Collects rows into tiles and decodes batches of them on other threads, a bounded number at a
+// time.
 class TileLoader {
  public:
   explicit TileLoader(ValueType type) : type_(type) {}
 
-  // Tiles by y and x, of each the revisions by sequence: another order would lose paint, so it is an error.
+  // Tiles by y and x, of each the revisions by sequence: another order would lose paint, so it is
+  // an error.
   Result<void> add(TileAddress address, std::int64_t sequence, bool key, Bytes bytes) {
     const auto place = std::tuple(address.y, address.x, sequence);
     if (place <= last_)
@@ -72,7 +75,8 @@ class TileLoader {
 
  private:
   static constexpr std::size_t kBatchBytes = 4u << 20;
-  static constexpr std::size_t kDecodedBytes = kTexelsPerTile;  // about what decoding one row costs, in bytes
+  // about what decoding one row costs, in bytes
+  static constexpr std::size_t kDecodedBytes = kTexelsPerTile;
 
   Result<void> flush() {
     if (batch_.empty()) return {};
@@ -85,7 +89,8 @@ class TileLoader {
     auto decoded = running_.front().get();
     running_.pop_front();
     if (!decoded) return tl::unexpected(decoded.error());
-    tiles_.insert(std::make_move_iterator(decoded->begin()), std::make_move_iterator(decoded->end()));
+    tiles_.insert(std::make_move_iterator(decoded->begin()),
+                  std::make_move_iterator(decoded->end()));
     return {};
   }
 
@@ -98,12 +103,14 @@ class TileLoader {
 };
 
 TileAddress read_address(const PgResult& rows, int i) {
-  return {static_cast<std::uint16_t>(rows.integer(i, 1)), static_cast<std::uint16_t>(rows.integer(i, 0))};
+  return {static_cast<std::uint16_t>(rows.integer(i, 1)),
+          static_cast<std::uint16_t>(rows.integer(i, 0))};
 }
 
-// From tile to tile by the primary key; of each, what came since its last whole tile. What is older is not touched, so that a
-// layer opens as fast after a year of painting as after a day. A sort would hold every row: the order is that of the nested loops.
-// Places are compared as rows, which only the primary key serves: of a fresh table the planner knows nothing, and read the index by
+// From tile to tile by the primary key; of each, what came since its last whole tile. What is older
+// is not touched, so that a layer opens as fast after a year of painting as after a day. A sort
+// would hold every row: the order is that of the nested loops. Places are compared as rows, which
+// only the primary key serves: of a fresh table the planner knows nothing, and read the index by
 // sequence from end to end for each tile.
 constexpr const char* kLoadTiles =
     "WITH RECURSIVE tiles AS ("
@@ -119,20 +126,24 @@ constexpr const char* kLoadTiles =
 
 }  // namespace
 
-Result<TileMirror::Snapshot> Store::load_tiles(const Layer& layer, std::optional<std::int64_t> at_sequence) {
+Result<TileMirror::Snapshot> Store::load_tiles(const Layer& layer,
+                                               std::optional<std::int64_t> at_sequence) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<TileMirror::Snapshot> {
     auto last = connection.query(
         "SELECT (SELECT coalesce(max(sequence), 0) FROM edits WHERE layer_id = l.id AND sequence <= $2) "
         "FROM layers l WHERE id = $1",
-        Params().integer(layer.id).integer(at_sequence.value_or(std::numeric_limits<std::int64_t>::max())));
+        Params().integer(layer.id).integer(
+            at_sequence.value_or(std::numeric_limits<std::int64_t>::max())));
     if (!last) return tl::unexpected(last.error());
     if (last->rows() == 0) return not_found("layer", std::to_string(layer.id));
     // The journal only grows, so everything up to this sequence is one consistent state.
     const std::int64_t sequence = last->integer(0, 0);
     TileLoader loader(layer.type);
-    auto read = connection.each_row(kLoadTiles, Params().integer(layer.id).integer(sequence), [&](const PgResult& row) {
-      return loader.add(read_address(row, 0), row.integer(0, 2), !row.null(0, 3) && row.boolean(0, 3), row.bytes(0, 4));
-    });
+    auto read = connection.each_row(
+        kLoadTiles, Params().integer(layer.id).integer(sequence), [&](const PgResult& row) {
+          return loader.add(read_address(row, 0), row.integer(0, 2),
+                            !row.null(0, 3) && row.boolean(0, 3), row.bytes(0, 4));
+        });
     if (!read) return tl::unexpected(read.error());
     auto tiles = loader.finish();
     if (!tiles) return tl::unexpected(tiles.error());
@@ -140,8 +151,8 @@ Result<TileMirror::Snapshot> Store::load_tiles(const Layer& layer, std::optional
   });
 }
 
-Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAddress tile, std::int64_t before,
-                                                      int limit) {
+Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAddress tile,
+                                                      std::int64_t before, int limit) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<PastRevision>> {
     auto rows = connection.query(
         "SELECT r.sequence, e.writer, e.in_force, coalesce(e.review = 'pending', false), r.difference FROM tile_revisions r "
@@ -159,15 +170,15 @@ Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAd
     for (int i = 0; i < rows->rows(); ++i) {
       auto revision = decode_revision(tile, layer.type, rows->bytes(i, 4));
       if (!revision) return tl::unexpected(revision.error());
-      revisions.push_back(
-          {rows->integer(i, 0), rows->boolean(i, 1), rows->boolean(i, 2), rows->boolean(i, 3), std::move(*revision)});
+      revisions.push_back({rows->integer(i, 0), rows->boolean(i, 1), rows->boolean(i, 2),
+                           rows->boolean(i, 3), std::move(*revision)});
     }
     return revisions;
   });
 }
 
-Result<std::vector<Store::WrittenTiles>> Store::written_by(const Layer& layer,
-                                                           std::span<const std::int64_t> sequences) {
+Result<std::vector<Store::WrittenTiles>> Store::written_by(
+    const Layer& layer, std::span<const std::int64_t> sequences) {
   PgArray list(oid::kInt8);
   for (const std::int64_t sequence : sequences) list.add(sequence);
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<WrittenTiles>> {
@@ -180,7 +191,8 @@ Result<std::vector<Store::WrittenTiles>> Store::written_by(const Layer& layer,
           auto revision = decode_revision(address, layer.type, row.bytes(0, 2));
           if (!revision) return tl::unexpected(revision.error());
           if (written.empty() || written.back().tile != address) written.push_back({address, {}});
-          for (int w = 0; w < kMaskWords; ++w) written.back().written.words[w] |= revision->written.words[w];
+          for (int w = 0; w < kMaskWords; ++w)
+            written.back().written.words[w] |= revision->written.words[w];
           return {};
         });
     if (!read) return tl::unexpected(read.error());

@@ -6,20 +6,23 @@ namespace {
 #define STRATA_TOOL_COLUMNS "id, name, slug::text, deleted IS NOT NULL, version"
 
 Tool read_tool(const PgResult& rows, int i) {
-  return {rows.integer(i, 0), rows.text(i, 1), rows.text(i, 2), rows.boolean(i, 3), rows.integer(i, 4)};
+  return {rows.integer(i, 0), rows.text(i, 1), rows.text(i, 2), rows.boolean(i, 3),
+          rows.integer(i, 4)};
 }
 
 constexpr std::size_t kShapeBytes = sizeof(ShapeBits);
 
 std::vector<std::uint8_t> bytes_of(const ShapeBits& bits) {
   std::vector<std::uint8_t> bytes(kShapeBytes);
-  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(bits[i / 8] >> (i % 8 * 8));
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = static_cast<std::uint8_t>(bits[i / 8] >> (i % 8 * 8));
   return bytes;
 }
 
 ShapeBits bits_of(Bytes bytes) {
   ShapeBits bits{};
-  for (std::size_t i = 0; i < bytes.size(); ++i) bits[i / 8] |= std::uint64_t{bytes[i]} << (i % 8 * 8);
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bits[i / 8] |= std::uint64_t{bytes[i]} << (i % 8 * 8);
   return bits;
 }
 
@@ -27,8 +30,9 @@ ShapeBits bits_of(Bytes bytes) {
 
 Result<std::vector<Tool>> Store::tools() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Tool>> {
-    auto rows = connection.query("SELECT " STRATA_TOOL_COLUMNS
-                                 " FROM tool_shapes WHERE deleted IS NULL ORDER BY lower(name), id");
+    auto rows =
+        connection.query("SELECT " STRATA_TOOL_COLUMNS
+                         " FROM tool_shapes WHERE deleted IS NULL ORDER BY lower(name), id");
     if (!rows) return tl::unexpected(rows.error());
     std::vector<Tool> tools;
     for (int i = 0; i < rows->rows(); ++i) tools.push_back(read_tool(*rows, i));
@@ -41,8 +45,10 @@ Result<Tool> Store::tool(const std::string& ref) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<Tool> {
     const auto id = id_of(ref);
     auto rows =
-        id ? connection.query("SELECT " STRATA_TOOL_COLUMNS " FROM tool_shapes WHERE id = $1", Params().integer(*id))
-           : connection.query("SELECT " STRATA_TOOL_COLUMNS " FROM tool_shapes WHERE slug = $1 AND deleted IS NULL",
+        id ? connection.query("SELECT " STRATA_TOOL_COLUMNS " FROM tool_shapes WHERE id = $1",
+                              Params().integer(*id))
+           : connection.query("SELECT " STRATA_TOOL_COLUMNS
+                              " FROM tool_shapes WHERE slug = $1 AND deleted IS NULL",
                               Params().text(ref));
     if (!rows) return tl::unexpected(rows.error());
     if (rows->rows() == 0) return not_found("tool", ref);
@@ -50,7 +56,8 @@ Result<Tool> Store::tool(const std::string& ref) {
   });
 }
 
-Result<Tool> Store::create_tool(const Tool& tool, const ShapeBits& shape, const FirstAnswer<Tool>& answer) {
+Result<Tool> Store::create_tool(const Tool& tool, const ShapeBits& shape,
+                                const FirstAnswer<Tool>& answer) {
   if (auto good = check_name(tool.name); !good) return tl::unexpected(good.error());
   if (auto good = check_text(tool.slug, "slug"); !good) return tl::unexpected(good.error());
   const auto cells = bytes_of(shape);
@@ -63,16 +70,16 @@ Result<Tool> Store::create_tool(const Tool& tool, const ShapeBits& shape, const 
     if (count->integer(0, 0) >= kMostTools)
       return fail(409, "Too many tools",
                   "A site has at most " + std::to_string(kMostTools) + " tools. Delete one first.");
-    auto row =
-        insert_with_slug(connection,
-                         "SELECT slug::text FROM tool_shapes WHERE slug LIKE $1 AND deleted IS NULL "
-                         "UNION ALL SELECT unnest(ARRAY['disc', 'square'])",
-                         {}, tool.slug.empty() ? tool.name : tool.slug, [&](const std::string& slug) {
-                           return connection.query(
-                               "INSERT INTO tool_shapes (name, slug, cells) VALUES ($1, $2, $3) "
-                               "ON CONFLICT (slug) WHERE deleted IS NULL DO NOTHING RETURNING " STRATA_TOOL_COLUMNS,
-                               Params().text(tool.name).text(slug).bytes(cells));
-                         });
+    auto row = insert_with_slug(
+        connection,
+        "SELECT slug::text FROM tool_shapes WHERE slug LIKE $1 AND deleted IS NULL "
+        "UNION ALL SELECT unnest(ARRAY['disc', 'square'])",
+        {}, tool.slug.empty() ? tool.name : tool.slug, [&](const std::string& slug) {
+          return connection.query(
+              "INSERT INTO tool_shapes (name, slug, cells) VALUES ($1, $2, $3) "
+              "ON CONFLICT (slug) WHERE deleted IS NULL DO NOTHING RETURNING " STRATA_TOOL_COLUMNS,
+              Params().text(tool.name).text(slug).bytes(cells));
+        });
     if (!row) return tl::unexpected(row.error());
     return read_tool(*row, 0);
   });
@@ -87,8 +94,8 @@ Result<Tool> Store::update_tool(const Tool& tool, const FirstAnswer<Tool>& answe
         Params().integer(tool.id).integer(tool.version).text(tool.name));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() > 0) return read_tool(*row, 0);
-    auto known =
-        connection.query("SELECT 1 FROM tool_shapes WHERE id = $1 AND deleted IS NULL", Params().integer(tool.id));
+    auto known = connection.query("SELECT 1 FROM tool_shapes WHERE id = $1 AND deleted IS NULL",
+                                  Params().integer(tool.id));
     if (!known) return tl::unexpected(known.error());
     if (known->rows() == 0) return not_found("tool", std::to_string(tool.id));
     return stale("tool");
@@ -108,7 +115,8 @@ Result<void> Store::delete_tool(std::int64_t id, const FirstAnswer<>& answer) {
 
 Result<ShapeBits> Store::tool_shape(std::int64_t id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<ShapeBits> {
-    auto row = connection.query("SELECT cells FROM tool_shapes WHERE id = $1", Params().integer(id));
+    auto row =
+        connection.query("SELECT cells FROM tool_shapes WHERE id = $1", Params().integer(id));
     if (!row) return tl::unexpected(row.error());
     if (row->rows() == 0) return not_found("tool", std::to_string(id));
     return bits_of(row->bytes(0, 0));

@@ -52,7 +52,9 @@ void FlowControl::on_style() {
   everything_waits_ = true;
 }
 
-void FlowControl::on_ack(std::uint64_t frame) { acked_ = std::max(acked_, std::min(frame, last_frame_)); }
+void FlowControl::on_ack(std::uint64_t frame) {
+  acked_ = std::max(acked_, std::min(frame, last_frame_));
+}
 
 void FlowControl::on_quiet() { moving_ = false; }
 
@@ -68,8 +70,8 @@ std::optional<FlowControl::Draw> FlowControl::next() {
     everything_waits_ = false;
   } else {
     draw.changed = boxes_;
-    if (refine_waits_)
-      draw.quality = Quality::moving;  // its camera moves still, and the whole is refined once it stands
+    // its camera moves still, and the whole is refined once it stands
+    if (refine_waits_) draw.quality = Quality::moving;
   }
   boxes_.clear();
   camera_waits_ = false;

@@ -17,7 +17,8 @@
 namespace strata::stream {
 namespace {
 
-// One picture with one setting, and who wants it. Kept as long as somebody holds the frame, who might still ask.
+// One picture with one setting, and who wants it. Kept as long as somebody holds the frame, who
+// might still ask.
 struct Work {
   std::weak_ptr<const render::Frame> frame;
   JpegSettings settings;
@@ -75,7 +76,8 @@ struct JpegPool::Impl {
         lock.unlock();
         const auto start = std::chrono::steady_clock::now();
         Jpegs jpegs = jpegs_of(*job.frame, work.settings);
-        const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+        const std::chrono::duration<double, std::milli> elapsed =
+            std::chrono::steady_clock::now() - start;
         lock.lock();
         work.encoded = true;
         work.jpegs = std::move(jpegs);
@@ -90,7 +92,8 @@ struct JpegPool::Impl {
 };
 
 JpegPool::JpegPool(int threads) : impl_(std::make_unique<Impl>()) {
-  for (int i = 0; i < std::max(1, threads); ++i) impl_->threads.emplace_back([impl = impl_.get()] { impl->run(); });
+  for (int i = 0; i < std::max(1, threads); ++i)
+    impl_->threads.emplace_back([impl = impl_.get()] { impl->run(); });
 }
 
 JpegPool::~JpegPool() {
@@ -108,9 +111,9 @@ void JpegPool::encode(render::SharedFrame frame, JpegSettings settings, Done don
   std::erase_if(impl_->known, [](const auto& work) { return work->frame.expired(); });
   const auto same = std::find_if(impl_->known.begin(), impl_->known.end(),
                                  [&](const auto& work) { return work->is_of(frame, settings); });
-  const auto work = same != impl_->known.end()
-                        ? *same
-                        : impl_->known.emplace_back(std::make_shared<Work>(Work{frame, settings, {}, false, {}, 0}));
+  const auto work = same != impl_->known.end() ? *same
+                                               : impl_->known.emplace_back(std::make_shared<Work>(
+                                                     Work{frame, settings, {}, false, {}, 0}));
   work->wanted.push_back(std::move(done));
   // Who asks while it is being encoded is served with the others.
   if (work->wanted.size() > 1 || (same != impl_->known.end() && !work->encoded)) return;

@@ -8,17 +8,20 @@ namespace strata::stream {
 namespace {
 
 constexpr std::array<MovingPicture, LinkPace::kSteps> kReductions{
-    {{{75, false}, 1}, {{65, false}, 0.7}, {{60, false}, 0.5}, {{50, false}, 0.35}}};  // each of about half the bytes
-constexpr double kNewPair = 0.3, kNewWait = 0.3;                                       // weights in running means
+    // each of about half the bytes
+    {{{75, false}, 1}, {{65, false}, 0.7}, {{60, false}, 0.5}, {{50, false}, 0.35}}};
+// weights in running means
+constexpr double kNewPair = 0.3, kNewWait = 0.3;
 constexpr double kDrawnApart = 1.25;
-constexpr std::chrono::milliseconds kShortestGap{5};  // acknowledgements closer than that came together
+// acknowledgements closer than that came together
+constexpr std::chrono::milliseconds kShortestGap{5};
 
 }  // namespace
 
 void LinkPace::on_sent(std::uint64_t frame, std::size_t bytes, bool moving, Clock::time_point at) {
   const int step = moving ? step_ : -1;
-  const bool alike =
-      std::all_of(on_the_way_.begin(), on_the_way_.end(), [&](const Sent& one) { return one.step == step; });
+  const bool alike = std::all_of(on_the_way_.begin(), on_the_way_.end(),
+                                 [&](const Sent& one) { return one.step == step; });
   on_the_way_.push_back({frame, static_cast<double>(bytes), step, wide_, alike, at});
 }
 
@@ -43,8 +46,10 @@ void LinkPace::note_rate(const Sent& sent, Clock::time_point acked) {
   const auto gap = acked - last_ack_;
   if (sent.at >= last_ack_ || gap < kShortestGap) return;
   const double s_per_byte = Seconds(gap).count() / sent.bytes;
-  if (kDrawnApart * (sent.at - last_sent_) < gap)  // it was busy with the first while the second came
-    s_per_byte_ = s_per_byte_ == 0 ? s_per_byte : s_per_byte_ + kNewPair * (s_per_byte - s_per_byte_);
+  // it was busy with the first while the second came
+  if (kDrawnApart * (sent.at - last_sent_) < gap)
+    s_per_byte_ =
+        s_per_byte_ == 0 ? s_per_byte : s_per_byte_ + kNewPair * (s_per_byte - s_per_byte_);
   else  // the link is as fast as that, or faster
     s_per_byte_ = std::min(s_per_byte_, s_per_byte);
 }
@@ -82,7 +87,8 @@ void LinkPace::judge(Seconds wait, Clock::time_point at) {
     }
   }
   const bool is_clear = judged_ >= kJudged || wait > 4 * kLongestWait;
-  if (mean_wait_ > kLongestWait && is_clear && step_ + 1 < kSteps && at >= no_reduction_until_) return reduce(wait);
+  if (mean_wait_ > kLongestWait && is_clear && step_ + 1 < kSteps && at >= no_reduction_until_)
+    return reduce(wait);
   short_waits_ = wait > kShortWait ? 0 : short_waits_ + 1;
   if (!wide_ && delay() > kLongDelay && short_waits_ == kFirstTrial) wide_ = true;
   if (step_ == 0 || short_waits_ < trial_) return;

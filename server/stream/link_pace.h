@@ -10,29 +10,35 @@
 
 namespace strata::stream {
 
-// How far pictures of a moving camera are reduced, so that they come in time over one client's link. What stands still is always of full
-// quality.
+// How far pictures of a moving camera are reduced, so that they come in time over one client's
+// link. What stands still is always of full quality.
 struct MovingPicture {
   JpegSettings jpeg;
   double scale = 1;  // of the window's width and height
   bool operator==(const MovingPicture&) const = default;
 };
 
-// What one client's link and browser manage, judged by when frames were sent and acknowledged. Two frames that were sent close together
-// and acknowledged further apart tell the link's rate (a packet pair); the shortest that a frame of late took, without what its
-// bytes need at that rate, is the link's delay (as TCP Vegas has it). What a frame takes beyond the delay is its wait: for those before it,
-// and for itself. Waits beyond `kLongestWait` reduce pictures, unless that shortens them little, since then something else is slow; a
-// series of short ones makes pictures better again, step by step; a better step that did not hold is tried again later and later. Where the delay is long and waits are short the link lies idle between
-// two frames: then three may be on their way, until they wait for each other. Without clocks or threads.
+// What one client's link and browser manage, judged by when frames were sent and acknowledged. Two
+// frames that were sent close together and acknowledged further apart tell the link's rate (a
+// packet pair); the shortest that a frame of late took, without what its bytes need at that rate,
+// is the link's delay (as TCP Vegas has it). What a frame takes beyond the delay is its wait: for
+// those before it, and for itself. Waits beyond `kLongestWait` reduce pictures, unless that
+// shortens them little, since then something else is slow; a series of short ones makes pictures
+// better again, step by step; a better step that did not hold is tried again later and later. Where
+// the delay is long and waits are short the link lies idle between two frames: then three may be on
+// their way, until they wait for each other. Without clocks or threads.
 class LinkPace {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kLongestWait{100}, kShortWait{50}, kLongDelay{50};
-  static constexpr std::chrono::seconds kDelayKept{15};  // a delay is of the last one to two of these
+  // a delay is of the last one to two of these
+  static constexpr std::chrono::seconds kDelayKept{15};
   static constexpr int kSteps = 4;
-  static constexpr int kFirstTrial = 12, kLastTrial = 384;  // frames with a short wait, until a better step is tried
-  static constexpr int kJudged = 3;                         // frames until a step is judged
-  static constexpr double kWorthIt = 0.85;                  // of the wait before, that a reduction must leave at most
+  // frames with a short wait, until a better step is tried
+  static constexpr int kFirstTrial = 12, kLastTrial = 384;
+  static constexpr int kJudged = 3;  // frames until a step is judged
+  // of the wait before, that a reduction must leave at most
+  static constexpr double kWorthIt = 0.85;
 
   void on_sent(std::uint64_t frame, std::size_t bytes, bool moving, Clock::time_point at);
   void on_ack(std::uint64_t frame, Clock::time_point at);

@@ -21,12 +21,14 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kQuietAfter = 200ms;  // the full-quality picture follows within 250 ms of the last input
+// the full-quality picture follows within 250 ms of the last input
+constexpr auto kQuietAfter = 200ms;
 constexpr auto kActsFor = 2s;
 constexpr auto kFirstRetry = 50ms;
 constexpr auto kLastRetry = 5000ms;
 
-// Full colour at full quality: thin coloured lines of a layer smear in 4:2:0, and parts drawn anew would show as patches.
+// Full colour at full quality: thin coloured lines of a layer smear in 4:2:0, and parts drawn anew
+// would show as patches.
 constexpr JpegSettings kStillPicture{90, true};
 
 bool is_superseded(const Problem& problem) { return problem.status == 409; }
@@ -37,7 +39,11 @@ bool is_refusal(const Problem& problem) { return problem.status == 422; }
 
 struct Viewer::Impl {
   Impl(StreamContext stream, Options o, Send s, Refused r)
-      : context(stream), options(o), send(std::move(s)), refused(std::move(r)), flow(o.window, o.sequence) {
+      : context(stream),
+        options(o),
+        send(std::move(s)),
+        refused(std::move(r)),
+        flow(o.window, o.sequence) {
     adapt_window();
   }
 
@@ -54,11 +60,12 @@ struct Viewer::Impl {
   const StreamContext context;
   const Options options;
 
-  std::recursive_mutex
-      send_mutex;  // held while `send` or `refused` runs, so that `close` waits for it; taken before `mutex`
+  // held while `send` or `refused` runs, so that `close` waits for it; taken before `mutex`
+  std::recursive_mutex send_mutex;
   Send send;
   Refused refused;
-  std::string told;  // the detail of what `refused` was told since the last picture; under `send_mutex`
+  // the detail of what `refused` was told since the last picture; under `send_mutex`
+  std::string told;
 
   mutable std::mutex mutex;
   FlowControl flow;
@@ -68,7 +75,8 @@ struct Viewer::Impl {
   render::ModelHandle model = 0;
   render::ViewHandle view = 0;
   std::uint64_t generation = 0;  // of `view`: answers about older ones are void
-  std::deque<Picture> drawn;     // in frame order, at most `window`; the first is being encoded when `encoding`
+  // in frame order, at most `window`; the first is being encoded when `encoding`
+  std::deque<Picture> drawn;
   bool encoding = false;
   bool closed = false;
   Clock::time_point last_camera{};  // when the newest camera came
@@ -81,17 +89,22 @@ struct Viewer::Impl {
 namespace {
 
 // The largest size of the window's shape within the limits, reduced.
-std::pair<int, int> picture_size(const Camera& camera, const Viewer::Options& options, double reduced) {
-  const double scale =
-      reduced * std::min({1.0, double(options.max_width) / camera.width, double(options.max_height) / camera.height});
-  return {std::max(1, int(std::lround(camera.width * scale))), std::max(1, int(std::lround(camera.height * scale)))};
+std::pair<int, int> picture_size(const Camera& camera, const Viewer::Options& options,
+                                 double reduced) {
+  const double scale = reduced * std::min({1.0, double(options.max_width) / camera.width,
+                                           double(options.max_height) / camera.height});
+  return {std::max(1, int(std::lround(camera.width * scale))),
+          std::max(1, int(std::lround(camera.height * scale)))};
 }
 
-std::uint32_t microseconds(double ms) { return static_cast<std::uint32_t>(std::clamp(ms * 1000.0, 0.0, 4e9)); }
+std::uint32_t microseconds(double ms) {
+  return static_cast<std::uint32_t>(std::clamp(ms * 1000.0, 0.0, 4e9));
+}
 
 FrameMessages frame_messages(const FlowControl::Draw& draw, const FlowControl::Numbered& number,
                              const render::Frame& frame, std::uint32_t view_id,
-                             const std::vector<std::vector<std::uint8_t>>& jpegs, double encode_ms) {
+                             const std::vector<std::vector<std::uint8_t>>& jpegs,
+                             double encode_ms) {
   protocol::FrameHeader header;
   header.still = number.still;
   header.view_id = view_id;
@@ -114,7 +127,8 @@ FrameMessages frame_messages(const FlowControl::Draw& draw, const FlowControl::N
     header.payload_bytes = static_cast<std::uint32_t>(jpegs[i].size());
     const auto head = protocol::encode_frame_header(header);
     auto message = std::make_shared<std::vector<std::uint8_t>>(head.size() + jpegs[i].size());
-    std::copy(jpegs[i].begin(), jpegs[i].end(), std::copy(head.begin(), head.end(), message->begin()));
+    std::copy(jpegs[i].begin(), jpegs[i].end(),
+              std::copy(head.begin(), head.end(), message->begin()));
     messages.push_back(std::move(message));
   }
   return messages;
@@ -124,8 +138,8 @@ FrameMessages frame_messages(const FlowControl::Draw& draw, const FlowControl::N
 
 Viewer::Viewer() = default;
 
-std::shared_ptr<Viewer> Viewer::create(StreamContext context, render::ModelHandle model, Options options, Send send,
-                                       Refused refused) {
+std::shared_ptr<Viewer> Viewer::create(StreamContext context, render::ModelHandle model,
+                                       Options options, Send send, Refused refused) {
   std::shared_ptr<Viewer> viewer(new Viewer());
   viewer->impl_ = std::make_unique<Impl>(context, options, std::move(send), std::move(refused));
   viewer->impl_->model = model;
@@ -154,11 +168,12 @@ void Viewer::add_view() {
     generation = ++impl_->generation;
   }
   auto* renderer = impl_->context.renderer;
-  renderer->add_view(model, [self = weak_from_this(), renderer, generation](Result<render::ViewHandle> view) {
-    auto viewer = self.lock();
-    const bool wanted = viewer && viewer->on_view(generation, view);
-    if (!wanted && view) renderer->remove_view(*view);
-  });
+  renderer->add_view(
+      model, [self = weak_from_this(), renderer, generation](Result<render::ViewHandle> view) {
+        auto viewer = self.lock();
+        const bool wanted = viewer && viewer->on_view(generation, view);
+        if (!wanted && view) renderer->remove_view(*view);
+      });
 }
 
 bool Viewer::on_view(std::uint64_t generation, const Result<render::ViewHandle>& view) {
@@ -208,13 +223,15 @@ void Viewer::set_camera(std::uint64_t camera_seq, const Camera& camera, bool mov
   step();
 }
 
-// One timer a viewer: when it rings too early, because cameras came meanwhile, it is set again for the rest.
+// One timer a viewer: when it rings too early, because cameras came meanwhile, it is set again for
+// the rest.
 void Viewer::wait_for_quiet() {
   std::chrono::milliseconds left;
   {
     std::lock_guard lock(impl_->mutex);
     if (impl_->quiet_timer_runs || impl_->closed || !impl_->flow.wants_quiet_timer()) return;
-    left = std::chrono::ceil<std::chrono::milliseconds>(impl_->last_camera + kQuietAfter - Clock::now());
+    left = std::chrono::ceil<std::chrono::milliseconds>(impl_->last_camera + kQuietAfter -
+                                                        Clock::now());
     impl_->quiet_timer_runs = left > 0ms;
     if (left <= 0ms) impl_->flow.on_quiet();
   }
@@ -275,7 +292,8 @@ void Viewer::reset_model(render::ModelHandle model, render::ViewStyle style) {
   {
     std::lock_guard lock(impl_->mutex);
     if (impl_->closed) return;
-    // After a lost context the old handle means nothing and removing it is refused; after another reload it frees the view.
+    // After a lost context the old handle means nothing and removing it is refused; after another
+    // reload it frees the view.
     if (impl_->view != 0) impl_->context.renderer->remove_view(impl_->view);
     impl_->model = model;
     impl_->view = 0;
@@ -293,7 +311,8 @@ Viewer::Stats Viewer::stats() const {
   return stats;
 }
 
-// Starts the draw that the flow asks for. The renderer may answer at once, so it is called without the lock.
+// Starts the draw that the flow asks for. The renderer may answer at once, so it is called without
+// the lock.
 void Viewer::step() {
   FlowControl::Draw draw;
   MovingPicture reduced{kStillPicture, 1};
@@ -320,16 +339,18 @@ void Viewer::step() {
   }
   request.camera = draw.camera;
   request.changed = draw.changed;
-  std::tie(request.width, request.height) = picture_size(draw.camera, impl_->options, reduced.scale);
-  impl_->context.renderer->draw(std::move(request), [self = weak_from_this(), draw,
-                                                     jpeg = reduced.jpeg](const Result<render::SharedFrame>& frame) {
-    auto viewer = self.lock();
-    if (!viewer) return;
-    if (frame)
-      viewer->on_drawn(draw, jpeg, *frame);
-    else
-      viewer->on_failed(draw.ticket, frame.error());
-  });
+  std::tie(request.width, request.height) =
+      picture_size(draw.camera, impl_->options, reduced.scale);
+  impl_->context.renderer->draw(std::move(request),
+                                [self = weak_from_this(), draw,
+                                 jpeg = reduced.jpeg](const Result<render::SharedFrame>& frame) {
+                                  auto viewer = self.lock();
+                                  if (!viewer) return;
+                                  if (frame)
+                                    viewer->on_drawn(draw, jpeg, *frame);
+                                  else
+                                    viewer->on_failed(draw.ticket, frame.error());
+                                });
 }
 
 void Viewer::on_drawn(const FlowControl::Draw& draw, JpegSettings jpeg, render::SharedFrame frame) {
@@ -350,7 +371,9 @@ void Viewer::on_failed(std::uint64_t ticket, const Problem& problem) {
   const bool refused = is_refusal(problem);
   {
     std::lock_guard lock(impl_->mutex);
-    if (impl_->closed || !(refused ? impl_->flow.on_refused(ticket) : impl_->flow.on_failed(ticket))) return;
+    if (impl_->closed ||
+        !(refused ? impl_->flow.on_refused(ticket) : impl_->flow.on_failed(ticket)))
+      return;
   }
   if (is_superseded(problem)) return step();
   if (refused) {
@@ -370,7 +393,8 @@ void Viewer::tell(const Problem& why) {
   if (std::exchange(impl_->told, why.detail) != why.detail && impl_->refused) impl_->refused(why);
 }
 
-// One picture of a viewer is encoded at a time: that keeps frames in order and `send` from running twice at once.
+// One picture of a viewer is encoded at a time: that keeps frames in order and `send` from running
+// twice at once.
 void Viewer::encode_next() {
   render::SharedFrame frame;
   JpegSettings settings;
@@ -383,7 +407,8 @@ void Viewer::encode_next() {
   }
   impl_->context.encoder->encode(std::move(frame), settings,
                                  [self = weak_from_this()](const Jpegs& jpegs, double encode_ms) {
-                                   if (auto viewer = self.lock()) viewer->on_encoded(jpegs, encode_ms);
+                                   if (auto viewer = self.lock())
+                                     viewer->on_encoded(jpegs, encode_ms);
                                  });
 }
 
@@ -398,14 +423,15 @@ void Viewer::on_encoded(const Jpegs& jpegs, double encode_ms) {
       const Impl::Picture picture = std::move(impl_->drawn.front());
       impl_->drawn.pop_front();
       if (!jpegs) {
-        impl_->flow.on_ack(picture.number.frame);  // it never leaves, so no client can give its credit back
+        // it never leaves, so no client can give its credit back
+        impl_->flow.on_ack(picture.number.frame);
       } else {
-        messages =
-            frame_messages(picture.draw, picture.number, *picture.frame, impl_->options.view_id, *jpegs, encode_ms);
+        messages = frame_messages(picture.draw, picture.number, *picture.frame,
+                                  impl_->options.view_id, *jpegs, encode_ms);
         std::size_t bytes = 0;
         for (const FrameBytes& message : messages) bytes += message->size();
-        impl_->link.on_sent(picture.number.frame, bytes, picture.draw.quality == FlowControl::Quality::moving,
-                            Clock::now());
+        impl_->link.on_sent(picture.number.frame, bytes,
+                            picture.draw.quality == FlowControl::Quality::moving, Clock::now());
         ++impl_->stats.frames;
         impl_->stats.bytes += bytes;
         impl_->stats.last_encode_ms = encode_ms;

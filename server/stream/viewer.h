@@ -18,16 +18,21 @@ struct StreamContext {
   JpegPool* encoder = nullptr;
 };
 
-// An encoded message as it goes to the socket: frame header (protocol/frame_header.h) and payload in one buffer.
+// An encoded message as it goes to the socket: frame header (protocol/frame_header.h) and payload
+// in one buffer.
 using FrameBytes = std::shared_ptr<const std::vector<std::uint8_t>>;
-using FrameMessages = std::vector<FrameBytes>;  // of one frame, a message for each rectangle, in order
+// of one frame, a message for each rectangle, in order
+using FrameMessages = std::vector<FrameBytes>;
 
-// One view of one client: from camera and changes to encoded frames, by the flow rules of ARCHITECTURE.md:
-// the newest camera wins; frames echo the camera's number; at most `window` frames are sent but not acknowledged; when there is
-// no credit nothing is drawn, and what changed meanwhile is drawn once credit returns; nothing changed → nothing sent;
-// a frame of a moving camera is followed by a full-quality one within 250 ms of the last input; quality never falls
-// while painting; viewers with the same picture share its drawing and its encoding; over a slow link pictures of a moving camera are
-// reduced (stream/link_pace); who just moved the camera or edited is not held up by onlookers (render/frame_queue). Thread-safe; `send` is called on encoder threads, in frame order, `refused` on the GPU thread; never concurrently.
+// One view of one client: from camera and changes to encoded frames, by the flow rules of
+// ARCHITECTURE.md: the newest camera wins; frames echo the camera's number; at most `window` frames
+// are sent but not acknowledged; when there is no credit nothing is drawn, and what changed
+// meanwhile is drawn once credit returns; nothing changed → nothing sent; a frame of a moving
+// camera is followed by a full-quality one within 250 ms of the last input; quality never falls
+// while painting; viewers with the same picture share its drawing and its encoding; over a slow
+// link pictures of a moving camera are reduced (stream/link_pace); who just moved the camera or
+// edited is not held up by onlookers (render/frame_queue). Thread-safe; `send` is called on encoder
+// threads, in frame order, `refused` on the GPU thread; never concurrently.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   struct Options {
@@ -37,11 +42,12 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     std::int64_t sequence = 0;  // of the scene at the start
   };
   using Send = std::function<void(FrameMessages)>;
-  // Why nothing can be drawn as asked for (422). Told once; the next camera, layers or edit are tried again.
+  // Why nothing can be drawn as asked for (422). Told once; the next camera, layers or edit are
+  // tried again.
   using Refused = std::function<void(const Problem&)>;
 
-  static std::shared_ptr<Viewer> create(StreamContext context, render::ModelHandle model, Options options, Send send,
-                                        Refused refused = {});
+  static std::shared_ptr<Viewer> create(StreamContext context, render::ModelHandle model,
+                                        Options options, Send send, Refused refused = {});
   ~Viewer();
 
   void set_camera(std::uint64_t camera_seq, const Camera& camera, bool moving);

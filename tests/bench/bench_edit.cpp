@@ -1,4 +1,5 @@
-// Edits by tiles, beside the paper's own algorithms and its octree rival, on one context in one run.
+// Edits by tiles, beside the paper's own algorithms and its octree rival, on one context in one
+// run.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -24,9 +25,11 @@ struct Options {
 
 constexpr int kWidth = 1280, kHeight = 720;
 // Dabs on the model as `camera()` sees it; the same for every method.
-const glm::dvec2 kCenters[] = {{640, 360}, {560, 400}, {700, 330}, {640, 290}, {580, 340}, {690, 420}, {620, 380}};
+const glm::dvec2 kCenters[] = {{640, 360}, {560, 400}, {700, 330}, {640, 290},
+                               {580, 340}, {690, 420}, {620, 380}};
 constexpr std::size_t kCompared = 3;  // of them
-// What a texel takes at least: position 8, depth 4, value and flag read and written 4, and what a cache line brings besides.
+// What a texel takes at least: position 8, depth 4, value and flag read and written 4, and what a
+// cache line brings besides.
 constexpr double kBytesPerTexel = 20;
 
 struct Measured {
@@ -77,12 +80,14 @@ class Report {
   void begin(const EditScene& scene, int texture, const EditMethods& methods) {
     scene_ = &scene;
     texture_ = texture;
-    std::printf("\n%s, %zu triangles, %d²\n", scene.mesh.name.c_str(), scene.mesh.geometry->triangle_count(), texture);
-    std::printf("  %-14s %11s %11s %13s %11s\n", "made", "seconds", "model MB", "structure MB", "layer MB");
+    std::printf("\n%s, %zu triangles, %d²\n", scene.mesh.name.c_str(),
+                scene.mesh.geometry->triangle_count(), texture);
+    std::printf("  %-14s %11s %11s %13s %11s\n", "made", "seconds", "model MB", "structure MB",
+                "layer MB");
     for (const auto& method : methods.all()) {
       const EditCreation c = method->creation();
-      std::printf("  %-14s %11.2f %11.1f %13.1f %11.1f\n", method->name().c_str(), c.structure_s, mb(c.model_bytes),
-                  mb(c.structure_bytes), mb(c.layer_bytes));
+      std::printf("  %-14s %11.2f %11.1f %13.1f %11.1f\n", method->name().c_str(), c.structure_s,
+                  mb(c.model_bytes), mb(c.structure_bytes), mb(c.layer_bytes));
       creation_.push_back({{"method", method->name()},
                            {"model", scene.mesh.name},
                            {"triangles", scene.mesh.geometry->triangle_count()},
@@ -96,8 +101,9 @@ class Report {
       std::printf("  not run: %s\n", reason.c_str());
       not_run_.push_back({{"model", scene.mesh.name}, {"texture", texture}, {"why", reason}});
     }
-    std::printf("  ms an edit; × is how many times as long as tiles; floor is %.0f bytes a texel at %.1f GB/s\n",
-                kBytesPerTexel, bandwidth_ / 1e9);
+    std::printf(
+        "  ms an edit; × is how many times as long as tiles; floor is %.0f bytes a texel at %.1f GB/s\n",
+        kBytesPerTexel, bandwidth_ / 1e9);
     std::printf("  %5s %9s %9s %7s", "r px", "texels", "tiles", "/floor");
     for (const auto& method : methods.all())
       if (method->name() != "tiles") std::printf(" %13s %7s", method->name().c_str(), "×");
@@ -106,21 +112,25 @@ class Report {
 
   void add(int radius, const Case& found) {
     const bool tiles = found.has("tiles");
-    const double floor_ms =
-        tiles ? static_cast<double>(found.of.at("tiles").last.cells) * kBytesPerTexel / bandwidth_ * 1000 : 0;
+    const double floor_ms = tiles ? static_cast<double>(found.of.at("tiles").last.cells) *
+                                        kBytesPerTexel / bandwidth_ * 1000
+                                  : 0;
     std::printf("  %5d %9llu %9.3f %7.1f", radius,
                 tiles ? static_cast<unsigned long long>(found.of.at("tiles").last.cells) : 0ull,
-                tiles ? found.median("tiles") : 0, tiles && floor_ms > 0 ? found.median("tiles") / floor_ms : 0);
+                tiles ? found.median("tiles") : 0,
+                tiles && floor_ms > 0 ? found.median("tiles") / floor_ms : 0);
     for (const std::string& method : options_.methods) {
       if (!found.has(method)) continue;
       results_.push_back(row(method, radius, found, floor_ms));
       if (method == "tiles") continue;
-      std::printf(" %13.3f %7.1f", found.median(method), tiles ? found.median(method) / found.median("tiles") : 0);
+      std::printf(" %13.3f %7.1f", found.median(method),
+                  tiles ? found.median(method) / found.median("tiles") : 0);
     }
     const EditAgreement& agreement = found.agreement;
     agreement_ += agreement;
     std::printf("  %llu of %llu (off: tiles %llu, paper %llu; beyond rounding %llu)\n",
-                static_cast<unsigned long long>(agreement.differ), static_cast<unsigned long long>(agreement.compared),
+                static_cast<unsigned long long>(agreement.differ),
+                static_cast<unsigned long long>(agreement.compared),
                 static_cast<unsigned long long>(agreement.tiles_off),
                 static_cast<unsigned long long>(agreement.paper_off),
                 static_cast<unsigned long long>(agreement.beyond_rounding));
@@ -141,11 +151,13 @@ class Report {
             {"tiles_off", agreement.tiles_off},
             {"paper_off", agreement.paper_off},
             {"beyond_rounding", agreement.beyond_rounding},
-            {"identical", agreement.differ * 100'000 <= agreement.compared && agreement.beyond_rounding == 0}};
+            {"identical",
+             agreement.differ * 100'000 <= agreement.compared && agreement.beyond_rounding == 0}};
   }
   static double mb(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
-  nlohmann::json row(const std::string& method, int radius, const Case& found, double floor_ms) const {
+  nlohmann::json row(const std::string& method, int radius, const Case& found,
+                     double floor_ms) const {
     const Measured& measured = found.of.at(method);
     nlohmann::json json = measured.ms.json();
     json.update({{"method", method},
@@ -202,7 +214,8 @@ int run(Options options) {
     for (const int texture : options.textures) {
       EditMethods methods(*renderer, scene, texture, options.methods);
       report.begin(scene, texture, methods);
-      for (const int radius : options.radii) report.add(radius, measure(methods, radius, options.repeats));
+      for (const int radius : options.radii)
+        report.add(radius, measure(methods, radius, options.repeats));
     }
     renderer->remove_model(scene.model);
   }
@@ -212,12 +225,17 @@ int run(Options options) {
 }  // namespace
 
 Command add_edit(CLI::App& app) {
-  auto* command = app.add_subcommand("edit", "One dab of the brush, beside the paper's TEA + TPA and its octree rival");
+  auto* command = app.add_subcommand(
+      "edit", "One dab of the brush, beside the paper's TEA + TPA and its octree rival");
   auto options = std::make_shared<Options>();
-  command->add_option("--model", options->models, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or files")
+  command
+      ->add_option("--model", options->models,
+                   "pot[:TRIANGLES], vessel, excavation, amazon, thai, or files")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--texture", options->textures, "Resolutions; the octree's depth is their logarithm")
+  command
+      ->add_option("--texture", options->textures,
+                   "Resolutions; the octree's depth is their logarithm")
       ->delimiter(',')
       ->check(CLI::IsMember({2048, 4096, 8192, 16384}))
       ->capture_default_str();
@@ -225,18 +243,23 @@ Command add_edit(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::Range(1, 2000))
       ->capture_default_str();
-  command->add_option("--method", options->methods, "tiles, paper, paper-compute, octree, octree-fair")
+  command
+      ->add_option("--method", options->methods, "tiles, paper, paper-compute, octree, octree-fair")
       ->delimiter(',')
       ->check(CLI::IsMember(kMethods))
       ->capture_default_str();
   command->add_option("--repeats", options->repeats, "Rounds there and back")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_flag("--full", options->full, "The paper's matrix: all four models at 2048, 4096 and 8192");
-  command->add_option("--edit-path", options->edit_path, "How tiles are painted: automatic, compute, kernel")
+  command->add_flag("--full", options->full,
+                    "The paper's matrix: all four models at 2048, 4096 and 8192");
+  command
+      ->add_option("--edit-path", options->edit_path,
+                   "How tiles are painted: automatic, compute, kernel")
       ->check(CLI::IsMember({"automatic", "compute", "kernel"}))
       ->capture_default_str();
-  command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
+  command->add_option("--cache", options->cache, "Where generated meshes are kept")
+      ->capture_default_str();
   command->add_option("--json", options->json, "Write the results here, after each case");
   return [options] { return run(*options); };
 }

@@ -26,7 +26,9 @@ render::Frame frame(Site& site, const std::string& model, glm::dvec3 from) {
   box.box_max = glm::vec3(info.bounds_max - box.origin);
   return must(room->picture({}, look_at(box, from, 1280, 720)));
 }
-render::Frame first_frame(Site& site, const std::string& model) { return frame(site, model, {0.4, -1, 0.6}); }
+render::Frame first_frame(Site& site, const std::string& model) {
+  return frame(site, model, {0.4, -1, 0.6});
+}
 
 // Every camera is new, so the mesh is drawn for each.
 Samples full_frames(Site& site, const std::string& model) {
@@ -50,8 +52,8 @@ int run(const Options& options) {
 
   StepWatch watch;
   double start = now_ms();
-  const Model model =
-      must(watch.run("start", progress, [&] { return jobs::import_model(*site.store, request, progress); }));
+  const Model model = must(watch.run(
+      "start", progress, [&] { return jobs::import_model(*site.store, request, progress); }));
   const double import_ms = now_ms() - start;
   watch.run("first frame", progress, [&] { return first_frame(site, model.slug); });
   const double import_to_frame_ms = now_ms() - start;
@@ -100,14 +102,17 @@ int run(const Options& options) {
                               {"restart_to_first_frame_ms", restart_ms},
                               {"full_frame", full.json()}};
   std::printf("%s: %llu triangles, %d charts, %.1f %% of texels used\n", options.model.c_str(),
-              static_cast<unsigned long long>(model.triangles), model.atlas.charts, model.atlas.coverage * 100);
-  std::printf("import %.2f s, to the first frame %.2f s (%.2f s of processor), peak memory %.0f MiB\n",
-              import_ms / 1000, import_to_frame_ms / 1000, watch.cpu_seconds(), watch.peak_mib());
+              static_cast<unsigned long long>(model.triangles), model.atlas.charts,
+              model.atlas.coverage * 100);
+  std::printf(
+      "import %.2f s, to the first frame %.2f s (%.2f s of processor), peak memory %.0f MiB\n",
+      import_ms / 1000, import_to_frame_ms / 1000, watch.cpu_seconds(), watch.peak_mib());
   watch.print();
-  std::printf("restart with %d painted %d² layers: ready %.2f s, model open %.2f s, first frame %.2f s\n",
-              options.layers, options.resolution, ready_ms / 1000, open_ms / 1000, restart_ms / 1000);
-  std::printf("a frame of the full mesh from a new camera: %.0f ms (%.0f to %.0f)\n", full.median(), full.quantile(0),
-              full.quantile(1));
+  std::printf(
+      "restart with %d painted %d² layers: ready %.2f s, model open %.2f s, first frame %.2f s\n",
+      options.layers, options.resolution, ready_ms / 1000, open_ms / 1000, restart_ms / 1000);
+  std::printf("a frame of the full mesh from a new camera: %.0f ms (%.0f to %.0f)\n", full.median(),
+              full.quantile(0), full.quantile(1));
   write_result(options.json, machine(&gpu), nlohmann::json::array({result}));
   return 0;
 }
@@ -115,13 +120,18 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_import(CLI::App& app) {
-  auto* command = app.add_subcommand("import", "Import to first frame, and restart with painted layers to first frame");
+  auto* command = app.add_subcommand(
+      "import", "Import to first frame, and restart with painted layers to first frame");
   auto options = std::make_shared<Options>();
-  command->add_option("--model", options->model, "vessel, excavation, amazon, thai, textured10m, or a file")
+  command
+      ->add_option("--model", options->model,
+                   "vessel, excavation, amazon, thai, textured10m, or a file")
       ->capture_default_str();
-  command->add_option("--layers", options->layers, "Painted layers at the restart")->capture_default_str();
+  command->add_option("--layers", options->layers, "Painted layers at the restart")
+      ->capture_default_str();
   command->add_option("--texture", options->resolution, "Their resolution")->capture_default_str();
-  command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
+  command->add_option("--cache", options->cache, "Where generated meshes are kept")
+      ->capture_default_str();
   command->add_option("--json", options->json, "Write the results here");
   return [options] { return run(*options); };
 }

@@ -20,8 +20,8 @@ struct Options {
 };
 
 // A patch of the surface, as one paints it: connected, around one place. `radius` in model units.
-std::map<TileAddress, TileData> patch(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph, float radius,
-                                      ValueType type) {
+std::map<TileAddress, TileData> patch(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
+                                      float radius, ValueType type) {
   auto slot = static_cast<std::uint32_t>(map.block_of_slot.size() / 2);
   while (map.surface_mask[slot] == 0) ++slot;
   const int texel = std::countr_zero(map.surface_mask[slot]);
@@ -39,7 +39,8 @@ std::map<TileAddress, TileData> all_of(const mesh::SurfaceMap& map, ValueType ty
   std::map<TileAddress, TileData> tiles;
   const int side = map.resolution / kTileSize;
   for (int i = 0; i < side * side; ++i) {
-    const TileAddress address{static_cast<std::uint16_t>(i % side), static_cast<std::uint16_t>(i / side)};
+    const TileAddress address{static_cast<std::uint16_t>(i % side),
+                              static_cast<std::uint16_t>(i / side)};
     const TileMask owned = map.owned_in_tile(address);
     if (!owned.any()) continue;
     TileData& tile = tiles.try_emplace(address, type).first->second;
@@ -51,11 +52,13 @@ std::map<TileAddress, TileData> all_of(const mesh::SurfaceMap& map, ValueType ty
 
 // By bisection on the radius; the share is of all texels that can hold something.
 std::map<TileAddress, TileData> painted(const mesh::SurfaceMap& map, const mesh::TexelGraph& graph,
-                                        const mesh::Geometry& geometry, ValueType type, double percent) {
+                                        const mesh::Geometry& geometry, ValueType type,
+                                        double percent) {
   if (percent <= 0) return {};
   auto all = all_of(map, type);
   if (percent >= 100) return all;
-  const auto wanted = static_cast<std::uint64_t>(static_cast<double>(texel_count(all)) * percent / 100);
+  const auto wanted =
+      static_cast<std::uint64_t>(static_cast<double>(texel_count(all)) * percent / 100);
   float low = 0, high = glm::length(geometry.box_max - geometry.box_min);
   std::map<TileAddress, TileData> best;
   for (int step = 0; step < 16; ++step) {
@@ -81,11 +84,13 @@ int run(const Options& options) {
   const auto model = await<render::ModelHandle>([&](auto done) {
     renderer->add_model({mesh.geometry, {}}, std::move(done));
   });
-  const auto view = await<render::ViewHandle>([&](auto done) { renderer->add_view(model, std::move(done)); });
+  const auto view =
+      await<render::ViewHandle>([&](auto done) { renderer->add_view(model, std::move(done)); });
   nlohmann::json results = nlohmann::json::array();
   Progress progress;
-  std::printf("%s: bytes of one layer, MB\n%8s %6s %9s %7s %12s %8s %12s %9s %9s\n", mesh.name.c_str(), "texture",
-              "type", "painted %", "tiles", "whole layer", "GPU", "main memory", "database", "as noise");
+  std::printf("%s: bytes of one layer, MB\n%8s %6s %9s %7s %12s %8s %12s %9s %9s\n",
+              mesh.name.c_str(), "texture", "type", "painted %", "tiles", "whole layer", "GPU",
+              "main memory", "database", "as noise");
   for (const int texture : options.textures) {
     const auto map = must(mesh::bake_surface_map(*mesh.geometry, texture, progress));
     const auto graph = must(mesh::build_texel_graph(*mesh.geometry, map, progress));
@@ -100,8 +105,8 @@ int run(const Options& options) {
           tiles[address] = std::make_shared<const TileData>(std::move(tile));
         }
         mirror->put(tiles, 1);
-        const auto layer =
-            await<render::LayerHandle>([&](auto done) { renderer->add_layer(model, mirror, std::move(done)); });
+        const auto layer = await<render::LayerHandle>(
+            [&](auto done) { renderer->add_layer(model, mirror, std::move(done)); });
         render::FrameRequest request;
         request.view = view;
         request.camera = look_at(*mesh.geometry, {0.4, -1, 0.6}, 320, 240);
@@ -111,12 +116,13 @@ int run(const Options& options) {
         await<render::SharedFrame>([&](auto done) { renderer->draw(request, std::move(done)); });
         const std::uint64_t on_gpu = renderer->layer_bytes_used(layer), in_memory = mirror->bytes();
         renderer->remove_layer(layer);
-        const auto whole = std::uint64_t{static_cast<unsigned>(texture)} * static_cast<unsigned>(texture) *
+        const auto whole = std::uint64_t{static_cast<unsigned>(texture)} *
+                           static_cast<unsigned>(texture) *
                            static_cast<unsigned>(bytes_per_texel(type) + 1);
-        std::printf("%8d %6s %9g %7zu %12.2f %8.3f %12.3f %9.3f %9.3f\n", texture, name(type).data(), percent,
-                    tiles.size(), static_cast<double>(whole) / 1e6, static_cast<double>(on_gpu) / 1e6,
-                    static_cast<double>(in_memory) / 1e6, static_cast<double>(stored) / 1e6,
-                    static_cast<double>(noise) / 1e6);
+        std::printf("%8d %6s %9g %7zu %12.2f %8.3f %12.3f %9.3f %9.3f\n", texture,
+                    name(type).data(), percent, tiles.size(), static_cast<double>(whole) / 1e6,
+                    static_cast<double>(on_gpu) / 1e6, static_cast<double>(in_memory) / 1e6,
+                    static_cast<double>(stored) / 1e6, static_cast<double>(noise) / 1e6);
         results.push_back({{"model", mesh.name},
                            {"texture", texture},
                            {"type", name(type)},
@@ -136,9 +142,12 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_memory(CLI::App& app) {
-  auto* command = app.add_subcommand("memory", "Bytes of a layer where 0, 1, 10 and 100 % of the surface is painted");
+  auto* command = app.add_subcommand(
+      "memory", "Bytes of a layer where 0, 1, 10 and 100 % of the surface is painted");
   auto options = std::make_shared<Options>();
-  command->add_option("--model", options->model, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a file")
+  command
+      ->add_option("--model", options->model,
+                   "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a file")
       ->capture_default_str();
   command->add_option("--texture", options->textures, "Resolutions")
       ->delimiter(',')
@@ -148,7 +157,8 @@ Command add_memory(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
-  command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
+  command->add_option("--cache", options->cache, "Where generated meshes are kept")
+      ->capture_default_str();
   command->add_option("--json", options->json, "Write the results here");
   return [options] { return run(*options); };
 }

@@ -16,7 +16,9 @@ namespace fs = std::filesystem;
 constexpr std::array kPresets{"vessel", "excavation", "amazon", "thai", "textured10m"};
 constexpr int kLowestResolution = 2048;
 
-bool is_preset(const std::string& name) { return std::find(kPresets.begin(), kPresets.end(), name) != kPresets.end(); }
+bool is_preset(const std::string& name) {
+  return std::find(kPresets.begin(), kPresets.end(), name) != kPresets.end();
+}
 
 mesh::TriangleMesh pot_of(const std::string& name) {
   const auto colon = name.find(':');
@@ -27,7 +29,8 @@ mesh::TriangleMesh pot_of(const std::string& name) {
 }
 
 // Runs a command that writes `file`; what is left of a failure is removed.
-Result<fs::path> made_by(const std::string& command, const fs::path& file, const std::string& advice) {
+Result<fs::path> made_by(const std::string& command, const fs::path& file,
+                         const std::string& advice) {
   fs::create_directories(file.parent_path());
   if (std::system(command.c_str()) == 0) return file;
   std::error_code ignored;
@@ -36,7 +39,8 @@ Result<fs::path> made_by(const std::string& command, const fs::path& file, const
 }
 
 std::string plain_name(const fs::path& file) {
-  return file.extension() == ".xz" || file.extension() == ".gz" ? file.stem().string() : file.filename().string();
+  return file.extension() == ".xz" || file.extension() == ".gz" ? file.stem().string()
+                                                                : file.filename().string();
 }
 
 Result<fs::path> unpacked(const fs::path& file, const fs::path& cache) {
@@ -44,9 +48,9 @@ Result<fs::path> unpacked(const fs::path& file, const fs::path& cache) {
   if (ending != ".xz" && ending != ".gz") return file;
   const auto plain = cache / plain_name(file);
   if (fs::exists(plain)) return plain;
-  return made_by(
-      (ending == ".xz" ? "xz" : "gzip") + std::string(" -dc '") + file.string() + "' > '" + plain.string() + "'", plain,
-      "Could not unpack " + file.string() + ".");
+  return made_by((ending == ".xz" ? "xz" : "gzip") + std::string(" -dc '") + file.string() +
+                     "' > '" + plain.string() + "'",
+                 plain, "Could not unpack " + file.string() + ".");
 }
 
 Result<fs::path> mesh_file(const std::string& name, const fs::path& cache) {
@@ -60,10 +64,12 @@ Result<fs::path> mesh_file(const std::string& name, const fs::path& cache) {
   if (fs::exists(file)) return file;
   const fs::path maker = fs::path(STRATA_TEST_DATA) / "make_big_mesh.py";
   if (!fs::exists(maker))
-    return fail(404, "No such mesh",
-                "The preset " + name + " needs " + maker.string() + "; use pot:N or a file instead.");
-  return made_by("python3 '" + maker.string() + "' --preset " + name + " -o '" + file.string() + "' >&2", file,
-                 "Could not make the preset " + name + " (it needs python3 with numpy).");
+    return fail(
+        404, "No such mesh",
+        "The preset " + name + " needs " + maker.string() + "; use pot:N or a file instead.");
+  return made_by(
+      "python3 '" + maker.string() + "' --preset " + name + " -o '" + file.string() + "' >&2", file,
+      "Could not make the preset " + name + " (it needs python3 with numpy).");
 }
 
 }  // namespace
@@ -74,7 +80,8 @@ std::string mesh_title(const std::string& name) {
   const fs::path file(name);
   std::error_code error;
   const fs::path within = fs::relative(file, STRATA_TEST_DATA, error);
-  return error || within.empty() || *within.begin() == ".." ? file.filename().string() : within.string();
+  return error || within.empty() || *within.begin() == ".." ? file.filename().string()
+                                                            : within.string();
 }
 
 Result<std::vector<mesh::InputFile>> mesh_files(const std::string& name, const fs::path& cache) {
@@ -88,18 +95,22 @@ Result<std::vector<std::string>> all_meshes() {
   const fs::path data = STRATA_TEST_DATA;
   std::error_code error;
   for (const auto& entry : fs::recursive_directory_iterator(data, error))
-    if (entry.is_regular_file() && mesh::input_kind(plain_name(entry.path())) != mesh::InputKind::companion)
+    if (entry.is_regular_file() &&
+        mesh::input_kind(plain_name(entry.path())) != mesh::InputKind::companion)
       names.push_back(entry.path().string());
-  if (error) return fail(404, "No data folder", "There is no data folder at " + data.string() + ".");
+  if (error)
+    return fail(404, "No data folder", "There is no data folder at " + data.string() + ".");
   // The scans first, the presets, then the broken ones.
   std::sort(names.begin(), names.end());
-  const auto nasty = std::stable_partition(
-      names.begin(), names.end(), [](const std::string& name) { return name.find("/nasty/") == std::string::npos; });
+  const auto nasty = std::stable_partition(names.begin(), names.end(), [](const std::string& name) {
+    return name.find("/nasty/") == std::string::npos;
+  });
   names.insert(nasty, kPresets.begin(), kPresets.end());
   return names;
 }
 
-Result<mesh::LoadedMesh> load_named_mesh(const std::string& name, const fs::path& cache, Progress& progress) {
+Result<mesh::LoadedMesh> load_named_mesh(const std::string& name, const fs::path& cache,
+                                         Progress& progress) {
   if (is_generated(name)) return mesh::LoadedMesh{pot_of(name), {}, Unit::mm, "z"};
   const auto files = mesh_files(name, cache);
   if (!files) return tl::unexpected(files.error());
@@ -112,7 +123,8 @@ Result<BenchMesh> load_bench_mesh(const std::string& name, const BenchMeshOption
   if (!loaded) return tl::unexpected(loaded.error());
   const mesh::TriangleMesh& mesh = loaded->mesh;
   Result<mesh::Atlas> atlas = fail(0, "", "");
-  if (!mesh.corner_uvs.empty() && !options.make_always) atlas = mesh::keep_uvs(mesh, kLowestResolution, progress);
+  if (!mesh.corner_uvs.empty() && !options.make_always)
+    atlas = mesh::keep_uvs(mesh, kLowestResolution, progress);
   if (!atlas) atlas = mesh::make_atlas(mesh, kLowestResolution, progress);
   if (!atlas) return tl::unexpected(atlas.error());
   BenchMesh bench;

@@ -12,8 +12,9 @@
 
 namespace strata::bench {
 
-// Meshes go by name: `pot` or `pot:TRIANGLES` (generated here), a file of any format that an import takes, or a preset of the data
-// folder's make_big_mesh.py (vessel, excavation, amazon, thai, textured10m), made once into `cache`.
+// Meshes go by name: `pot` or `pot:TRIANGLES` (generated here), a file of any format that an import
+// takes, or a preset of the data folder's make_big_mesh.py (vessel, excavation, amazon, thai,
+// textured10m), made once into `cache`.
 struct BenchMesh {
   std::string name;
   std::shared_ptr<const mesh::Geometry> geometry;  // with an atlas
@@ -35,16 +36,18 @@ bool is_generated(const std::string& name);
 // As tables and captions call it: the path within the data folder, or the file's name.
 std::string mesh_title(const std::string& name);
 
-// The mesh with the files that it names. Files that end in .xz or .gz are unpacked into `cache`. Refused where there is no such
-// file, and where a preset cannot be made.
-Result<std::vector<mesh::InputFile>> mesh_files(const std::string& name, const std::filesystem::path& cache);
+// The mesh with the files that it names. Files that end in .xz or .gz are unpacked into `cache`.
+// Refused where there is no such file, and where a preset cannot be made.
+Result<std::vector<mesh::InputFile>> mesh_files(const std::string& name,
+                                                const std::filesystem::path& cache);
 
-// Every mesh of the data folder, and the presets. Some of its folder `nasty` are refused when they are read, as they should be.
+// Every mesh of the data folder, and the presets. Some of its folder `nasty` are refused when they
+// are read, as they should be.
 Result<std::vector<std::string>> all_meshes();
 
 // As the importer reads and repairs it; `pot` among them.
-Result<mesh::LoadedMesh> load_named_mesh(const std::string& name, const std::filesystem::path& cache,
-                                         Progress& progress);
+Result<mesh::LoadedMesh> load_named_mesh(const std::string& name,
+                                         const std::filesystem::path& cache, Progress& progress);
 
 // With the file's own texture coordinates where they can carry layers, unless `make_always`.
 Result<BenchMesh> load_bench_mesh(const std::string& name, const BenchMeshOptions& options = {});

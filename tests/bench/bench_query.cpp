@@ -1,4 +1,5 @@
-// Questions to a painted model over HTTP, from this process to itself: idle, while somebody paints, many points, statistics.
+// Questions to a painted model over HTTP, from this process to itself: idle, while somebody paints,
+// many points, statistics.
 #include <atomic>
 #include <iostream>
 #include <random>
@@ -61,8 +62,10 @@ class Queries {
       painter.join();
     }
     const std::string many = many_points();
-    add("points in one POST, CSV", 300, repeated(3, [&] { return post_ms(model + "/positions", many, "text/csv"); }));
-    add("points in one POST, JSON", 1000, repeated(3, [&] { return post_ms(model + "/positions", many); }));
+    add("points in one POST, CSV", 300,
+        repeated(3, [&] { return post_ms(model + "/positions", many, "text/csv"); }));
+    add("points in one POST, JSON", 1000,
+        repeated(3, [&] { return post_ms(model + "/positions", many); }));
 
     for (const std::string layer : {"units", "moisture"}) {
       const std::string path = model + "/layers/" + layer + "/statistics";
@@ -75,27 +78,32 @@ class Queries {
             stroke(layer);
             return get_ms(path);
           }));
-      add("the same with quantiles", 2000, repeated(3, [&] { return get_ms(path + "?include=quantiles"); }));
+      add("the same with quantiles", 2000,
+          repeated(3, [&] { return get_ms(path + "?include=quantiles"); }));
       add("first with pieces, with the texels' graph", 0, {get_ms(path + "?include=pieces")});
       add("with pieces", 2000, repeated(3, [&] { return get_ms(path + "?include=pieces"); }));
       add("with perimeter", 2000, repeated(3, [&] { return get_ms(path + "?include=perimeter"); }));
     }
     add("an expression over three layers", 100, repeated(5, [&] {
-          return post_ms(model + "/select", R"({"where": "moisture * 2 + salt > 0.5 and units <> 3"})");
+          return post_ms(model + "/select",
+                         R"({"where": "moisture * 2 + salt > 0.5 and units <> 3"})");
         }));
     light_up();
-    add("a cross-table", 0,
-        repeated(3, [&] { return post_ms(model + "/cross-table", R"({"rows": "units", "columns": "units"})"); }));
+    add("a cross-table", 0, repeated(3, [&] {
+          return post_ms(model + "/cross-table", R"({"rows": "units", "columns": "units"})");
+        }));
     const auto gpu = site_.renderer->info();
     write_result(options_.json, machine(&gpu), results_);
   }
 
  private:
   double get_ms(const std::string& path) { return client_->get(path).elapsed_ms; }
-  double post_ms(const std::string& path, const std::string& body, const char* accept = "application/json") {
+  double post_ms(const std::string& path, const std::string& body,
+                 const char* accept = "application/json") {
     return client_->post(path, body, accept).elapsed_ms;
   }
-  // From the filter of a person's view to the picture in which the records that it finds stand out: at the socket, 720p.
+  // From the filter of a person's view to the picture in which the records that it finds stand out:
+  // at the socket, 720p.
   void light_up() {
     make_parts();
     FrameClient viewer;
@@ -104,20 +112,24 @@ class Queries {
     const auto show = [&](const char* filter) {
       room::LayerView parts{layers_.at("parts").id, true, {}, {}, {}};
       if (filter)
-        parts.highlight = room::Highlight{must(query::parse_condition(filter, "filter", query::Names::columns)), false};
+        parts.highlight = room::Highlight{
+            must(query::parse_condition(filter, "filter", query::Names::columns)), false};
       if (const auto shown = member->show(0, {{parts}, {}, {}}); !shown)
         must(Result<int>(tl::unexpected(shown.error())));
     };
     show(nullptr);
     member->camera(0, 1, camera(), false);
     std::size_t content =
-        viewer.wait_for(*member, [](const auto& a) { return a.header.still && a.header.last; }).content;
+        viewer.wait_for(*member, [](const auto& a) { return a.header.still && a.header.last; })
+            .content;
     Samples samples;
     for (int i = 0; i < 20; ++i) {
-      const std::string filter = "thickness > " + std::to_string(1 + 0.1 * i) + " and state = 'loose'";
+      const std::string filter =
+          "thickness > " + std::to_string(1 + 0.1 * i) + " and state = 'loose'";
       const double start = now_ms();
       show(filter.c_str());
-      const auto lit = viewer.wait_for(*member, [&](const auto& a) { return a.header.last && a.content != content; });
+      const auto lit = viewer.wait_for(
+          *member, [&](const auto& a) { return a.header.last && a.content != content; });
       content = lit.content;
       samples.add(lit.at_ms - start);
     }
@@ -134,13 +146,15 @@ class Queries {
     layer.palette = default_palette(layer.type, true);
     Column thickness, state;
     thickness.name = thickness.slug = "thickness", thickness.kind = ColumnKind::numeric;
-    state.name = state.slug = "state", state.kind = ColumnKind::enumeration, state.choices = {"loose", "firm"};
+    state.name = state.slug = "state", state.kind = ColumnKind::enumeration,
+    state.choices = {"loose", "firm"};
     const Layer made = layers_["parts"] = must(room_->create_layer(layer, {}, {thickness, state}));
     const Table table = must(site_.store->table(std::to_string(*made.table), Role::owner));
     store::WriteRecords records;
     for (int i = 0; i < kParts; ++i)
-      records.records.push_back(
-          {{}, {{table.columns[0].id, (i * 7 % 1000) / 100.0}, {table.columns[1].id, i % 3 ? "firm" : "loose"}}});
+      records.records.push_back({{},
+                                 {{table.columns[0].id, (i * 7 % 1000) / 100.0},
+                                  {table.columns[1].id, i % 3 ? "firm" : "loose"}}});
     must(site_.store->write_records(table.id, records, "bench"));
     TileMap tiles;
     for (int ty = 0; ty < kResolution / kTileSize; ++ty) {
@@ -148,7 +162,8 @@ class Queries {
         auto tile = std::make_shared<TileData>(layer.type);
         for (int texel = 0; texel < kTexelsPerTile; ++texel) {
           const int x = tx * kTileSize + texel % kTileSize, y = ty * kTileSize + texel / kTileSize;
-          tile->write(texel, static_cast<std::uint32_t>(1 + y * kSide / kResolution * kSide + x * kSide / kResolution));
+          tile->write(texel, static_cast<std::uint32_t>(1 + y * kSide / kResolution * kSide +
+                                                        x * kSide / kResolution));
         }
         tiles[{static_cast<std::uint16_t>(tx), static_cast<std::uint16_t>(ty)}] = std::move(tile);
       }
@@ -170,7 +185,8 @@ class Queries {
   }
   void refill(const std::string& name, std::optional<double> value = {}) {
     const Layer& layer = layers_.at(name);
-    const double filled = value.value_or(is_float(layer.type) ? 0.001 * ++fills_ : double(100 + ++fills_ % 100));
+    const double filled =
+        value.value_or(is_float(layer.type) ? 0.001 * ++fills_ : double(100 + ++fills_ % 100));
     edit_and_wait(*room_, {random_uuid(),
                            {"bench", Role::owner},
                            layer.id,
@@ -179,7 +195,8 @@ class Queries {
   }
   Camera camera() const { return look_at(*room_->geometry(), {0.5, -1, 0.6}, 1280, 720); }
   void stroke(const std::string& name) {
-    const double x = 400 + static_cast<double>(random_() % 480), y = 200 + static_cast<double>(random_() % 320);
+    const double x = 400 + static_cast<double>(random_() % 480),
+                 y = 200 + static_cast<double>(random_() % 320);
     edit_and_wait(*room_, stroke_request(layers_.at(name), camera(), {{x, y}, {x + 30, y + 10}}, 20,
                                          static_cast<double>(random_() % 20)));
   }
@@ -190,8 +207,10 @@ class Queries {
     std::mt19937 random(5);
     const Camera view = camera();
     while (!stop) {
-      const double x = 400 + static_cast<double>(random() % 480), y = 200 + static_cast<double>(random() % 320);
-      edit_and_wait(*room_, stroke_request(layers_.at("units"), view, {{x, y}, {x + 8, y + 3}}, 20, 3));
+      const double x = 400 + static_cast<double>(random() % 480),
+                   y = 200 + static_cast<double>(random() % 320);
+      edit_and_wait(*room_,
+                    stroke_request(layers_.at("units"), view, {{x, y}, {x + 8, y + 3}}, 20, 3));
       std::this_thread::sleep_for(std::chrono::milliseconds(30));
     }
   }
@@ -206,8 +225,8 @@ class Queries {
   std::string point_query() {
     const auto p = place();
     char text[200];
-    std::snprintf(text, sizeof text, "/models/%s/position?coords=POINT%%20Z(%.6f%%20%.6f%%20%.6f)", model_.slug.c_str(),
-                  p.x, p.y, p.z);
+    std::snprintf(text, sizeof text, "/models/%s/position?coords=POINT%%20Z(%.6f%%20%.6f%%20%.6f)",
+                  model_.slug.c_str(), p.x, p.y, p.z);
     return text;
   }
   Samples points() {
@@ -272,12 +291,16 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_query(CLI::App& app) {
-  auto* command = app.add_subcommand("query", "Values, statistics and selections over HTTP, of layers of 4096²");
+  auto* command = app.add_subcommand(
+      "query", "Values, statistics and selections over HTTP, of layers of 4096²");
   auto options = std::make_shared<Options>();
-  command->add_option("--model", options->model, "vessel, excavation, amazon, thai, or a file")->capture_default_str();
-  command->add_option("--points", options->points, "Points of the bulk query")->capture_default_str();
+  command->add_option("--model", options->model, "vessel, excavation, amazon, thai, or a file")
+      ->capture_default_str();
+  command->add_option("--points", options->points, "Points of the bulk query")
+      ->capture_default_str();
   command->add_option("--requests", options->requests, "Single points")->capture_default_str();
-  command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
+  command->add_option("--cache", options->cache, "Where generated meshes are kept")
+      ->capture_default_str();
   command->add_option("--json", options->json, "Write the results here");
   return [options] { return run(*options); };
 }

@@ -1,5 +1,5 @@
-// A contact sheet: each model as the renderer draws it under a checker layer, for a person to judge seams, distortion and
-// density. An SVG with JPEG pictures, which any browser shows.
+// A contact sheet: each model as the renderer draws it under a checker layer, for a person to judge
+// seams, distortion and density. An SVG with JPEG pictures, which any browser shows.
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -19,7 +19,8 @@ constexpr int kCaption = 62;   // pixels below a row
 constexpr int kHeader = 54;
 constexpr int kTexture = 2048;  // of the checker layer
 constexpr int kSquare = 16;     // texels of a field of the checker
-// From the right of the front, from the left of the back, from above: to the right, to the front, up.
+// From the right of the front, from the left of the back, from above: to the right, to the front,
+// up.
 const glm::dvec3 kDirections[] = {{0.5, 1, 0.45}, {-0.5, -1, 0.45}, {0.15, 0.45, 1}};
 constexpr int kDirectionCount = 3;
 constexpr double kAboveFlat = 1.1;  // of terrain little would be seen from lower down
@@ -31,15 +32,16 @@ struct Options {
   bool all = false;
 };
 
-// Fields of kSquare texels in turn dark and light; every eighth line of fields is tinted, so that one sees which way u and
-// v run and how large 128 texels are.
+// Fields of kSquare texels in turn dark and light; every eighth line of fields is tinted, so that
+// one sees which way u and v run and how large 128 texels are.
 std::vector<render::TileUpload> checker_tiles() {
   std::vector<render::TileUpload> tiles;
   for (std::uint16_t ty = 0; ty < kTexture / kTileSize; ++ty)
     for (std::uint16_t tx = 0; tx < kTexture / kTileSize; ++tx) {
       auto tile = std::make_shared<TileData>(ValueType::u8);
       for (int i = 0; i < kTexelsPerTile; ++i) {
-        const int x = (tx * kTileSize + i % kTileSize) / kSquare, y = (ty * kTileSize + i / kTileSize) / kSquare;
+        const int x = (tx * kTileSize + i % kTileSize) / kSquare,
+                  y = (ty * kTileSize + i / kTileSize) / kSquare;
         const bool is_light = (x + y) % 2 == 0;
         const std::uint32_t tint = x % 8 == 0 ? 2 : y % 8 == 0 ? 4 : 0;
         tile->write(i, tint + (is_light ? 1 : 0));
@@ -53,18 +55,22 @@ std::shared_ptr<const Palette> checker_palette() {
   auto palette = std::make_shared<Palette>();
   palette->mode = PaletteMode::categorical;
   palette->min = 0, palette->max = 5;
-  palette->points = {{0, {112, 112, 118, 255}, ""}, {1, {242, 240, 234, 255}, ""}, {2, {170, 40, 40, 255}, ""},
-                     {3, {240, 170, 160, 255}, ""}, {4, {40, 70, 170, 255}, ""},   {5, {165, 190, 240, 255}, ""}};
+  palette->points = {{0, {112, 112, 118, 255}, ""}, {1, {242, 240, 234, 255}, ""},
+                     {2, {170, 40, 40, 255}, ""},   {3, {240, 170, 160, 255}, ""},
+                     {4, {40, 70, 170, 255}, ""},   {5, {165, 190, 240, 255}, ""}};
   return palette;
 }
 
 std::string base64(std::span<const std::uint8_t> bytes) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < bytes.size() ? bytes[i + k] : 0);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[three >> (18 - 6 * k) & 63] : '=';
+    for (std::size_t k = 0; k < 3; ++k)
+      three = three << 8 | (i + k < bytes.size() ? bytes[i + k] : 0);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k <= bytes.size() ? kDigits[three >> (18 - 6 * k) & 63] : '=';
   }
   return text;
 }
@@ -76,8 +82,8 @@ std::string escaped(const std::string& text) {
 }
 
 std::string text_at(int x, int y, const std::string& text, const char* style = "") {
-  return "<text x=\"" + std::to_string(x) + "\" y=\"" + std::to_string(y) + "\"" + style + ">" + escaped(text) +
-         "</text>\n";
+  return "<text x=\"" + std::to_string(x) + "\" y=\"" + std::to_string(y) + "\"" + style + ">" +
+         escaped(text) + "</text>\n";
 }
 
 template <class... Values>
@@ -102,18 +108,19 @@ std::string atlas_caption(const BenchMesh& mesh) {
   const double texels = atlas.coverage * atlas.lowest_resolution * atlas.lowest_resolution;
   return formatted(
       "%s texture coordinates · %d chart%s · %.1f %% of texels used · mean stretch %.2f · largest texel %.2f × the mean",
-      atlas.source == "file" ? "the file's" : "made", atlas.charts, atlas.charts == 1 ? "" : "s", 100 * atlas.coverage,
-      atlas.stretch_mean, atlas.texel_area_max * texels / mesh.area);
+      atlas.source == "file" ? "the file's" : "made", atlas.charts, atlas.charts == 1 ? "" : "s",
+      100 * atlas.coverage, atlas.stretch_mean, atlas.texel_area_max * texels / mesh.area);
 }
 
 std::string header() {
   return text_at(8, 22, "From the right of the front, from the left of the back, from above.",
                  " font-weight=\"bold\"") +
-         text_at(8, 42,
-                 formatted(
-                     "Fields of %d × %d texels of a layer of %d². Red lines run along v, blue ones along u, %d texels "
-                     "apart. Good: fields of one size all over, and square; where lines break, charts meet.",
-                     kSquare, kSquare, kTexture, 8 * kSquare));
+         text_at(
+             8, 42,
+             formatted(
+                 "Fields of %d × %d texels of a layer of %d². Red lines run along v, blue ones along u, %d texels "
+                 "apart. Good: fields of one size all over, and square; where lines break, charts meet.",
+                 kSquare, kSquare, kTexture, 8 * kSquare));
 }
 
 bool lies_flat(const BenchMesh& mesh) {
@@ -125,8 +132,11 @@ bool lies_flat(const BenchMesh& mesh) {
 // One row: the pictures of a model and its caption.
 std::string row(render::Renderer& renderer, const BenchMesh& mesh, int top) {
   using namespace render;
-  const auto model = await<ModelHandle>([&](auto done) { renderer.add_model({mesh.geometry, {}}, done); });
-  const auto layer = await<LayerHandle>([&](auto done) { renderer.add_layer(model, ValueType::u8, kTexture, done); });
+  const auto model = await<ModelHandle>([&](auto done) {
+    renderer.add_model({mesh.geometry, {}}, done);
+  });
+  const auto layer = await<LayerHandle>(
+      [&](auto done) { renderer.add_layer(model, ValueType::u8, kTexture, done); });
   await<void>([&](auto done) { renderer.write_tiles(layer, checker_tiles(), done); });
   const auto view = await<ViewHandle>([&](auto done) { renderer.add_view(model, done); });
   std::ostringstream svg;
@@ -143,11 +153,13 @@ std::string row(render::Renderer& renderer, const BenchMesh& mesh, int top) {
     static_assert(kFiner == 2);
     const Picture picture = mesh::halve({frame.width, frame.height, frame.pixels});
     const auto jpeg = encode_jpeg(picture.rgba, picture.width, picture.height, {85, true});
-    svg << "<image x=\"" << i * kPicture << "\" y=\"" << top << "\" width=\"" << kPicture << "\" height=\"" << kPicture
-        << "\" href=\"data:image/jpeg;base64," << base64(jpeg) << "\"/>\n";
+    svg << "<image x=\"" << i * kPicture << "\" y=\"" << top << "\" width=\"" << kPicture
+        << "\" height=\"" << kPicture << "\" href=\"data:image/jpeg;base64," << base64(jpeg)
+        << "\"/>\n";
   }
   svg << text_at(8, top + kPicture + 18, mesh_title(mesh.name), " font-weight=\"bold\"")
-      << text_at(8, top + kPicture + 36, size_caption(mesh)) << text_at(8, top + kPicture + 53, atlas_caption(mesh));
+      << text_at(8, top + kPicture + 36, size_caption(mesh))
+      << text_at(8, top + kPicture + 53, atlas_caption(mesh));
   renderer.remove_model(model);
   return svg.str();
 }
@@ -158,8 +170,8 @@ int run(const Options& options) {
   int top = kHeader;
   for (const auto& name : options.all ? must(all_meshes()) : options.meshes) {
     const auto mesh = load_bench_mesh(name, options.load);
-    const std::string said =
-        mesh_title(name) + (mesh ? ": " + atlas_caption(*mesh) : " is not shown: " + mesh.error().detail);
+    const std::string said = mesh_title(name) + (mesh ? ": " + atlas_caption(*mesh)
+                                                      : " is not shown: " + mesh.error().detail);
     std::printf("%s\n", said.c_str());
     std::fflush(stdout);
     if (mesh) {
@@ -170,10 +182,11 @@ int run(const Options& options) {
     }
   }
   std::istringstream lines(refused);
-  for (std::string line; std::getline(lines, line); top += 18) rows += text_at(8, top + 18, line, " font-size=\"12\"");
+  for (std::string line; std::getline(lines, line); top += 18)
+    rows += text_at(8, top + 18, line, " font-size=\"12\"");
   std::ofstream out(options.out);
-  out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kDirectionCount * kPicture << "\" height=\""
-      << top + 18
+  out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << kDirectionCount * kPicture
+      << "\" height=\"" << top + 18
       << "\" font-family=\"sans-serif\" font-size=\"14\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
       << header() << rows << "</svg>\n";
   out.close();
@@ -187,16 +200,22 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_sheet(CLI::App& app) {
-  auto* command = app.add_subcommand("sheet", "A contact sheet of models under a checker layer, as SVG");
+  auto* command =
+      app.add_subcommand("sheet", "A contact sheet of models under a checker layer, as SVG");
   auto options = std::make_shared<Options>();
-  command->add_option("meshes", options->meshes, "pot, pot:N, presets or files that an import takes");
-  command->add_flag("--all", options->all,
-                    "Every mesh of the data folder, and the presets; those that are refused are named");
+  command->add_option("meshes", options->meshes,
+                      "pot, pot:N, presets or files that an import takes");
+  command->add_flag(
+      "--all", options->all,
+      "Every mesh of the data folder, and the presets; those that are refused are named");
   command->add_option("-o,--out", options->out, "Where the sheet goes")->capture_default_str();
-  command->add_flag("--make", options->load.make_always, "Never keep the file's own texture coordinates");
-  command->add_option("--up", options->load.up, "The axis that points up, of files that cannot say it")
+  command->add_flag("--make", options->load.make_always,
+                    "Never keep the file's own texture coordinates");
+  command
+      ->add_option("--up", options->load.up, "The axis that points up, of files that cannot say it")
       ->check(CLI::IsMember({"x", "y", "z"}));
-  command->add_option("--cache", options->load.cache, "Where generated meshes are kept")->capture_default_str();
+  command->add_option("--cache", options->load.cache, "Where generated meshes are kept")
+      ->capture_default_str();
   return [options] { return run(*options); };
 }
 

@@ -1,5 +1,6 @@
-// A real server and many viewers over real WebSockets: pictures of turning cameras, strokes until they are seen, viewers at rest, slow
-// links, one who stalls; and one viewer beside ParaView's web engine on the same mesh.
+// A real server and many viewers over real WebSockets: pictures of turning cameras, strokes until
+// they are seen, viewers at rest, slow links, one who stalls; and one viewer beside ParaView's web
+// engine on the same mesh.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -22,7 +23,8 @@ struct Options {
   std::vector<int> active{1, 4, 8}, idle{0, 100, 500};
   std::vector<std::string> links{"loopback", "20ms/50Mbit", "80ms/8Mbit"};
   std::vector<std::string> parts{"active", "idle", "stalled", "peer"};
-  std::string idle_views = "own", window = "1280x720", model = "pot:100000", cache = "build/bench", json, server;
+  std::string idle_views = "own", window = "1280x720", model = "pot:100000", cache = "build/bench",
+              json, server;
   double seconds = 10, radius = 40;
   int layers = 3, rounds = 2;
   bool quick = false;
@@ -42,8 +44,8 @@ std::vector<Hands> hands_of(int active, bool can_paint) {
   return {Hands::turn, Hands::paint, Hands::turn_and_paint};
 }
 
-// Active viewers on each link, with the first number of idle ones; more idle ones, and the one who stalls, on the first link. The
-// whole product of the lists would take a day and say little more.
+// Active viewers on each link, with the first number of idle ones; more idle ones, and the one who
+// stalls, on the first link. The whole product of the lists would take a day and say little more.
 std::vector<std::pair<std::string, CrowdCase>> crowd_cases(const Options& options, bool can_paint) {
   std::vector<LinkQuality> links;
   for (const auto& link : options.links) links.push_back(*parse_link(link));
@@ -51,7 +53,8 @@ std::vector<std::pair<std::string, CrowdCase>> crowd_cases(const Options& option
   common.idle = options.idle.front();
   common.is_same_view = options.idle_views == "same";
   std::vector<std::pair<std::string, CrowdCase>> cases;
-  const auto add = [&](const char* part, CrowdCase one, const LinkQuality& link, int active, Hands hands) {
+  const auto add = [&](const char* part, CrowdCase one, const LinkQuality& link, int active,
+                       Hands hands) {
     one.link = link;
     one.active = active;
     one.hands = hands;
@@ -62,7 +65,8 @@ std::vector<std::pair<std::string, CrowdCase>> crowd_cases(const Options& option
       const auto all_hands = hands_of(active, can_paint);
       const bool stalls = options.has("stalled") && &link == &links.front();
       for (const Hands hands : all_hands)
-        if (options.has("active") || (stalls && hands == all_hands.back())) add("active", common, link, active, hands);
+        if (options.has("active") || (stalls && hands == all_hands.back()))
+          add("active", common, link, active, hands);
       if (!stalls) continue;
       CrowdCase stalled = common;
       stalled.has_stalled = true;
@@ -95,27 +99,31 @@ void print(const nlohmann::json& row, const nlohmann::json& run) {
     line << row["program"].get<std::string>() << ", " << row["layers"] << " layers, "
          << row["hands"].get<std::string>();
   else
-    line << row["link"].get<std::string>() << ", " << row["active"] << " active (" << row["hands"].get<std::string>()
-         << "), " << row["idle"] << " idle" << (row["stalled"].get<bool>() ? ", one stalled" : "");
+    line << row["link"].get<std::string>() << ", " << row["active"] << " active ("
+         << row["hands"].get<std::string>() << "), " << row["idle"] << " idle"
+         << (row["stalled"].get<bool>() ? ", one stalled" : "");
   if (run.contains("camera_to_picture")) {
     line << ": " << number(run, "frames_per_s", "%.1f") << " frames/s, picture p50 "
-         << number(run["camera_to_picture"], "ms_median") << " ms, p95 " << number(run["camera_to_picture"], "ms_p95")
-         << "; " << number(run, "frames_per_cpu_s", "%.1f") << " frames a CPU second";
+         << number(run["camera_to_picture"], "ms_median") << " ms, p95 "
+         << number(run["camera_to_picture"], "ms_p95") << "; "
+         << number(run, "frames_per_cpu_s", "%.1f") << " frames a CPU second";
   } else {
     const auto& rates = run["frames_per_s"];
     line << ": frames/s turning " << number(rates["turning"], "median", "%.1f") << ", painting "
-         << number(rates["painting"], "median", "%.1f") << ", idle " << number(rates["idle"], "median", "%.2f")
-         << "; camera p50 " << number(run["camera_to_last_byte"], "ms_median") << " ms, p95 "
+         << number(rates["painting"], "median", "%.1f") << ", idle "
+         << number(rates["idle"], "median", "%.2f") << "; camera p50 "
+         << number(run["camera_to_last_byte"], "ms_median") << " ms, p95 "
          << number(run["camera_to_last_byte"], "ms_p95");
     if (run.contains("strokes"))
-      line << "; stroke → own p50 " << number(run["strokes"]["to_own_pixels"], "ms_median") << " ms, p95 "
-           << number(run["strokes"]["to_own_pixels"], "ms_p95") << ", → others p50 "
+      line << "; stroke → own p50 " << number(run["strokes"]["to_own_pixels"], "ms_median")
+           << " ms, p95 " << number(run["strokes"]["to_own_pixels"], "ms_p95") << ", → others p50 "
            << number(run["strokes"]["to_others_pixels"]["still"], "ms_median") << " still, "
            << number(run["strokes"]["to_others_pixels"]["turning"], "ms_median") << " turning";
-    line << "; " << number(run["bytes_per_s"], "all_active") << " + " << number(run["bytes_per_s"], "all_idle")
-         << " bytes/s; cores " << number(run["cores"], "server", "%.3f") << ", "
-         << number(run, "frames_per_cpu_s", "%.1f") << " frames a CPU second; " << number(run["server_mib"], "peak")
-         << " MiB";
+    line << "; " << number(run["bytes_per_s"], "all_active") << " + "
+         << number(run["bytes_per_s"], "all_idle") << " bytes/s; cores "
+         << number(run["cores"], "server", "%.3f") << ", "
+         << number(run, "frames_per_cpu_s", "%.1f") << " frames a CPU second; "
+         << number(run["server_mib"], "peak") << " MiB";
   }
   std::puts(line.str().c_str());
   std::fflush(stdout);
@@ -129,20 +137,30 @@ void raise_descriptor_limit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-void add_peer_rows(std::vector<Row>& rows, const StreamSite& site, const ParaViewPeer& peer, double seconds) {
+void add_peer_rows(std::vector<Row>& rows, const StreamSite& site, const ParaViewPeer& peer,
+                   double seconds) {
   for (const Stage* stage : {&site.plain(), &site.painted()}) {
     for (const Hands hands : {Hands::turn_step_by_step, Hands::turn}) {
       CrowdCase alone;
       alone.hands = hands;
-      rows.push_back({{{"part", "peer"}, {"program", "strata"}, {"layers", stage->layers}, {"hands", name(hands)}},
-                      [&site, stage, alone, seconds] { return Crowd(alone, *stage, site.server()).measure(seconds); }});
+      rows.push_back({{{"part", "peer"},
+                       {"program", "strata"},
+                       {"layers", stage->layers},
+                       {"hands", name(hands)}},
+                      [&site, stage, alone, seconds] {
+                        return Crowd(alone, *stage, site.server()).measure(seconds);
+                      }});
     }
     if (site.plain().model == site.painted().model) break;
   }
-  rows.push_back({{{"part", "peer"}, {"program", "paraview"}, {"layers", 0}, {"hands", name(Hands::turn_step_by_step)}},
+  rows.push_back({{{"part", "peer"},
+                   {"program", "paraview"},
+                   {"layers", 0},
+                   {"hands", name(Hands::turn_step_by_step)}},
                   [&site, &peer, seconds] {
                     const Stage& stage = site.plain();
-                    return peer.measure(site.mesh_file(), stage.width, stage.height, seconds, site.server().folder());
+                    return peer.measure(site.mesh_file(), stage.width, stage.height, seconds,
+                                        site.server().folder());
                   }});
 }
 
@@ -162,9 +180,9 @@ int run(Options options) {
   wish.has_plain = peer.has_value();
 
   const StreamSite site(wish);
-  std::printf("%s, %lld triangles, %d layers of 4096², %s, %.0f s each, %s\n", options.model.c_str(),
-              static_cast<long long>(site.triangles()), options.layers, options.window.c_str(), options.seconds,
-              site.server().renderer().c_str());
+  std::printf("%s, %lld triangles, %d layers of 4096², %s, %.0f s each, %s\n",
+              options.model.c_str(), static_cast<long long>(site.triangles()), options.layers,
+              options.window.c_str(), options.seconds, site.server().renderer().c_str());
   std::vector<Row> rows;
   for (const auto& [part, one] : crowd_cases(options, options.layers > 0)) {
     nlohmann::json json = one.json();
@@ -220,7 +238,8 @@ void make_quick(Options& options, const CLI::App& command) {
 
 Command add_stream(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "stream", "Many viewers of a real server: pictures, strokes, rest, slow links, beside ParaView");
+      "stream",
+      "Many viewers of a real server: pictures, strokes, rest, slow links, beside ParaView");
   auto options = std::make_shared<Options>();
   const auto is_link = [](const std::string& text) {
     return parse_link(text) ? "" : text + " is neither loopback nor like 20ms/50Mbit";
@@ -235,11 +254,15 @@ Command add_stream(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  command->add_option("--idle", options->idle, "Numbers of viewers at rest; the first of them is there in every case")
+  command
+      ->add_option("--idle", options->idle,
+                   "Numbers of viewers at rest; the first of them is there in every case")
       ->delimiter(',')
       ->check(CLI::Range(0, 1500))
       ->capture_default_str();
-  command->add_option("--idle-views", options->idle_views, "Whether they look from places of their own")
+  command
+      ->add_option("--idle-views", options->idle_views,
+                   "Whether they look from places of their own")
       ->check(CLI::IsMember({"own", "same"}))
       ->capture_default_str();
   command->add_option("--links", options->links, "loopback, or ROUND TRIPms/RATEMbit")
@@ -257,20 +280,27 @@ Command add_stream(CLI::App& app) {
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command->add_option("--window", options->window)->check(is_window)->capture_default_str();
-  command->add_option("--model", options->model, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a PLY file")
+  command
+      ->add_option("--model", options->model,
+                   "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a PLY file")
       ->capture_default_str();
   command
-      ->add_option("--layers", options->layers, "Filled layers shown; the strokes go to the topmost (0: nobody paints)")
+      ->add_option("--layers", options->layers,
+                   "Filled layers shown; the strokes go to the topmost (0: nobody paints)")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   command->add_option("--radius", options->radius, "Brush radius in pixels")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
-  command->add_option("--server", options->server, "The server's program (default: strata beside this one)")
+  command
+      ->add_option("--server", options->server,
+                   "The server's program (default: strata beside this one)")
       ->check(CLI::ExistingFile);
-  command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
+  command->add_option("--cache", options->cache, "Where generated meshes are kept")
+      ->capture_default_str();
   command->add_option("--json", options->json, "Write the results here");
-  command->add_flag("--quick", options->quick, "Two viewers and three at rest on one link, 2 s each: whether it works");
+  command->add_flag("--quick", options->quick,
+                    "Two viewers and three at rest on one link, 2 s each: whether it works");
   return [options, command] {
     if (options->quick) make_quick(*options, *command);
     return run(*options);

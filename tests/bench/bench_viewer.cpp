@@ -1,4 +1,5 @@
-// One client at 720p, in this process and up to the socket: from a stroke to its pixels, frames of a moving camera, bytes kept of steady painting.
+// One client at 720p, in this process and up to the socket: from a stroke to its pixels, frames of
+// a moving camera, bytes kept of steady painting.
 #include <cmath>
 #include <future>
 #include <iostream>
@@ -26,7 +27,8 @@ struct Options {
 class OneViewer {
  public:
   explicit OneViewer(const Options& options) : options_(options) {
-    // Imported through the store like any model, from a PLY the bench writes when it is the generated pot.
+    // Imported through the store like any model, from a PLY the bench writes when it is the
+    // generated pot.
     store::Store::NewModel made;
     made.model.name = made.model.slug = "bench";
     made.model.project_id = must(site_.store->project("default")).id;
@@ -43,8 +45,9 @@ class OneViewer {
     member_ = room_->join({"bench", Role::owner}, {}, nullptr,
                           [&](const stream::FrameMessages& frame) { client_.receive(frame); });
     member_->camera(0, ++camera_number_, still_, false);
-    client_.wait_for(*member_,
-                     [&](const auto& a) { return a.header.still && a.header.camera_seq == camera_number_.load(); });
+    client_.wait_for(*member_, [&](const auto& a) {
+      return a.header.still && a.header.camera_seq == camera_number_.load();
+    });
   }
 
   // To changed pixels, with a still camera.
@@ -55,32 +58,35 @@ class OneViewer {
       const glm::dvec2 from = on_the_model();
       const double start = now_ms();
       std::atomic<double> durable{0};
-      auto request =
-          stroke_request(layers_.back(), still_, {from, from + glm::dvec2(12, 5)}, options_.radius, 1 + i % 200);
+      auto request = stroke_request(layers_.back(), still_, {from, from + glm::dvec2(12, 5)},
+                                    options_.radius, 1 + i % 200);
       std::promise<std::int64_t> sequence;
       auto sequence_known = sequence.get_future();
       std::promise<void> saved;
       room_->edit(
-          std::move(request), [&](const room::EditAnswer& answer) { sequence.set_value(answer.sequence); },
+          std::move(request),
+          [&](const room::EditAnswer& answer) { sequence.set_value(answer.sequence); },
           [&](Result<room::EditAnswer> answer) {
             must(std::move(answer));
             durable = now_ms() - start;
             saved.set_value();
           });
       const std::int64_t wanted = sequence_known.get();
-      const auto arrival =
-          client_.wait_for(*member_, [&](const auto& a) { return std::int64_t(a.header.scene_sequence) >= wanted; });
+      const auto arrival = client_.wait_for(
+          *member_, [&](const auto& a) { return std::int64_t(a.header.scene_sequence) >= wanted; });
       saved.get_future().get();
       if (i < 20) continue;  // warm
       to_pixels.add(arrival.at_ms - start);
       to_durable.add(durable);
       changed_bytes += arrival.bytes;
     }
-    std::printf("stroke → changed pixels leave: p50 %.1f ms, p95 %.1f ms; durable p50 %.1f ms; %.1f KB a stroke\n",
-                to_pixels.median(), to_pixels.quantile(0.95), to_durable.median(),
-                double(changed_bytes) / options_.strokes / 1e3);
-    return {
-        {"radius", options_.radius}, {"stroke_to_pixels", to_pixels.json()}, {"stroke_to_durable", to_durable.json()}};
+    std::printf(
+        "stroke → changed pixels leave: p50 %.1f ms, p95 %.1f ms; durable p50 %.1f ms; %.1f KB a stroke\n",
+        to_pixels.median(), to_pixels.quantile(0.95), to_durable.median(),
+        double(changed_bytes) / options_.strokes / 1e3);
+    return {{"radius", options_.radius},
+            {"stroke_to_pixels", to_pixels.json()},
+            {"stroke_to_durable", to_durable.json()}};
   }
 
   // A new camera every 16 ms, as a browser's animation frames send them, whatever has arrived.
@@ -103,7 +109,8 @@ class OneViewer {
       }
     });
     const double start =
-        client_.wait_for(*member_, [&](const auto& a) { return a.header.camera_seq > last_still; }).at_ms;
+        client_.wait_for(*member_, [&](const auto& a) { return a.header.camera_seq > last_still; })
+            .at_ms;
     double last = start;
     for (int i = 0; i < options_.frames; ++i) {
       const auto arrival = client_.wait_for(*member_, [&](const auto& a) { return a.header.last; });
@@ -118,41 +125,49 @@ class OneViewer {
     std::printf(
         "moving camera: %.1f frames/s, one each %.1f ms (p95 %.1f); camera → last byte p50 %.1f ms, p95 %.1f ms; %.0f KB "
         "a frame\n",
-        fps, frame_ms.median(), frame_ms.quantile(0.95), latency_ms.median(), latency_ms.quantile(0.95),
-        double(bytes) / options_.frames / 1e3);
-    return {{"moving_fps", fps}, {"moving_frame", frame_ms.json()}, {"camera_to_last_byte", latency_ms.json()}};
+        fps, frame_ms.median(), frame_ms.quantile(0.95), latency_ms.median(),
+        latency_ms.quantile(0.95), double(bytes) / options_.frames / 1e3);
+    return {{"moving_fps", fps},
+            {"moving_frame", frame_ms.json()},
+            {"camera_to_last_byte", latency_ms.json()}};
   }
 
-  // Each new camera when the frame of the one before has come: what a frame takes, without waiting for its turn.
+  // Each new camera when the frame of the one before has come: what a frame takes, without waiting
+  // for its turn.
   nlohmann::json cameras_in_turn() {
     Samples latency_ms, render_ms, encode_ms;
     for (int i = 0; i < options_.frames; ++i) {
       const std::uint64_t number = ++camera_number_;
       const double start = now_ms();
       member_->camera(0, number, camera_at(0.3 + i * 0.008), true);
-      const auto arrival = client_.wait_for(
-          *member_, [&](const auto& a) { return a.header.last && a.header.camera_seq == number && !a.header.still; });
+      const auto arrival = client_.wait_for(*member_, [&](const auto& a) {
+        return a.header.last && a.header.camera_seq == number && !a.header.still;
+      });
       latency_ms.add(arrival.at_ms - start);
       render_ms.add(arrival.header.render_us / 1000.0);
       encode_ms.add(arrival.header.encode_us / 1000.0);
     }
-    std::printf("cameras in turn: camera → last byte p50 %.1f ms, p95 %.1f ms (drawn in %.1f ms, encoded in %.1f ms)\n",
-                latency_ms.median(), latency_ms.quantile(0.95), render_ms.median(), encode_ms.median());
-    return {{"in_turn", latency_ms.json()}, {"in_turn_render", render_ms.json()}, {"in_turn_encode", encode_ms.json()}};
+    std::printf(
+        "cameras in turn: camera → last byte p50 %.1f ms, p95 %.1f ms (drawn in %.1f ms, encoded in %.1f ms)\n",
+        latency_ms.median(), latency_ms.quantile(0.95), render_ms.median(), encode_ms.median());
+    return {{"in_turn", latency_ms.json()},
+            {"in_turn_render", render_ms.json()},
+            {"in_turn_encode", encode_ms.json()}};
   }
 
-  // A batch each 30 ms is what a client sends; the bytes kept do not depend on how fast we replay it.
+  // A batch each 30 ms is what a client sends; the bytes kept do not depend on how fast we replay
+  // it.
   nlohmann::json steady_painting() {
     const auto bytes_before = must(site_.store->revision_bytes(model_.id));
     constexpr int kBatches = 400;
     Wander hand(1280, 720, 7);
     for (int i = 0; i < kBatches; ++i) {
       const glm::dvec2 from = hand.at();
-      edit_and_wait(*room_,
-                    stroke_request(layers_[0], still_, {from, hand.step()}, options_.radius, 1 + (i / 50) % 100));
+      edit_and_wait(*room_, stroke_request(layers_[0], still_, {from, hand.step()}, options_.radius,
+                                           1 + (i / 50) % 100));
     }
-    const double mb_per_hour =
-        double(must(site_.store->revision_bytes(model_.id)) - bytes_before) / kBatches * (3600 / 0.03) / 1e6;
+    const double mb_per_hour = double(must(site_.store->revision_bytes(model_.id)) - bytes_before) /
+                               kBatches * (3600 / 0.03) / 1e6;
     std::printf("steady painting keeps %.0f MB per hour\n", mb_per_hour);
     return {{"revision_mb_per_hour", mb_per_hour}};
   }
@@ -203,10 +218,12 @@ class OneViewer {
 int run(const Options& options) {
   OneViewer viewer(options);
   const auto gpu = viewer.gpu();
-  std::printf("%s, %zu triangles, %d layers of 4096², 1280 × 720, r = %.0f px\n", options.model.c_str(),
-              viewer.triangles(), options.layers, options.radius);
-  nlohmann::json result{
-      {"method", "viewer"}, {"model", options.model}, {"triangles", viewer.triangles()}, {"layers", options.layers}};
+  std::printf("%s, %zu triangles, %d layers of 4096², 1280 × 720, r = %.0f px\n",
+              options.model.c_str(), viewer.triangles(), options.layers, options.radius);
+  nlohmann::json result{{"method", "viewer"},
+                        {"model", options.model},
+                        {"triangles", viewer.triangles()},
+                        {"layers", options.layers}};
   if (options.layers > 0) result.update(viewer.strokes());
   result.update(viewer.moving_camera());
   result.update(viewer.cameras_in_turn());
@@ -218,19 +235,23 @@ int run(const Options& options) {
 }  // namespace
 
 Command add_viewer(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("viewer", "One client in this process: stroke to pixels, moving camera, bytes kept per hour");
+  auto* command = app.add_subcommand(
+      "viewer", "One client in this process: stroke to pixels, moving camera, bytes kept per hour");
   auto options = std::make_shared<Options>();
-  command->add_option("--model", options->model, "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a file")
+  command
+      ->add_option("--model", options->model,
+                   "pot[:TRIANGLES], vessel, excavation, amazon, thai, or a file")
       ->capture_default_str();
   command
-      ->add_option("--layers", options->layers, "Filled layers shown; the strokes go to the topmost (0: none are made)")
+      ->add_option("--layers", options->layers,
+                   "Filled layers shown; the strokes go to the topmost (0: none are made)")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   command->add_option("--radius", options->radius, "Brush radius in pixels")->capture_default_str();
   command->add_option("--strokes", options->strokes)->capture_default_str();
   command->add_option("--frames", options->frames)->capture_default_str();
-  command->add_option("--cache", options->cache, "Where generated meshes are kept")->capture_default_str();
+  command->add_option("--cache", options->cache, "Where generated meshes are kept")
+      ->capture_default_str();
   command->add_option("--json", options->json, "Write the results here");
   return [options] { return run(*options); };
 }

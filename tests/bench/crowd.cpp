@@ -34,13 +34,16 @@ double direction(int number, int of) {
 Crowd::Crowd(const CrowdCase& asked, const Stage& stage, const ServerProcess& server)
     : case_(asked), stage_(stage), server_(server) {
   if (!asked.link.is_loopback())
-    link_.emplace(context_, asked.link, asio::ip::tcp::endpoint(asio::ip::address_v4::loopback(), server.port()));
+    link_.emplace(context_, asked.link,
+                  asio::ip::tcp::endpoint(asio::ip::address_v4::loopback(), server.port()));
   std::vector<std::pair<LiveClient*, Camera>> all;
-  for (int i = 0; i < asked.active; ++i) all.emplace_back(&add(active_), stage.from(direction(i, asked.active)));
+  for (int i = 0; i < asked.active; ++i)
+    all.emplace_back(&add(active_), stage.from(direction(i, asked.active)));
   for (int i = 0; i < asked.idle; ++i) {
     const double elevation = 0.3 + 0.2 * std::fmod(i * std::numbers::phi, 1.0);
-    all.emplace_back(&add(idle_),
-                     asked.is_same_view ? stage.from(kMiddle_rad) : stage.from(direction(i, asked.idle), elevation));
+    all.emplace_back(&add(idle_), asked.is_same_view
+                                      ? stage.from(kMiddle_rad)
+                                      : stage.from(direction(i, asked.idle), elevation));
   }
   if (asked.has_stalled) all.emplace_back(&add(stalled_), stage.from(kMiddle_rad));
   open(std::move(all));
@@ -59,7 +62,8 @@ Crowd::~Crowd() {
 
 LiveClient& Crowd::add(Viewers& to) {
   const asio::ip::tcp::endpoint server(asio::ip::address_v4::loopback(), server_.port());
-  return *to.emplace_back(std::make_unique<LiveClient>(context_, link_ ? link_->endpoint() : server, server_.port()));
+  return *to.emplace_back(
+      std::make_unique<LiveClient>(context_, link_ ? link_->endpoint() : server, server_.port()));
 }
 
 void Crowd::open(std::vector<std::pair<LiveClient*, Camera>> clients) {
@@ -71,16 +75,18 @@ void Crowd::open(std::vector<std::pair<LiveClient*, Camera>> clients) {
       ++done;
     }
   };
-  for (std::size_t i = 0; i < kOpenAtOnce; ++i) asio::co_spawn(context_, one_after_the_other, asio::detached);
+  for (std::size_t i = 0; i < kOpenAtOnce; ++i)
+    asio::co_spawn(context_, one_after_the_other, asio::detached);
   run_until([&] { return done == clients.size(); }, kMostOpening_s);
   check_nobody_is_lost();
   if (done == clients.size()) return;
-  std::fprintf(stderr, "strata-bench: %zu of %zu viewers had no picture after %.0f s\n", clients.size() - done,
-               clients.size(), kMostOpening_s);
+  std::fprintf(stderr, "strata-bench: %zu of %zu viewers had no picture after %.0f s\n",
+               clients.size() - done, clients.size(), kMostOpening_s);
   std::exit(1);
 }
 
-// Until no message has come for so long; among hundreds of connections somebody is always asked whether they are still there.
+// Until no message has come for so long; among hundreds of connections somebody is always asked
+// whether they are still there.
 void Crowd::settle(double quiet_s) {
   const double limit_ms = now_ms() + 1e3 * kMostSettling_s;
   std::uint64_t before;
@@ -109,7 +115,8 @@ void Crowd::start_hands() {
     LiveClient& client = *active_[std::size_t(i)];
     const double angle = direction(i, case_.active);
     if (case_.paints(i))
-      asio::co_spawn(context_, paint(client, stage_, angle, unsigned(i) * 37, stop_), asio::detached);
+      asio::co_spawn(context_, paint(client, stage_, angle, unsigned(i) * 37, stop_),
+                     asio::detached);
     else if (case_.hands == Hands::turn_step_by_step)
       asio::co_spawn(context_, turn_step_by_step(client, stage_, angle, stop_), asio::detached);
     else
@@ -145,24 +152,31 @@ bool Crowd::all_see_what_they_do() const {
     const auto is_seen = [&](const auto& batch) {
       return batch.has_changed && newest.scene_sequence >= *batch.sequence;
     };
-    if (case_.paints(int(i)) ? std::ranges::none_of(client.batches(), is_seen) : newest.camera_seq < 2) return false;
+    if (case_.paints(int(i)) ? std::ranges::none_of(client.batches(), is_seen)
+                             : newest.camera_seq < 2)
+      return false;
   }
   return true;
 }
 
-// Whoever paints. On a very busy machine the first batches may wait for longer than a short stretch lasts.
+// Whoever paints. On a very busy machine the first batches may wait for longer than a short stretch
+// lasts.
 bool Crowd::has_painted_since(double begin_ms) const {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     const auto& batches = active_[i]->batches();
-    if (case_.paints(int(i)) && (batches.empty() || batches.back().sent_ms < begin_ms)) return false;
+    if (case_.paints(int(i)) && (batches.empty() || batches.back().sent_ms < begin_ms))
+      return false;
   }
   return true;
 }
 
 // The pixels of what was painted last may still be on their way.
 void Crowd::finish_strokes() {
-  run_until([&] { return std::ranges::all_of(active_, [](const auto& c) { return c->unanswered() == 0; }); },
-            kMostFinishing_s);
+  run_until(
+      [&] {
+        return std::ranges::all_of(active_, [](const auto& c) { return c->unanswered() == 0; });
+      },
+      kMostFinishing_s);
   settle(kQuiet_s);
 }
 

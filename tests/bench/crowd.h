@@ -12,15 +12,17 @@
 
 namespace strata::bench {
 
-// The viewers of one case, on this thread, which also carries their links. Active ones look from directions of their own, near
-// enough to each other that all see what one paints.
+// The viewers of one case, on this thread, which also carries their links. Active ones look from
+// directions of their own, near enough to each other that all see what one paints.
 class Crowd {
  public:
-  // Returns once everybody has a picture and nothing more comes. Ends the bench where somebody is turned away.
+  // Returns once everybody has a picture and nothing more comes. Ends the bench where somebody is
+  // turned away.
   Crowd(const CrowdCase& asked, const Stage& stage, const ServerProcess& server);
   ~Crowd();
 
-  // Lets the hands work until each sees what it does and for a second more, then for so long; the figures of the latter (README.md says what they mean).
+  // Lets the hands work until each sees what it does and for a second more, then for so long; the
+  // figures of the latter (README.md says what they mean).
   nlohmann::json measure(double seconds);
 
  private:

@@ -14,8 +14,11 @@ const char* name(Hands hands) {
 }
 
 nlohmann::json CrowdCase::json() const {
-  nlohmann::json json{
-      {"link", link.name}, {"active", active}, {"idle", idle}, {"hands", name(hands)}, {"stalled", has_stalled}};
+  nlohmann::json json{{"link", link.name},
+                      {"active", active},
+                      {"idle", idle},
+                      {"hands", name(hands)},
+                      {"stalled", has_stalled}};
   if (idle > 0) json["idle_views"] = is_same_view ? "same" : "own";
   return json;
 }

@@ -15,7 +15,8 @@ struct CrowdCase {
   int active = 1, idle = 0;
   Hands hands = Hands::turn;
   bool is_same_view = false;  // the idle ones' camera; otherwise each has its own
-  bool has_stalled = false;   // one more, who turns the camera and reads nothing after its first picture
+  // one more, who turns the camera and reads nothing after its first picture
+  bool has_stalled = false;
 
   nlohmann::json json() const;
   bool paints(int number) const;  // of the active ones

@@ -10,12 +10,15 @@
 namespace strata::bench {
 namespace {
 
-std::uint64_t sum_of(const std::vector<LiveClient::Counts>& all, std::uint64_t LiveClient::Counts::*member) {
-  return std::accumulate(all.begin(), all.end(), std::uint64_t{0},
-                         [&](std::uint64_t sum, const auto& counts) { return sum + counts.*member; });
+std::uint64_t sum_of(const std::vector<LiveClient::Counts>& all,
+                     std::uint64_t LiveClient::Counts::*member) {
+  return std::accumulate(
+      all.begin(), all.end(), std::uint64_t{0},
+      [&](std::uint64_t sum, const auto& counts) { return sum + counts.*member; });
 }
 
-// From a camera to the last byte of the first picture that shows it; others of the same camera show something else that is new.
+// From a camera to the last byte of the first picture that shows it; others of the same camera show
+// something else that is new.
 void add_camera_times(const LiveClient& client, double begin_ms, double end_ms, Samples& times) {
   std::uint64_t shown = 0;
   for (const auto& frame : client.frames()) {
@@ -25,31 +28,40 @@ void add_camera_times(const LiveClient& client, double begin_ms, double end_ms, 
   }
 }
 
-// From the last camera of somebody who then holds still to the last byte of its picture of full quality.
+// From the last camera of somebody who then holds still to the last byte of its picture of full
+// quality.
 void add_refined_times(const LiveClient& client, Samples& times) {
-  const auto refined = std::ranges::find_if(
-      client.frames(), [&](const auto& frame) { return frame.still && frame.camera_seq == client.newest_camera(); });
-  if (refined != client.frames().end()) times.add(refined->at_ms - client.camera_sent_ms(client.newest_camera()));
+  const auto refined = std::ranges::find_if(client.frames(), [&](const auto& frame) {
+    return frame.still && frame.camera_seq == client.newest_camera();
+  });
+  if (refined != client.frames().end())
+    times.add(refined->at_ms - client.camera_sent_ms(client.newest_camera()));
 }
 
-// From a batch to the last byte of the first picture of `viewer` that shows it; edits of a picture only ever come to more.
-void add_batch_times(const LiveClient& painter, const LiveClient& viewer, double begin_ms, double end_ms,
-                     Samples& times) {
+// From a batch to the last byte of the first picture of `viewer` that shows it; edits of a picture
+// only ever come to more.
+void add_batch_times(const LiveClient& painter, const LiveClient& viewer, double begin_ms,
+                     double end_ms, Samples& times) {
   for (const auto& batch : painter.batches()) {
     if (!batch.has_changed || batch.sent_ms < begin_ms || batch.sent_ms >= end_ms) continue;
     const auto& frames = viewer.frames();
-    const auto seen = std::ranges::lower_bound(frames, *batch.sequence, {}, &LiveClient::Frame::scene_sequence);
+    const auto seen =
+        std::ranges::lower_bound(frames, *batch.sequence, {}, &LiveClient::Frame::scene_sequence);
     if (seen != frames.end()) times.add(seen->at_ms - batch.sent_ms);
   }
 }
 
-nlohmann::json of_times(const Samples& times) { return times.empty() ? nlohmann::json() : times.json(); }
+nlohmann::json of_times(const Samples& times) {
+  return times.empty() ? nlohmann::json() : times.json();
+}
 
 nlohmann::json of_rates(std::vector<double> rates) {
   if (rates.empty()) return nullptr;
   std::ranges::sort(rates);
-  return {
-      {"viewers", rates.size()}, {"min", rates.front()}, {"median", rates[rates.size() / 2]}, {"max", rates.back()}};
+  return {{"viewers", rates.size()},
+          {"min", rates.front()},
+          {"median", rates[rates.size() / 2]},
+          {"max", rates.back()}};
 }
 
 }  // namespace
@@ -87,33 +99,38 @@ nlohmann::json crowd_figures(const CrowdCase& asked, const Viewers& active, cons
                       other == i                 ? own
                       : asked.paints(int(other)) ? still
                                                  : turning);
-    for (const auto& viewer : idle) add_batch_times(client, *viewer, begin.at_ms, end.at_ms, at_rest);
+    for (const auto& viewer : idle)
+      add_batch_times(client, *viewer, begin.at_ms, end.at_ms, at_rest);
   }
   for (std::size_t i = 0; i < idle.size(); ++i)
     idle_rates.push_back(double(end.idle[i].frames - begin.idle[i].frames) / seconds);
 
-  const auto rate = [&](const auto& before, const auto& after, std::uint64_t LiveClient::Counts::*member) {
+  const auto rate = [&](const auto& before, const auto& after,
+                        std::uint64_t LiveClient::Counts::*member) {
     return double(sum_of(after, member) - sum_of(before, member)) / seconds;
   };
   using Counts = LiveClient::Counts;
-  const double frames = rate(begin.active, end.active, &Counts::frames) + rate(begin.idle, end.idle, &Counts::frames);
+  const double frames =
+      rate(begin.active, end.active, &Counts::frames) + rate(begin.idle, end.idle, &Counts::frames);
   const double server_cores = (end.server.server - begin.server.server) / seconds;
-  nlohmann::json json{
-      {"seconds", seconds},
-      {"cores",
-       {{"server", server_cores},
-        {"postgresql", (end.server.postgresql - begin.server.postgresql) / seconds},
-        {"bench", (end.bench_s - begin.bench_s) / seconds}}},
-      {"frames_per_s",
-       {{"turning", of_rates(turning_rates)}, {"painting", of_rates(painting_rates)}, {"idle", of_rates(idle_rates)}}},
-      {"frames_per_cpu_s", server_cores > 0 ? nlohmann::json(frames / server_cores) : nlohmann::json()},
-      {"bytes_per_s",
-       {{"an_active_viewer", of_rates(active_bytes)},
-        {"all_active", rate(begin.active, end.active, &Counts::bytes)},
-        {"all_idle", rate(begin.idle, end.idle, &Counts::bytes)},
-        {"all_idle_on_the_wire", rate(begin.idle, end.idle, &Counts::wire_bytes)}}},
-      {"camera_to_last_byte", of_times(camera)},
-      {"last_camera_to_full_quality", of_times(refined)}};
+  nlohmann::json json{{"seconds", seconds},
+                      {"cores",
+                       {{"server", server_cores},
+                        {"postgresql", (end.server.postgresql - begin.server.postgresql) / seconds},
+                        {"bench", (end.bench_s - begin.bench_s) / seconds}}},
+                      {"frames_per_s",
+                       {{"turning", of_rates(turning_rates)},
+                        {"painting", of_rates(painting_rates)},
+                        {"idle", of_rates(idle_rates)}}},
+                      {"frames_per_cpu_s",
+                       server_cores > 0 ? nlohmann::json(frames / server_cores) : nlohmann::json()},
+                      {"bytes_per_s",
+                       {{"an_active_viewer", of_rates(active_bytes)},
+                        {"all_active", rate(begin.active, end.active, &Counts::bytes)},
+                        {"all_idle", rate(begin.idle, end.idle, &Counts::bytes)},
+                        {"all_idle_on_the_wire", rate(begin.idle, end.idle, &Counts::wire_bytes)}}},
+                      {"camera_to_last_byte", of_times(camera)},
+                      {"last_camera_to_full_quality", of_times(refined)}};
   if (batches > 0)
     json["strokes"] = {{"batches_per_s", double(batches) / seconds},
                        {"unchanged", unchanged},
@@ -121,7 +138,9 @@ nlohmann::json crowd_figures(const CrowdCase& asked, const Viewers& active, cons
                        {"unanswered", unanswered},
                        {"to_own_pixels", of_times(own)},
                        {"to_others_pixels",
-                        {{"still", of_times(still)}, {"turning", of_times(turning)}, {"idle", of_times(at_rest)}}}};
+                        {{"still", of_times(still)},
+                         {"turning", of_times(turning)},
+                         {"idle", of_times(at_rest)}}}};
   return json;
 }
 

@@ -21,8 +21,8 @@ struct CrowdMoment {
   std::uint64_t bytes() const;  // of all messages
 };
 
-// The figures of a stretch of time, as README.md describes them: rates of what came within, times of what was sent within,
-// whenever it came.
+// The figures of a stretch of time, as README.md describes them: rates of what came within, times
+// of what was sent within, whenever it came.
 nlohmann::json crowd_figures(const CrowdCase& asked, const Viewers& active, const Viewers& idle,
                              const CrowdMoment& begin, const CrowdMoment& end);
 

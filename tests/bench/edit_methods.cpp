@@ -21,7 +21,8 @@ constexpr std::uint8_t kValue = 200;
 constexpr std::uint32_t kColor = 0xff2080c8;
 
 std::uint64_t mesh_bytes(const mesh::Geometry& geometry) {
-  return geometry.vertices.size() * sizeof(mesh::Vertex) + geometry.indices.size() * sizeof(std::uint32_t);
+  return geometry.vertices.size() * sizeof(mesh::Vertex) +
+         geometry.indices.size() * sizeof(std::uint32_t);
 }
 
 StrokeBatch dab(const EditScene& scene, glm::dvec2 center, double radius_px) {
@@ -34,26 +35,30 @@ StrokeBatch dab(const EditScene& scene, glm::dvec2 center, double radius_px) {
   return stroke;
 }
 
-// Whether a dab paints a position, in double; the rounding of floats decides near a threshold: the tool's edge, a pixel's
-// border (which depth is asked) and the depth test's own.
+// Whether a dab paints a position, in double; the rounding of floats decides near a threshold: the
+// tool's edge, a pixel's border (which depth is asked) and the depth test's own.
 struct Decision {
   bool painted = false, near_threshold = false;
 };
-Decision decide(const EditScene& scene, const render::DepthCopy& depth, glm::dvec2 center, double radius_px,
-                const glm::vec3& position) {
+Decision decide(const EditScene& scene, const render::DepthCopy& depth, glm::dvec2 center,
+                double radius_px, const glm::vec3& position) {
   const Camera& camera = scene.camera;
-  const glm::dvec4 clip =
-      camera.projection * camera.view * glm::dvec4(glm::dvec3(position) + scene.mesh.geometry->origin, 1);
+  const glm::dvec4 clip = camera.projection * camera.view *
+                          glm::dvec4(glm::dvec3(position) + scene.mesh.geometry->origin, 1);
   const glm::dvec3 ndc = glm::dvec3(clip) / clip.w;
   const glm::dvec2 window = (glm::dvec2(ndc) * 0.5 + 0.5) * glm::dvec2(camera.width, camera.height);
-  if (window.x < 0 || window.y < 0 || window.x >= camera.width || window.y >= camera.height) return {};
-  const double inside = radius_px - glm::length(window - glm::dvec2(center.x, camera.height - center.y));
-  const double here = depth.depth[static_cast<std::size_t>(window.y) * static_cast<std::size_t>(camera.width) +
-                                  static_cast<std::size_t>(window.x)];
+  if (window.x < 0 || window.y < 0 || window.x >= camera.width || window.y >= camera.height)
+    return {};
+  const double inside =
+      radius_px - glm::length(window - glm::dvec2(center.x, camera.height - center.y));
+  const double here =
+      depth.depth[static_cast<std::size_t>(window.y) * static_cast<std::size_t>(camera.width) +
+                  static_cast<std::size_t>(window.x)];
   const double before = here - (ndc.z * 0.5 + 0.5 - kPaperDepthBias);
   const glm::dvec2 to_border = glm::abs(window - glm::round(window));
-  return {inside > 0 && before >= 0,
-          std::abs(inside) < 2e-3 || std::min(to_border.x, to_border.y) < 1e-3 || std::abs(before) < 1e-6};
+  return {inside > 0 && before >= 0, std::abs(inside) < 2e-3 ||
+                                         std::min(to_border.x, to_border.y) < 1e-3 ||
+                                         std::abs(before) < 1e-6};
 }
 
 // Depth of the scene on the GPU, which every system has from drawing it.
@@ -62,12 +67,13 @@ class SceneDepth {
   SceneDepth(render::Renderer& renderer, const EditScene& scene) : renderer_(renderer) {
     renderer_.run_on_gpu_thread_for_test([&] {
       readback_ = std::make_unique<gl::ReadbackPool>();
-      depths_ = std::make_unique<render::DepthBuffers>(
-          must(render::DepthBuffers::create(test::shader_dir(), std::size_t{1} << 26, memory_, *readback_)));
+      depths_ = std::make_unique<render::DepthBuffers>(must(render::DepthBuffers::create(
+          test::shader_dir(), std::size_t{1} << 26, memory_, *readback_)));
       auto mesh = must(render::MeshBuffers::create(scene.mesh.geometry, memory_));
       while (!mesh->upload_slice()) {
       }
-      buffer_ = must(depths_->start(render::depth_key(1, scene.camera, scene.camera.width, scene.camera.height)));
+      buffer_ = must(depths_->start(
+          render::depth_key(1, scene.camera, scene.camera.width, scene.camera.height)));
       render::MeshProgress progress;
       while (!must(depths_->draw_slice(buffer_, *mesh, scene.camera, progress))) {
       }
@@ -94,18 +100,20 @@ class SceneDepth {
 
 class TilesMethod : public EditMethod {
  public:
-  TilesMethod(render::Renderer& renderer, const EditScene& scene, std::shared_ptr<const mesh::SurfaceMap> map,
-              double bake_s)
+  TilesMethod(render::Renderer& renderer, const EditScene& scene,
+              std::shared_ptr<const mesh::SurfaceMap> map, double bake_s)
       : renderer_(renderer), scene_(scene), map_(std::move(map)) {
     creation_.structure_s = bake_s;
     const double start = now_ms();
     await<void>([&](auto done) { renderer_.add_surface_map(scene_.model, map_, std::move(done)); });
-    layer_ = await<render::LayerHandle>(
-        [&](auto done) { renderer_.add_layer(scene_.model, ValueType::u8, map_->resolution, std::move(done)); });
+    layer_ = await<render::LayerHandle>([&](auto done) {
+      renderer_.add_layer(scene_.model, ValueType::u8, map_->resolution, std::move(done));
+    });
     creation_.structure_s += (now_ms() - start) / 1000;
     creation_.model_bytes = mesh_bytes(*scene_.mesh.geometry);
     creation_.structure_bytes = map_->bytes();
-    for (const auto& bounds : map_->bounds_of_tile) creation_.layer_bytes += bounds.radius < 0 ? 0 : kTexelsPerTile * 2;
+    for (const auto& bounds : map_->bounds_of_tile)
+      creation_.layer_bytes += bounds.radius < 0 ? 0 : kTexelsPerTile * 2;
   }
   ~TilesMethod() override { renderer_.remove_layer(layer_); }
 
@@ -113,12 +121,14 @@ class TilesMethod : public EditMethod {
   EditCost edit(glm::dvec2 center, double radius_px) override {
     EditCost cost;
     const double start = now_ms();
-    const auto outcome = await<render::StrokeOutcome>(
-        [&](auto done) { renderer_.paint(layer_, dab(scene_, center, radius_px), std::move(done)); });
+    const auto outcome = await<render::StrokeOutcome>([&](auto done) {
+      renderer_.paint(layer_, dab(scene_, center, radius_px), std::move(done));
+    });
     cost.ms_to_memory = now_ms() - start;
     cost.ms = outcome.edit_ms;
     if (renderer_.info().edit_path == render::EditPath::compute) cost.gpu_ms = outcome.gpu_ms;
-    for (const auto& tile : outcome.tiles) cost.cells += static_cast<std::uint64_t>(tile.written.count());
+    for (const auto& tile : outcome.tiles)
+      cost.cells += static_cast<std::uint64_t>(tile.written.count());
     cost.bytes_up = outcome.bytes_up;
     cost.bytes_down = outcome.bytes_down;
     return cost;
@@ -137,7 +147,8 @@ class TilesMethod : public EditMethod {
 
 class EditMethods::Paper {
  public:
-  Paper(render::Renderer& renderer, const EditScene& scene, std::shared_ptr<const SceneDepth> depth, int texture)
+  Paper(render::Renderer& renderer, const EditScene& scene, std::shared_ptr<const SceneDepth> depth,
+        int texture)
       : renderer_(renderer), scene_(scene), depth_(std::move(depth)) {
     renderer_.run_on_gpu_thread_for_test([&] {
       const double start = now_ms();
@@ -164,8 +175,8 @@ class EditMethods::Paper {
     cost.bytes_up = sizeof(glm::mat4);  // of the tool
     return cost;
   }
-  std::pair<std::vector<std::uint8_t>, std::vector<std::uint8_t>> mask_and_coverage(glm::dvec2 center,
-                                                                                    double radius_px) {
+  std::pair<std::vector<std::uint8_t>, std::vector<std::uint8_t>> mask_and_coverage(
+      glm::dvec2 center, double radius_px) {
     std::pair<std::vector<std::uint8_t>, std::vector<std::uint8_t>> found;
     renderer_.run_on_gpu_thread_for_test([&] {
       editor_->clear();
@@ -197,11 +208,16 @@ class EditMethods::Tree {
     made->creation_.structure_s = (now_ms() - start) / 1000;
     return made;
   }
-  Tree(render::Renderer& renderer, const EditScene& scene, std::shared_ptr<const SceneDepth> depth, Octree tree)
-      : renderer_(renderer), scene_(scene), depth_(std::move(depth)), tree_(std::move(tree)), layer_(tree_) {
+  Tree(render::Renderer& renderer, const EditScene& scene, std::shared_ptr<const SceneDepth> depth,
+       Octree tree)
+      : renderer_(renderer),
+        scene_(scene),
+        depth_(std::move(depth)),
+        tree_(std::move(tree)),
+        layer_(tree_) {
     renderer_.run_on_gpu_thread_for_test([&] {
-      colors_ = must(
-          gl::Buffer::create(layer_.colors.size() * sizeof(std::uint32_t), gl::Buffer::Use::fixed, "octree colours"));
+      colors_ = must(gl::Buffer::create(layer_.colors.size() * sizeof(std::uint32_t),
+                                        gl::Buffer::Use::fixed, "octree colours"));
       upload(0, layer_.colors.size());
       glFinish();
     });
@@ -275,7 +291,9 @@ class PeerMethod : public EditMethod {
   PeerMethod(std::string name, std::shared_ptr<Peer> peer, Way way)
       : name_(std::move(name)), peer_(std::move(peer)), way_(way) {}
   std::string name() const override { return name_; }
-  EditCost edit(glm::dvec2 center, double radius_px) override { return peer_->edit(center, radius_px, way_); }
+  EditCost edit(glm::dvec2 center, double radius_px) override {
+    return peer_->edit(center, radius_px, way_);
+  }
   EditCreation creation() const override { return peer_->creation(); }
 
  private:
@@ -299,23 +317,28 @@ EditMethods::EditMethods(render::Renderer& renderer, const EditScene& scene, int
     if (name == "tiles") {
       Progress progress;
       const double start = now_ms();
-      map_ = std::make_shared<const mesh::SurfaceMap>(
-          must(mesh::bake_surface_map(*scene.mesh.geometry, texture, progress, mesh::hardware_threads())));
-      methods_.push_back(std::make_unique<TilesMethod>(renderer, scene, map_, (now_ms() - start) / 1000));
+      map_ = std::make_shared<const mesh::SurfaceMap>(must(mesh::bake_surface_map(
+          *scene.mesh.geometry, texture, progress, mesh::hardware_threads())));
+      methods_.push_back(
+          std::make_unique<TilesMethod>(renderer, scene, map_, (now_ms() - start) / 1000));
     } else if (name == "paper" || name == "paper-compute") {
       if (!paper_) paper_ = std::make_shared<Paper>(renderer, scene, depth_of_scene(), texture);
-      const auto padding = name == "paper" ? PaperEditor::Padding::raster : PaperEditor::Padding::compute;
-      methods_.push_back(std::make_unique<PeerMethod<Paper, PaperEditor::Padding>>(name, paper_, padding));
+      const auto padding =
+          name == "paper" ? PaperEditor::Padding::raster : PaperEditor::Padding::compute;
+      methods_.push_back(
+          std::make_unique<PeerMethod<Paper, PaperEditor::Padding>>(name, paper_, padding));
     } else {
       if (!tree) {
-        auto made = Tree::create(renderer, scene, depth_of_scene(), std::countr_zero(static_cast<unsigned>(texture)));
+        auto made = Tree::create(renderer, scene, depth_of_scene(),
+                                 std::countr_zero(static_cast<unsigned>(texture)));
         if (!made) {
           not_made_.push_back(name + ": " + made.error().detail);
           continue;
         }
         tree = std::move(*made);
       }
-      methods_.push_back(std::make_unique<PeerMethod<Tree, bool>>(name, tree, name == "octree-fair"));
+      methods_.push_back(
+          std::make_unique<PeerMethod<Tree, bool>>(name, tree, name == "octree-fair"));
     }
   }
 }
@@ -323,14 +346,16 @@ EditMethods::EditMethods(render::Renderer& renderer, const EditScene& scene, int
 EditMethods::~EditMethods() = default;
 
 EditMethod* EditMethods::find(const std::string& name) const {
-  const auto found = std::find_if(methods_.begin(), methods_.end(), [&](const auto& m) { return m->name() == name; });
+  const auto found = std::find_if(methods_.begin(), methods_.end(),
+                                  [&](const auto& m) { return m->name() == name; });
   return found == methods_.end() ? nullptr : found->get();
 }
 
 EditAgreement EditMethods::compare_tiles_and_paper(glm::dvec2 center, double radius_px) {
   const mesh::SurfaceMap& map = *map_;
-  const auto layer = await<render::LayerHandle>(
-      [&](auto done) { renderer_.add_layer(scene_.model, ValueType::u8, map.resolution, std::move(done)); });
+  const auto layer = await<render::LayerHandle>([&](auto done) {
+    renderer_.add_layer(scene_.model, ValueType::u8, map.resolution, std::move(done));
+  });
   const auto ours = await<render::StrokeOutcome>(
       [&](auto done) { renderer_.paint(layer, dab(scene_, center, radius_px), std::move(done)); });
   renderer_.remove_layer(layer);
@@ -340,7 +365,8 @@ EditAgreement EditMethods::compare_tiles_and_paper(glm::dvec2 center, double rad
   for (const auto& tile : ours.tiles)
     for (std::size_t i = 0; i < kTexelsPerTile; ++i)
       if (tile.written.test(static_cast<int>(i)))
-        written[(tile.address.y * kTileSize + i / kTileSize) * side + tile.address.x * kTileSize + i % kTileSize] = 1;
+        written[(tile.address.y * kTileSize + i / kTileSize) * side + tile.address.x * kTileSize +
+                i % kTileSize] = 1;
   EditAgreement agreement;
   for (std::size_t slot = 0; slot < map.block_of_slot.size(); ++slot)
     for (std::size_t i = 0; i < 64; ++i) {
@@ -348,14 +374,16 @@ EditAgreement EditMethods::compare_tiles_and_paper(glm::dvec2 center, double rad
       const auto per_side = static_cast<std::size_t>(map.blocks_per_side);
       const std::size_t x = map.block_of_slot[slot] % per_side * 8 + i % 8;
       const std::size_t y = map.block_of_slot[slot] / per_side * 8 + i / 8;
-      // Texels that the paper's raster does not cover are padding to it, though a thin triangle may own them here.
+      // Texels that the paper's raster does not cover are padding to it, though a thin triangle may
+      // own them here.
       if (!coverage[y * side + x]) continue;
       const bool a = theirs[y * side + x] != 0, b = written[y * side + x] != 0;
       agreement.compared += a || b;
       if (a == b) continue;
       ++agreement.differ;
-      const Decision exact = decide(scene_, paper_->depth(), center, radius_px,
-                                    map.position(static_cast<std::uint32_t>(slot), static_cast<int>(i)));
+      const Decision exact =
+          decide(scene_, paper_->depth(), center, radius_px,
+                 map.position(static_cast<std::uint32_t>(slot), static_cast<int>(i)));
       ++(a == exact.painted ? agreement.tiles_off : agreement.paper_off);
       agreement.beyond_rounding += exact.near_threshold ? 0 : 1;
     }
@@ -363,7 +391,8 @@ EditAgreement EditMethods::compare_tiles_and_paper(glm::dvec2 center, double rad
 }
 
 double copy_bandwidth(render::Renderer& renderer) {
-  constexpr std::size_t kBytes = std::size_t{128} << 20;  // as much as any driver takes in one storage buffer
+  // as much as any driver takes in one storage buffer
+  constexpr std::size_t kBytes = std::size_t{128} << 20;
   constexpr int kRuns = 7;
   Samples samples;
   if (renderer.info().software) {
@@ -389,7 +418,9 @@ double copy_bandwidth(render::Renderer& renderer) {
       program.use();
       from.bind_storage(0);
       to.bind_storage(1);
-      const auto copy = [&] { glDispatchCompute(static_cast<GLuint>(kBytes / kBytesPerGroup), 1, 1); };
+      const auto copy = [&] {
+        glDispatchCompute(static_cast<GLuint>(kBytes / kBytesPerGroup), 1, 1);
+      };
       copy();
       for (int run = 0; run < kRuns; ++run) {
         glFinish();

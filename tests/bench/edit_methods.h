@@ -33,8 +33,8 @@ struct EditCreation {
   std::uint64_t layer_bytes = 0;      // one layer of 8 bits, painted all over
 };
 
-// One way to paint a dab. Everything it makes is made by the constructor and not counted by `edit`, but by `creation`; so is
-// the depth of the scene, which every method but rays takes as given.
+// One way to paint a dab. Everything it makes is made by the constructor and not counted by `edit`,
+// but by `creation`; so is the depth of the scene, which every method but rays takes as given.
 class EditMethod {
  public:
   virtual ~EditMethod() = default;
@@ -43,7 +43,8 @@ class EditMethod {
   virtual EditCreation creation() const = 0;
 };
 
-// Surface texels that tiles and paper paint. Where they differ, arithmetic in double tells who is off.
+// Surface texels that tiles and paper paint. Where they differ, arithmetic in double tells who is
+// off.
 struct EditAgreement {
   std::uint64_t compared = 0;  // painted by either
   std::uint64_t differ = 0;
@@ -60,11 +61,12 @@ struct EditAgreement {
   }
 };
 
-// The methods of one scene and texture size, made from `names`: tiles, paper, paper-compute, octree, octree-fair. What cannot
-// be made is told in `not_made`.
+// The methods of one scene and texture size, made from `names`: tiles, paper, paper-compute,
+// octree, octree-fair. What cannot be made is told in `not_made`.
 class EditMethods {
  public:
-  EditMethods(render::Renderer& renderer, const EditScene& scene, int texture, const std::vector<std::string>& names);
+  EditMethods(render::Renderer& renderer, const EditScene& scene, int texture,
+              const std::vector<std::string>& names);
   ~EditMethods();
   const std::vector<std::unique_ptr<EditMethod>>& all() const { return methods_; }
   EditMethod* find(const std::string& name) const;
@@ -84,7 +86,8 @@ class EditMethods {
   std::vector<std::string> not_made_;
 };
 
-// Read and written bytes a second of a large copy, where edits are made: by all cores, or by the GPU.
+// Read and written bytes a second of a large copy, where edits are made: by all cores, or by the
+// GPU.
 double copy_bandwidth(render::Renderer& renderer);
 
 }  // namespace strata::bench

@@ -14,7 +14,8 @@
 
 namespace strata::bench {
 
-// Stands where the socket is: notes when a frame leaves, and acknowledges it as a client that draws at once.
+// Stands where the socket is: notes when a frame leaves, and acknowledges it as a client that draws
+// at once.
 class FrameClient {
  public:
   struct Arrival {
@@ -28,8 +29,10 @@ class FrameClient {
     std::lock_guard lock(mutex_);
     for (const stream::FrameBytes& message : frame) {
       auto header = must(protocol::decode_frame_header(*message));
-      const std::string_view payload(reinterpret_cast<const char*>(message->data()), message->size());
-      const std::size_t content = std::hash<std::string_view>()(payload.substr(payload.size() - header.payload_bytes));
+      const std::string_view payload(reinterpret_cast<const char*>(message->data()),
+                                     message->size());
+      const std::size_t content =
+          std::hash<std::string_view>()(payload.substr(payload.size() - header.payload_bytes));
       arrivals_.push_back({at, header, message->size(), content});
     }
     changed_.notify_all();

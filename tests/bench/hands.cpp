@@ -52,14 +52,16 @@ asio::awaitable<void> turn(LiveClient& client, const Stage& stage, double angle,
   }
 }
 
-asio::awaitable<void> turn_step_by_step(LiveClient& client, const Stage& stage, double angle, const bool& stop) {
+asio::awaitable<void> turn_step_by_step(LiveClient& client, const Stage& stage, double angle,
+                                        const bool& stop) {
   while (!stop && !client.is_lost()) {
     client.look(stage.from(angle += kTurnStep_rad), true);
     co_await client.newest_camera_shown();
   }
 }
 
-asio::awaitable<void> paint(LiveClient& client, const Stage& stage, double angle, unsigned seed, const bool& stop) {
+asio::awaitable<void> paint(LiveClient& client, const Stage& stage, double angle, unsigned seed,
+                            const bool& stop) {
   Beat beat(co_await asio::this_coro::executor, kBatchEvery);
   const Camera camera = stage.from(angle);
   Wander hand(stage.width, stage.height, seed);

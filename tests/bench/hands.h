@@ -20,15 +20,19 @@ struct Stage {
   Camera from(double angle, double elevation = 0.4) const;
 };
 
-// What a person's hand does, until `stop`. As the page sends it: a camera with each picture of the screen (16 ms), whatever has
-// arrived; a batch of a stroke each 30 ms.
-boost::asio::awaitable<void> turn(LiveClient& client, const Stage& stage, double angle, const bool& stop);
-// Each camera when the picture of the one before is there: what one takes without waiting for its turn.
-boost::asio::awaitable<void> turn_step_by_step(LiveClient& client, const Stage& stage, double angle, const bool& stop);
-// With a still camera, strokes of 20 batches, each of another value. Whoever has kMostUnanswered batches that are not applied
-// waits: more would only make the queue longer, and every time with it.
+// What a person's hand does, until `stop`. As the page sends it: a camera with each picture of the
+// screen (16 ms), whatever has arrived; a batch of a stroke each 30 ms.
+boost::asio::awaitable<void> turn(LiveClient& client, const Stage& stage, double angle,
+                                  const bool& stop);
+// Each camera when the picture of the one before is there: what one takes without waiting for its
+// turn.
+boost::asio::awaitable<void> turn_step_by_step(LiveClient& client, const Stage& stage, double angle,
+                                               const bool& stop);
+// With a still camera, strokes of 20 batches, each of another value. Whoever has kMostUnanswered
+// batches that are not applied waits: more would only make the queue longer, and every time with
+// it.
 constexpr int kMostUnanswered = 16;
-boost::asio::awaitable<void> paint(LiveClient& client, const Stage& stage, double angle, unsigned seed,
-                                   const bool& stop);
+boost::asio::awaitable<void> paint(LiveClient& client, const Stage& stage, double angle,
+                                   unsigned seed, const bool& stop);
 
 }  // namespace strata::bench

@@ -41,13 +41,16 @@ std::string cpu_name() {
 }  // namespace
 
 double now_ms() {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration<double, std::milli>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 double Samples::quantile(double share) const {
   auto sorted = values_;
   std::sort(sorted.begin(), sorted.end());
-  return sorted.at(std::min(sorted.size() - 1, static_cast<std::size_t>(share * double(sorted.size()))));
+  return sorted.at(
+      std::min(sorted.size() - 1, static_cast<std::size_t>(share * double(sorted.size()))));
 }
 
 nlohmann::json Samples::json() const {
@@ -69,8 +72,8 @@ nlohmann::json machine(const render::GpuInfo* gpu) {
   return json;
 }
 
-void write_result(const std::string& json_file, const nlohmann::json& machine, const nlohmann::json& results,
-                  const nlohmann::json& more) {
+void write_result(const std::string& json_file, const nlohmann::json& machine,
+                  const nlohmann::json& results, const nlohmann::json& more) {
   if (json_file.empty()) return;
   std::ofstream out(json_file);
   nlohmann::json json = more;
@@ -87,8 +90,8 @@ std::unique_ptr<render::Renderer> start_renderer() {
 }
 
 Camera look_at(const mesh::Geometry& geometry, glm::dvec3 from, int width, int height) {
-  return look_at(geometry.origin + glm::dvec3(geometry.box_min), geometry.origin + glm::dvec3(geometry.box_max), from,
-                 width, height);
+  return look_at(geometry.origin + glm::dvec3(geometry.box_min),
+                 geometry.origin + glm::dvec3(geometry.box_max), from, width, height);
 }
 
 Camera look_at(glm::dvec3 low, glm::dvec3 high, glm::dvec3 from, int width, int height) {
@@ -97,10 +100,10 @@ Camera look_at(glm::dvec3 low, glm::dvec3 high, glm::dvec3 from, int width, int 
   const glm::dvec3 direction = glm::normalize(from);
   const glm::dvec3 up = std::abs(direction.z) > 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
   const double distance = radius * 2.4;
-  return {
-      glm::lookAt(center + direction * distance, center, up),
-      glm::perspective(glm::radians(45.0), double(width) / height, distance - radius * 1.2, distance + radius * 1.2),
-      width, height};
+  return {glm::lookAt(center + direction * distance, center, up),
+          glm::perspective(glm::radians(45.0), double(width) / height, distance - radius * 1.2,
+                           distance + radius * 1.2),
+          width, height};
 }
 
 void let_others_through(const std::filesystem::path& folder) {
@@ -137,9 +140,10 @@ void Site::restart() {
   store.reset();
   store = must(store::Store::open({cluster->dsn(), 8}, STRATA_MIGRATIONS_DIR));
   renderer = start_renderer();
-  encoder = std::make_unique<stream::JpegPool>(std::max(1, int(std::thread::hardware_concurrency()) - 1));
-  rooms = std::make_unique<room::Rooms>(*store, *renderer, stream::StreamContext{renderer.get(), encoder.get()},
-                                        room::RoomOptions{});
+  encoder =
+      std::make_unique<stream::JpegPool>(std::max(1, int(std::thread::hardware_concurrency()) - 1));
+  rooms = std::make_unique<room::Rooms>(
+      *store, *renderer, stream::StreamContext{renderer.get(), encoder.get()}, room::RoomOptions{});
 }
 
 room::EditAnswer edit_and_wait(room::Room& room, room::EditRequest request) {
@@ -150,8 +154,8 @@ room::EditAnswer edit_and_wait(room::Room& room, room::EditRequest request) {
   return must(future.get());
 }
 
-room::EditRequest stroke_request(const Layer& layer, const Camera& camera, std::vector<glm::dvec2> path,
-                                 double radius_px, double value) {
+room::EditRequest stroke_request(const Layer& layer, const Camera& camera,
+                                 std::vector<glm::dvec2> path, double radius_px, double value) {
   room::StrokeEdit stroke;
   stroke.batch.camera = camera;
   stroke.batch.path = std::move(path);

@@ -35,14 +35,16 @@ double now_ms();
 // {cpu, cores, gl_renderer, driver, commit}
 nlohmann::json machine(const render::GpuInfo* gpu);
 // `more`: further members beside `machine` and `results`.
-void write_result(const std::string& json_file, const nlohmann::json& machine, const nlohmann::json& results,
+void write_result(const std::string& json_file, const nlohmann::json& machine,
+                  const nlohmann::json& results,
                   const nlohmann::json& more = nlohmann::json::object());
 
 std::unique_ptr<render::Renderer> start_renderer();
 template <class T>
 T must(Result<T> result) {
   if (!result) {
-    std::fprintf(stderr, "strata-bench: %s: %s\n", result.error().title.c_str(), result.error().detail.c_str());
+    std::fprintf(stderr, "strata-bench: %s: %s\n", result.error().title.c_str(),
+                 result.error().detail.c_str());
     std::exit(1);
   }
   if constexpr (!std::is_void_v<T>) return std::move(*result);
@@ -86,7 +88,7 @@ class Site {
 
 // Waits for an edit to be durable.
 room::EditAnswer edit_and_wait(room::Room& room, room::EditRequest request);
-room::EditRequest stroke_request(const Layer& layer, const Camera& camera, std::vector<glm::dvec2> path,
-                                 double radius_px, double value);
+room::EditRequest stroke_request(const Layer& layer, const Camera& camera,
+                                 std::vector<glm::dvec2> path, double radius_px, double value);
 
 }  // namespace strata::bench

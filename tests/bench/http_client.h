@@ -9,7 +9,8 @@
 
 namespace strata::bench {
 
-// One connection to a server on this machine that is kept, as scripts have it. Every answer is a success: another ends the bench.
+// One connection to a server on this machine that is kept, as scripts have it. Every answer is a
+// success: another ends the bench.
 class HttpClient {
  public:
   struct Answer {
@@ -20,7 +21,8 @@ class HttpClient {
 
   // Paths come after /api/v1.
   Answer get(const std::string& path);
-  Answer post(const std::string& path, const std::string& body, const std::string& accept = "application/json",
+  Answer post(const std::string& path, const std::string& body,
+              const std::string& accept = "application/json",
               const std::string& content_type = "application/json");
 
  private:

@@ -37,7 +37,8 @@ Clock::duration time_of(std::size_t bytes, double bits_per_second) {
 
 // Bytes that are on their way at the full rate.
 std::size_t bytes_under_way(const LinkQuality& quality) {
-  return std::size_t(quality.bits_per_second / 8 * std::chrono::duration<double>(quality.round_trip).count() / 2);
+  return std::size_t(quality.bits_per_second / 8 *
+                     std::chrono::duration<double>(quality.round_trip).count() / 2);
 }
 
 }  // namespace
@@ -47,14 +48,17 @@ std::optional<LinkQuality> parse_link(const std::string& text) {
   static const std::regex form(R"(([0-9]{1,4})ms/([0-9]{1,5}(?:\.[0-9]{1,3})?)Mbit)");
   std::smatch parts;
   if (!std::regex_match(text, parts, form)) return std::nullopt;
-  const LinkQuality quality{text, std::chrono::milliseconds(std::stoi(parts[1])), std::stod(parts[2]) * 1e6};
+  const LinkQuality quality{text, std::chrono::milliseconds(std::stoi(parts[1])),
+                            std::stod(parts[2]) * 1e6};
   if (quality.bits_per_second <= 0) return std::nullopt;
   return quality;
 }
 
 struct Link::State {
   State(asio::io_context& context, LinkQuality asked, tcp::endpoint to)
-      : quality(std::move(asked)), server(to), acceptor(context, {asio::ip::address_v4::loopback(), 0}) {}
+      : quality(std::move(asked)),
+        server(to),
+        acceptor(context, {asio::ip::address_v4::loopback(), 0}) {}
   const LinkQuality quality;
   const tcp::endpoint server;
   tcp::acceptor acceptor;
@@ -111,7 +115,8 @@ class Link::Line : public std::enable_shared_from_this<Link::Line> {
     Way(tcp::socket& source, tcp::socket& sink, const State& state)
         : from(source),
           to(sink),
-          pieces(source.get_executor(), (kQueueBytes + bytes_under_way(state.quality)) / kPieceBytes),
+          pieces(source.get_executor(),
+                 (kQueueBytes + bytes_under_way(state.quality)) / kPieceBytes),
           arrival(source.get_executor()) {}
     tcp::socket &from, &to;
     asio::experimental::channel<void(error_code, Piece)> pieces;
@@ -120,7 +125,8 @@ class Link::Line : public std::enable_shared_from_this<Link::Line> {
 
   static asio::awaitable<void> take(std::shared_ptr<Line> line, Way& way) {
     const LinkQuality& quality = line->state_->quality;
-    Clock::time_point sent_at = Clock::now();  // when the last bit is on the wire that was taken before
+    // when the last bit is on the wire that was taken before
+    Clock::time_point sent_at = Clock::now();
     for (bool over = false; !over;) {
       Piece piece{std::vector<char>(kPieceBytes), {}};
       auto [error, size] = co_await way.from.async_read_some(asio::buffer(piece.bytes), kUseResult);
@@ -145,7 +151,8 @@ class Link::Line : public std::enable_shared_from_this<Link::Line> {
       auto [cancelled] = co_await way.arrival.async_wait(kUseResult);
       if (cancelled) co_return;
       if (piece.bytes.empty()) break;
-      auto [error, size] = co_await asio::async_write(way.to, asio::buffer(piece.bytes), kUseResult);
+      auto [error, size] =
+          co_await asio::async_write(way.to, asio::buffer(piece.bytes), kUseResult);
       if (error) co_return line->close();
     }
     error_code ignored;

@@ -22,10 +22,12 @@ struct LinkQuality {
 // "loopback", or a round trip and a rate: "20ms/50Mbit". Nothing where it is neither.
 std::optional<LinkQuality> parse_link(const std::string& text);
 
-// An emulator of slow links in user space, without rights or kernel modules: viewers connect to `endpoint`, and every connection
-// is passed on to the server over a line of its own. Each way a line gives out no byte sooner than its rate allows and half a
-// round trip after that, in order. It holds what is on its way and kQueueBytes more; then it reads nothing, until the kernel's
-// buffers are full, too, and the sender feels it. Not emulated: loss, jitter, what TCP does about them, and the handshake.
+// An emulator of slow links in user space, without rights or kernel modules: viewers connect to
+// `endpoint`, and every connection is passed on to the server over a line of its own. Each way a
+// line gives out no byte sooner than its rate allows and half a round trip after that, in order. It
+// holds what is on its way and kQueueBytes more; then it reads nothing, until the kernel's buffers
+// are full, too, and the sender feels it. Not emulated: loss, jitter, what TCP does about them, and
+// the handshake.
 //
 // Everything runs on the context's thread.
 class Link {
@@ -34,7 +36,8 @@ class Link {
   static constexpr std::size_t kPieceBytes = 4 * 1024;  // read at once at most: 4 ms of 8 Mbit/s
 
   // Throws boost::system::system_error where it cannot listen.
-  Link(boost::asio::io_context& context, const LinkQuality& quality, boost::asio::ip::tcp::endpoint server);
+  Link(boost::asio::io_context& context, const LinkQuality& quality,
+       boost::asio::ip::tcp::endpoint server);
   ~Link();  // ends every line
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;

@@ -70,8 +70,8 @@ TEST(LinkQualityTest, names_are_a_round_trip_and_a_rate) {
   EXPECT_EQ(slow->name, "80ms/8Mbit");
   EXPECT_EQ(parse_link("0ms/1.5Mbit")->bits_per_second, 1.5e6);
   EXPECT_TRUE(parse_link("loopback")->is_loopback());
-  for (const char* bad : {"", "80ms", "8Mbit", "80ms/0Mbit", "-1ms/8Mbit", "80ms/8Mbit ", "80ms/8Gbit", "1e3ms/8Mbit",
-                          "99999ms/8Mbit", "80ms/999999Mbit"})
+  for (const char* bad : {"", "80ms", "8Mbit", "80ms/0Mbit", "-1ms/8Mbit", "80ms/8Mbit ",
+                          "80ms/8Gbit", "1e3ms/8Mbit", "99999ms/8Mbit", "80ms/999999Mbit"})
     EXPECT_FALSE(parse_link(bad)) << bad;
 }
 
@@ -80,7 +80,8 @@ TEST_F(LinkTest, bytes_arrive_in_order_and_never_faster_than_the_rate) {
   connect("0ms/16Mbit");
   const auto bytes = numbered(500'000);
   for (const bool is_down : {true, false}) {
-    const auto [arrived, seconds] = is_down ? carry(server_, viewer_, bytes) : carry(viewer_, server_, bytes);
+    const auto [arrived, seconds] =
+        is_down ? carry(server_, viewer_, bytes) : carry(viewer_, server_, bytes);
     EXPECT_EQ(arrived, bytes);
     EXPECT_GE(seconds, double(bytes.size()) * 8 / 16e6);
   }
@@ -96,14 +97,16 @@ TEST_F(LinkTest, whoever_sends_to_one_who_does_not_read_is_held_back) {
   connect("0ms/800Mbit");
   const auto bytes = numbered(64u << 20);
   bool is_sent = false;
-  asio::async_write(server_, asio::buffer(bytes), [&](auto error, std::size_t) { is_sent = !error; });
+  asio::async_write(server_, asio::buffer(bytes),
+                    [&](auto error, std::size_t) { is_sent = !error; });
   run_until([&] { return link_->full_ways() == 1; });
   EXPECT_FALSE(is_sent);
   // Its own queue, and what the kernel holds for a viewer who does not read.
   EXPECT_LT(link_->bytes_taken(), 32u << 20);
   std::vector<std::uint8_t> arrived(bytes.size());
   bool is_read = false;
-  asio::async_read(viewer_, asio::buffer(arrived), [&](auto error, std::size_t) { is_read = !error; });
+  asio::async_read(viewer_, asio::buffer(arrived),
+                   [&](auto error, std::size_t) { is_read = !error; });
   run_until([&] { return is_read; });
   EXPECT_TRUE(is_sent);
   EXPECT_EQ(arrived, bytes);
@@ -128,7 +131,8 @@ TEST_F(LinkTest, the_line_ends_with_its_link) {
   std::vector<std::uint8_t> nothing(1);
   int ends = 0;
   for (tcp::socket* end : {&server_, &viewer_})
-    end->async_read_some(asio::buffer(nothing), [&](auto error, std::size_t) { ends += bool(error); });
+    end->async_read_some(asio::buffer(nothing),
+                         [&](auto error, std::size_t) { ends += bool(error); });
   run_until([&] { return ends == 2; });
 }
 

@@ -39,10 +39,15 @@ protocol::CameraUpdate camera_update(const Camera& camera, std::uint64_t seq, bo
 
 }  // namespace
 
-LiveClient::LiveClient(asio::io_context& context, asio::ip::tcp::endpoint at, std::uint16_t server_port)
-    : socket_(context), at_(at), server_port_(server_port), has_news_(context, asio::steady_timer::time_point::max()) {}
+LiveClient::LiveClient(asio::io_context& context, asio::ip::tcp::endpoint at,
+                       std::uint16_t server_port)
+    : socket_(context),
+      at_(at),
+      server_port_(server_port),
+      has_news_(context, asio::steady_timer::time_point::max()) {}
 
-asio::awaitable<void> LiveClient::open(const std::string& model, const std::string& token, const Camera& camera) {
+asio::awaitable<void> LiveClient::open(const std::string& model, const std::string& token,
+                                       const Camera& camera) {
   auto [unreachable] = co_await beast::get_lowest_layer(socket_).async_connect(at_, kUseResult);
   if (unreachable) co_return lose(unreachable.message());
   beast::get_lowest_layer(socket_).socket().set_option(asio::ip::tcp::no_delay(true));
@@ -76,7 +81,8 @@ asio::awaitable<void> LiveClient::newest_camera_shown() {
     co_await has_news_.async_wait(kUseResult);
 }
 
-void LiveClient::begin_stroke(const std::string& layer, const Camera& camera, double value, double radius_px) {
+void LiveClient::begin_stroke(const std::string& layer, const Camera& camera, double value,
+                              double radius_px) {
   protocol::StrokeBegin begin;
   begin.id = random_uuid();
   begin.stroke = stroke_ = random_uuid();
@@ -147,8 +153,9 @@ void LiveClient::on_text(const std::string& text) {
   const auto message = protocol::parse_server_message(text);
   if (!message) return lose("it sent " + text.substr(0, 200));
   if (const auto* applied = std::get_if<protocol::Applied>(&*message)) {
-    const auto found =
-        answered([&](const Batch& batch) { return applied->stroke == batch.stroke && applied->n == batch.number; });
+    const auto found = answered([&](const Batch& batch) {
+      return applied->stroke == batch.stroke && applied->n == batch.number;
+    });
     if (!found) return;
     batches_[*found].sequence = std::uint64_t(applied->sequence);
     batches_[*found].has_changed = applied->texels_changed.value_or(0) > 0;
@@ -162,8 +169,8 @@ void LiveClient::on_text(const std::string& text) {
 // The batch that an answer is for; it is unanswered no longer.
 template <class Matches>
 std::optional<std::size_t> LiveClient::answered(Matches matches) {
-  const auto found =
-      std::find_if(unanswered_.begin(), unanswered_.end(), [&](std::size_t index) { return matches(batches_[index]); });
+  const auto found = std::find_if(unanswered_.begin(), unanswered_.end(),
+                                  [&](std::size_t index) { return matches(batches_[index]); });
   if (found == unanswered_.end()) return std::nullopt;
   const std::size_t index = *found;
   unanswered_.erase(found);
@@ -171,7 +178,8 @@ std::optional<std::size_t> LiveClient::answered(Matches matches) {
 }
 
 void LiveClient::on_frame(asio::const_buffer message) {
-  const auto header = protocol::decode_frame_header({static_cast<const std::uint8_t*>(message.data()), message.size()});
+  const auto header = protocol::decode_frame_header(
+      {static_cast<const std::uint8_t*>(message.data()), message.size()});
   if (!header) return lose("a frame is not one: " + header.error().detail);
   if (!header->last) return;
   frames_.push_back({now_ms(), header->camera_seq, header->scene_sequence, header->still});

@@ -35,9 +35,10 @@ class WireCounter {
   std::uint64_t bytes_read_ = 0;
 };
 
-// A viewer as the page is one, over a real WebSocket: the newest camera wins while one is being sent, a frame is acknowledged when
-// its last rectangle is there. Pictures are not decoded, so a decoder takes neither time nor this machine's processors. Notes
-// when what came; draws no conclusions. Everything runs on the context's thread.
+// A viewer as the page is one, over a real WebSocket: the newest camera wins while one is being
+// sent, a frame is acknowledged when its last rectangle is there. Pictures are not decoded, so a
+// decoder takes neither time nor this machine's processors. Notes when what came; draws no
+// conclusions. Everything runs on the context's thread.
 class LiveClient {
  public:
   struct Frame {  // whole
@@ -57,10 +58,13 @@ class LiveClient {
   };
 
   // `at`: the server, or a link to it.
-  LiveClient(boost::asio::io_context& context, boost::asio::ip::tcp::endpoint at, std::uint16_t server_port);
+  LiveClient(boost::asio::io_context& context, boost::asio::ip::tcp::endpoint at,
+             std::uint16_t server_port);
 
-  // Connects, says hello and looks; returns once the first picture of full quality is there, or the connection is lost.
-  boost::asio::awaitable<void> open(const std::string& model, const std::string& token, const Camera& camera);
+  // Connects, says hello and looks; returns once the first picture of full quality is there, or the
+  // connection is lost.
+  boost::asio::awaitable<void> open(const std::string& model, const std::string& token,
+                                    const Camera& camera);
   void look(const Camera& camera, bool moving);
   // Returns when a frame with the newest camera is there, or the connection is lost.
   boost::asio::awaitable<void> newest_camera_shown();
@@ -74,17 +78,21 @@ class LiveClient {
   bool has_picture() const { return has_picture_; }
   bool is_lost() const { return is_lost_; }
   const std::string& why_lost() const { return why_lost_; }
-  int unanswered() const { return int(unanswered_.size()); }  // batches that are neither applied nor refused
+  // batches that are neither applied nor refused
+  int unanswered() const { return int(unanswered_.size()); }
   int refused() const { return refused_; }
   Counts counts() const { return {frames_.size(), bytes_, stream().rate_policy().bytes_read()}; }
   const std::vector<Frame>& frames() const { return frames_; }
   const std::vector<Batch>& batches() const { return batches_; }
   std::uint64_t newest_camera() const { return camera_sent_ms_.size(); }
   // When the camera of this number was given to `look`.
-  double camera_sent_ms(std::uint64_t camera_seq) const { return camera_sent_ms_.at(camera_seq - 1); }
+  double camera_sent_ms(std::uint64_t camera_seq) const {
+    return camera_sent_ms_.at(camera_seq - 1);
+  }
 
  private:
-  using Stream = boost::beast::basic_stream<boost::asio::ip::tcp, boost::asio::any_io_executor, WireCounter>;
+  using Stream =
+      boost::beast::basic_stream<boost::asio::ip::tcp, boost::asio::any_io_executor, WireCounter>;
 
   boost::asio::awaitable<void> read();
   boost::asio::awaitable<void> write();

@@ -36,8 +36,9 @@ std::vector<std::string> stat_fields(const fs::path& process) {
 double seconds_of(const std::vector<std::string>& fields, int count) {
   if (fields.empty()) return 0;
   const auto first = fields.begin() + 11;
-  const double ticks = std::accumulate(first, first + count, 0.0,
-                                       [](double sum, const std::string& field) { return sum + std::stod(field); });
+  const double ticks =
+      std::accumulate(first, first + count, 0.0,
+                      [](double sum, const std::string& field) { return sum + std::stod(field); });
   return ticks / double(sysconf(_SC_CLK_TCK));
 }
 
@@ -54,7 +55,9 @@ bool is_number(const std::string& text) {
 
 }  // namespace
 
-double processor_seconds(pid_t pid) { return seconds_of(stat_fields("/proc/" + std::to_string(pid)), 2); }
+double processor_seconds(pid_t pid) {
+  return seconds_of(stat_fields("/proc/" + std::to_string(pid)), 2);
+}
 
 double family_seconds(pid_t pid) {
   std::map<pid_t, pid_t> parents;
@@ -78,7 +81,9 @@ double family_seconds(pid_t pid) {
 
 double resident_mib(pid_t pid) { return status_mib(pid, "VmRSS"); }
 double peak_resident_mib(pid_t pid) { return status_mib(pid, "VmHWM"); }
-void forget_peak(pid_t pid) { std::ofstream("/proc/" + std::to_string(pid) + "/clear_refs") << "5"; }
+void forget_peak(pid_t pid) {
+  std::ofstream("/proc/" + std::to_string(pid) + "/clear_refs") << "5";
+}
 
 ChildProcess::ChildProcess(const std::vector<std::string>& command, fs::path log)
     : log_(std::move(log)), pid_(must(store::spawn(command, {}, log_, SIGTERM))) {}
@@ -87,7 +92,8 @@ ChildProcess::~ChildProcess() {
   if (has_ended()) return;
   kill(pid_, SIGTERM);
   const double limit_ms = now_ms() + 60e3;
-  while (!has_ended() && now_ms() < limit_ms) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  while (!has_ended() && now_ms() < limit_ms)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   if (has_ended()) return;
   kill(pid_, SIGKILL);
   waitpid(pid_, nullptr, 0);
@@ -98,7 +104,8 @@ bool ChildProcess::has_ended() {
   return ended_;
 }
 
-std::optional<std::string> ChildProcess::said(const std::string& start, std::chrono::seconds limit) {
+std::optional<std::string> ChildProcess::said(const std::string& start,
+                                              std::chrono::seconds limit) {
   const double limit_ms = now_ms() + std::chrono::duration<double, std::milli>(limit).count();
   while (true) {
     const bool is_last_look = has_ended() || now_ms() > limit_ms;
@@ -117,7 +124,8 @@ std::optional<fs::path> on_path(const std::string& program) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path ? path : "");
   for (std::string folder; std::getline(folders, folder, ':');)
-    if (const fs::path file = fs::path(folder) / program; access(file.c_str(), X_OK) == 0) return file;
+    if (const fs::path file = fs::path(folder) / program; access(file.c_str(), X_OK) == 0)
+      return file;
   return std::nullopt;
 }
 

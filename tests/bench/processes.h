@@ -11,8 +11,9 @@
 namespace strata::bench {
 
 // What /proc knows of processes; 0 of those that are not there.
-double processor_seconds(pid_t pid);  // user and system, of all its threads, also those that have ended
-double family_seconds(pid_t pid);     // and of all that it started
+// user and system, of all its threads, also those that have ended
+double processor_seconds(pid_t pid);
+double family_seconds(pid_t pid);  // and of all that it started
 double resident_mib(pid_t pid);
 double peak_resident_mib(pid_t pid);  // since `forget_peak`
 void forget_peak(pid_t pid);
@@ -27,7 +28,8 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   pid_t pid() const { return pid_; }
-  // The rest of the first line that begins with `start`; nothing when the program ends without it, or `limit` is over.
+  // The rest of the first line that begins with `start`; nothing when the program ends without it,
+  // or `limit` is over.
   std::optional<std::string> said(const std::string& start, std::chrono::seconds limit);
   std::string last_words() const;  // the end of the log
 

@@ -22,15 +22,16 @@ constexpr std::chrono::seconds kStarting{180};
 }  // namespace
 
 ServerProcess::ServerProcess(const std::filesystem::path& binary)
-    : folder_(make_temporary_folder()), token_(to_string(random_uuid()) + to_string(random_uuid())) {
+    : folder_(make_temporary_folder()),
+      token_(to_string(random_uuid()) + to_string(random_uuid())) {
   const std::filesystem::path data = folder_ / "data";
   std::filesystem::create_directory(data);
   let_others_through(data);
-  process_ =
-      std::make_unique<ChildProcess>(std::vector<std::string>{"/usr/bin/env", "STRATA_OWNER_TOKEN=" + token_,
-                                                              std::filesystem::absolute(binary).string(), "serve",
-                                                              "--data", data.string(), "--listen", "127.0.0.1:0"},
-                                     folder_ / "server.log");
+  process_ = std::make_unique<ChildProcess>(
+      std::vector<std::string>{"/usr/bin/env", "STRATA_OWNER_TOKEN=" + token_,
+                               std::filesystem::absolute(binary).string(), "serve", "--data",
+                               data.string(), "--listen", "127.0.0.1:0"},
+      folder_ / "server.log");
   const auto port = process_->said("listening on http://127.0.0.1:", kStarting);
   if (!port || !process_->said("owner link: ", kStarting)) stop(*process_, binary.string());
   port_ = static_cast<std::uint16_t>(std::stoi(*port));

@@ -9,10 +9,12 @@
 
 namespace strata::bench {
 
-// `strata serve` as a site runs it: a process of its own with a private PostgreSQL, a new data folder and a free port of this machine.
+// `strata serve` as a site runs it: a process of its own with a private PostgreSQL, a new data
+// folder and a free port of this machine.
 class ServerProcess {
  public:
-  // `binary`: of the server. Ends the bench, with the server's last words, where it does not come up.
+  // `binary`: of the server. Ends the bench, with the server's last words, where it does not come
+  // up.
   explicit ServerProcess(const std::filesystem::path& binary);
   ~ServerProcess();
 

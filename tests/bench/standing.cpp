@@ -15,9 +15,15 @@ struct Known {
 };
 // Looked up by eye on the sheet itself.
 const std::array kKnown{
-    Known{"amazon", {"y", 0}},           Known{"bust_manwreath", {"y", -50}}, Known{"dragon_stanford", {"y", 0}},
-    Known{"gargoyle", {"y", 0}},         Known{"lithic_flake1", {"z", 75}},   Known{"mask_bali/", {"y", 0}},
-    Known{"statue_nefertiti", {"y", 0}}, Known{"textured10m", {"y", 0}},      Known{"thai", {"y", 0}},
+    Known{"amazon", {"y", 0}},
+    Known{"bust_manwreath", {"y", -50}},
+    Known{"dragon_stanford", {"y", 0}},
+    Known{"gargoyle", {"y", 0}},
+    Known{"lithic_flake1", {"z", 75}},
+    Known{"mask_bali/", {"y", 0}},
+    Known{"statue_nefertiti", {"y", 0}},
+    Known{"textured10m", {"y", 0}},
+    Known{"thai", {"y", 0}},
     Known{"vessel_jug", {"z", 0}},  // before the preset
     Known{"vessel", {"y", 0}},
 };
@@ -54,15 +60,20 @@ Standing standing_of(const std::string& title, const std::string& up) {
   return standing;
 }
 
-Camera fitted_camera(const mesh::Geometry& geometry, const Standing& standing, glm::dvec3 from, int side) {
+Camera fitted_camera(const mesh::Geometry& geometry, const Standing& standing, glm::dvec3 from,
+                     int side) {
   const Axes axes = axes_of(standing);
-  const glm::dvec3 back = glm::normalize(from.x * axes.right + from.y * axes.front + from.z * axes.up);
+  const glm::dvec3 back =
+      glm::normalize(from.x * axes.right + from.y * axes.front + from.z * axes.up);
   const glm::dvec3 right = glm::normalize(glm::cross(axes.up, back)), up = glm::cross(back, right);
-  const double field = glm::radians(kFieldOfViewDegrees), slope = std::tan(field / 2) * (1 - 2 * kMargin);
-  // A vertex (x, y, z) of the view's axes is in the picture of a camera at (cx, cy, d) where |x − cx| ≤ slope (d − z), and so with
-  // y: four planes in cx, cy and d, of which only the farthest of all vertices count.
+  const double field = glm::radians(kFieldOfViewDegrees),
+               slope = std::tan(field / 2) * (1 - 2 * kMargin);
+  // A vertex (x, y, z) of the view's axes is in the picture of a camera at (cx, cy, d) where |x −
+  // cx| ≤ slope (d − z), and so with y: four planes in cx, cy and d, of which only the farthest of
+  // all vertices count.
   constexpr double kLeast = std::numeric_limits<double>::lowest();
-  double to_right = kLeast, to_left = kLeast, to_top = kLeast, to_bottom = kLeast, nearest = kLeast, farthest = -kLeast;
+  double to_right = kLeast, to_left = kLeast, to_top = kLeast, to_bottom = kLeast, nearest = kLeast,
+         farthest = -kLeast;
   for (const auto& vertex : geometry.vertices) {
     const glm::dvec3 p(vertex.position);
     const double x = glm::dot(p, right), y = glm::dot(p, up), z = glm::dot(p, back);
@@ -74,11 +85,12 @@ Camera fitted_camera(const mesh::Geometry& geometry, const Standing& standing, g
     farthest = std::min(farthest, z);
   }
   const double distance = std::max(to_right + to_left, to_top + to_bottom) / (2 * slope);
-  const glm::dvec3 eye =
-      geometry.origin + (to_right - to_left) / 2 * right + (to_top - to_bottom) / 2 * up + distance * back;
+  const glm::dvec3 eye = geometry.origin + (to_right - to_left) / 2 * right +
+                         (to_top - to_bottom) / 2 * up + distance * back;
   const double spare = 0.01 * (distance - farthest);
   return {glm::lookAt(eye, eye - back, up),
-          glm::perspective(field, 1.0, std::max(distance - nearest - spare, spare / 10), distance - farthest + spare),
+          glm::perspective(field, 1.0, std::max(distance - nearest - spare, spare / 10),
+                           distance - farthest + spare),
           side, side};
 }
 

@@ -29,15 +29,17 @@ glm::dvec3 projected(const Camera& camera, const glm::dvec3& world) {
 }
 
 TEST(Standing, a_model_of_any_shape_fills_its_picture_and_none_of_it_is_cut_off) {
-  for (const glm::vec3 extent :
-       {glm::vec3(37, 67, 4.5), glm::vec3(0.2f, 0.5f, 0.3f), glm::vec3(1, 1, 1000), glm::vec3(1e-7f)})
+  for (const glm::vec3 extent : {glm::vec3(37, 67, 4.5), glm::vec3(0.2f, 0.5f, 0.3f),
+                                 glm::vec3(1, 1, 1000), glm::vec3(1e-7f)})
     for (const char* up : {"x", "y", "z"})
-      for (const glm::dvec3 from : {glm::dvec3(0.5, 1, 0.45), glm::dvec3(-0.5, -1, 0.45), glm::dvec3(0.15, 0.45, 1)}) {
+      for (const glm::dvec3 from :
+           {glm::dvec3(0.5, 1, 0.45), glm::dvec3(-0.5, -1, 0.45), glm::dvec3(0.15, 0.45, 1)}) {
         const auto geometry = cloud(extent);
         const Camera camera = fitted_camera(geometry, {up, 20}, from, 480);
         glm::dvec3 most(0);
         for (const auto& vertex : geometry.vertices)
-          most = glm::max(most, glm::abs(projected(camera, geometry.origin + glm::dvec3(vertex.position))));
+          most = glm::max(
+              most, glm::abs(projected(camera, geometry.origin + glm::dvec3(vertex.position))));
         EXPECT_LE(std::max(most.x, most.y), 0.9) << "a margin is left";
         EXPECT_GE(std::max(most.x, most.y), 0.85) << "it fills the picture";
         EXPECT_LT(most.z, 1) << "nothing is before or behind what is drawn";
@@ -55,7 +57,8 @@ TEST(Standing, what_is_up_in_the_model_is_up_in_the_picture_and_its_front_is_see
     const auto above = projected(camera, geometry.origin + 0.1 * ups[k]);
     EXPECT_GT(above.y, middle.y + 0.01);
     EXPECT_NEAR(above.x, middle.x, 0.01);
-    EXPECT_LT(projected(camera, geometry.origin + 0.1 * fronts[k]).z, middle.z) << "the front is nearer";
+    EXPECT_LT(projected(camera, geometry.origin + 0.1 * fronts[k]).z, middle.z)
+        << "the front is nearer";
     // Right-handed: who stands before it and sees its right has its front on the left.
     EXPECT_LT(projected(camera, geometry.origin + 0.1 * fronts[k]).x, middle.x);
     EXPECT_GT(projected(camera, geometry.origin + 0.1 * glm::cross(ups[k], fronts[k])).x, middle.x);

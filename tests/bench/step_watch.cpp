@@ -78,8 +78,8 @@ double StepWatch::cpu_seconds() const {
 
 void StepWatch::print() const {
   for (const Step& step : steps_)
-    std::printf("  %-60s %7.2f s  %7.2f s of processor  %6.0f MiB\n", step.name.c_str(), step.seconds, step.cpu_seconds,
-                step.peak_mib);
+    std::printf("  %-60s %7.2f s  %7.2f s of processor  %6.0f MiB\n", step.name.c_str(),
+                step.seconds, step.cpu_seconds, step.peak_mib);
 }
 
 nlohmann::json StepWatch::json() const {

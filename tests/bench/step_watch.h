@@ -10,10 +10,12 @@
 
 namespace strata::bench {
 
-// Seconds, processor seconds and peak memory of the steps of long work, told apart by the messages it reports: sampled once a millisecond.
+// Seconds, processor seconds and peak memory of the steps of long work, told apart by the messages
+// it reports: sampled once a millisecond.
 class StepWatch {
  public:
-  // Runs `work`, and notes every message that `progress` shows meanwhile as a step; `name` is the one before the first.
+  // Runs `work`, and notes every message that `progress` shows meanwhile as a step; `name` is the
+  // one before the first.
   template <class Work>
   auto run(const std::string& name, Progress& progress, Work work) {
     Sampling sampling(*this, name, progress);

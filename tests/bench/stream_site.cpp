@@ -30,14 +30,16 @@ fs::path server_beside_us() { return fs::read_symlink("/proc/self/exe").parent_p
 fs::path ply_of(const std::string& model, const fs::path& cache, const fs::path& folder) {
   if (!is_generated(model)) {
     const auto files = must(mesh_files(model, cache));
-    if (files.size() != 1 || files[0].path.extension() != ".ply") stop(model + " is no single PLY file");
+    if (files.size() != 1 || files[0].path.extension() != ".ply")
+      stop(model + " is no single PLY file");
     return fs::absolute(files[0].path);
   }
   const fs::path file = folder / "mesh.ply";
   std::ofstream out(file, std::ios::binary);
   const BenchMesh mesh = must(load_bench_mesh(model, {cache}));
   query::VertexPly(mesh.geometry, {}).write([&](std::span<const std::uint8_t> bytes) {
-    return bool(out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size())));
+    return bool(
+        out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size())));
   });
   if (!out.flush()) stop("cannot write " + file.string());
   return file;
@@ -60,9 +62,10 @@ StreamSite::StreamSite(const Wish& wish)
 
 Stage StreamSite::import(const Wish& wish, const std::string& name, int layers) {
   HttpClient http(server_.port(), server_.token());
-  json job = json::parse(http.post("/models?filename=mesh.ply&unit=mm&up=z&name=" + name, content_of(mesh_file_),
-                                   "application/json", "application/octet-stream")
-                             .body);
+  json job =
+      json::parse(http.post("/models?filename=mesh.ply&unit=mm&up=z&name=" + name,
+                            content_of(mesh_file_), "application/json", "application/octet-stream")
+                      .body);
   const std::string job_path = "/jobs/" + job.at("id").dump();
   while (job.at("state") == "queued" || job.at("state") == "running") {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -88,7 +91,8 @@ Stage StreamSite::import(const Wish& wish, const std::string& name, int layers) 
                       {"opacity", 0.6},
                       {"order", i}};
     stage.layer = json::parse(http.post(model_path + "/layers", wanted.dump()).body).at("slug");
-    const json fill{{"op", "fill"}, {"mode", "where"}, {"where", "true"}, {"value", 10 + 20 * (i % 12)}};
+    const json fill{
+        {"op", "fill"}, {"mode", "where"}, {"where", "true"}, {"value", 10 + 20 * (i % 12)}};
     http.post(model_path + "/layers/" + stage.layer + "/edits", fill.dump());
   }
   return stage;

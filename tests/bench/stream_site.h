@@ -26,7 +26,8 @@ class StreamSite {
 
   const ServerProcess& server() const { return server_; }
   const Stage& painted() const { return painted_; }  // with all layers
-  const Stage& plain() const { return plain_; }      // with none; where that is not wished for, as `painted`
+  // with none; where that is not wished for, as `painted`
+  const Stage& plain() const { return plain_; }
   const std::filesystem::path& mesh_file() const { return mesh_file_; }  // PLY
   std::int64_t triangles() const { return triangles_; }
 

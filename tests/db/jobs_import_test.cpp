@@ -36,10 +36,13 @@ class Import : public ::testing::Test {
     return request;
   }
   std::int64_t count(const std::string& table) {
-    return store::PgConnection::connect(dsn_)->query(("SELECT count(*) FROM " + table).c_str())->integer(0, 0);
+    return store::PgConnection::connect(dsn_)
+        ->query(("SELECT count(*) FROM " + table).c_str())
+        ->integer(0, 0);
   }
   void expect_nothing_left() {
-    for (const char* table : {"models", "model_sources", "blobs", "blob_chunks"}) EXPECT_EQ(count(table), 0) << table;
+    for (const char* table : {"models", "model_sources", "blobs", "blob_chunks"})
+      EXPECT_EQ(count(table), 0) << table;
   }
 
   test::TemporaryFolder folder_;
@@ -153,19 +156,21 @@ TEST_F(Import, a_textured_scan_keeps_its_files_and_its_picture_becomes_the_first
 }
 
 TEST_F(Import, a_zip_is_kept_as_it_is_and_what_is_in_it_is_imported) {
-  const std::string zip =
-      test::zip_of({{"scan/pot.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}, {"readme.txt", "hello"}});
+  const std::string zip = test::zip_of(
+      {{"scan/pot.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}, {"readme.txt", "hello"}});
   const auto model = import_model(*store_, request("excavation.zip", zip), progress_);
   ASSERT_TRUE(model) << model.error().detail;
   EXPECT_EQ(model->name, "excavation");
   ASSERT_EQ(model->source_files.size(), 1u);
   EXPECT_EQ(model->source_files[0].name, "excavation.zip");
   EXPECT_EQ(model->source_files[0].bytes, zip.size());
-  EXPECT_FALSE(import_model(*store_, request("empty.zip", test::zip_of({{"readme.txt", "hello"}})), progress_));
+  EXPECT_FALSE(import_model(*store_, request("empty.zip", test::zip_of({{"readme.txt", "hello"}})),
+                            progress_));
 }
 
 TEST_F(Import, vertices_within_the_weld_distance_are_joined) {
-  auto asked = request("gap.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.01 0 0\nv 1 1 0\nv 0 1.01 0\nf 1 2 3\nf 4 5 6\n");
+  auto asked = request(
+      "gap.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.01 0 0\nv 1 1 0\nv 0 1.01 0\nf 1 2 3\nf 4 5 6\n");
   asked.weld_distance = 0.05;
   asked.strict = true;  // to weld is no fault
   const auto model = import_model(*store_, asked, progress_);
@@ -179,8 +184,11 @@ TEST_F(Import, a_bad_file_is_refused_and_leaves_nothing_behind) {
   const std::string cut =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n";
-  for (const auto& [filename, content] : std::vector<std::pair<std::string, std::string>>{
-           {"cut.ply", cut}, {"empty.ply", ""}, {"text.obj", "v 0 0 0\nf 1 2 3\n"}, {"picture.jpg", "JFIF"}}) {
+  for (const auto& [filename, content] :
+       std::vector<std::pair<std::string, std::string>>{{"cut.ply", cut},
+                                                        {"empty.ply", ""},
+                                                        {"text.obj", "v 0 0 0\nf 1 2 3\n"},
+                                                        {"picture.jpg", "JFIF"}}) {
     const auto model = import_model(*store_, request(filename, content), progress_);
     ASSERT_FALSE(model) << filename;
     EXPECT_GE(model.error().status, 400) << filename;
@@ -240,7 +248,8 @@ TEST_F(Import, a_cancel_at_any_time_leaves_nothing_behind) {
     Progress progress;
     std::atomic<bool> over{false};
     std::thread canceller([&] {
-      while (!over && progress.fraction() < from) std::this_thread::sleep_for(std::chrono::microseconds(100));
+      while (!over && progress.fraction() < from)
+        std::this_thread::sleep_for(std::chrono::microseconds(100));
       progress.cancel();
     });
     const auto model = import_model(*store_, scan, progress);
@@ -286,7 +295,8 @@ TEST_F(Import, the_demo_has_its_two_layers_and_asking_twice_makes_one) {
     const TileMask owned = map->owned_in_tile(address);
     EXPECT_TRUE(tile->valid == owned) << "the gutter holds what its owners hold";
     const TileMask surface = map->surface_in_tile(address);
-    for (int i = 0; i < kMaskWords; ++i) covered += std::popcount(surface.words[i] & tile->valid.words[i]);
+    for (int i = 0; i < kMaskWords; ++i)
+      covered += std::popcount(surface.words[i] & tile->valid.words[i]);
   }
   for (const auto& [address, tile] : cracks->tiles) cracked += tile->valid.count();
   EXPECT_EQ(covered, map->surface_texels) << "the sherds cover the whole pot";
@@ -298,7 +308,8 @@ TEST_F(Import, the_demo_has_its_two_layers_and_asking_twice_makes_one) {
   ASSERT_EQ(history->rows.size(), 1u);
   EXPECT_EQ(history->rows[0].op, "fill");
   EXPECT_EQ(history->rows[0].record["rule"], "sherds of the demo pot");
-  EXPECT_NEAR(history->rows[0].answer["area_m2"].get<double>(), demo->area_m2(), 1e-3 * demo->area_m2());
+  EXPECT_NEAR(history->rows[0].answer["area_m2"].get<double>(), demo->area_m2(),
+              1e-3 * demo->area_m2());
 
   const auto again = make_demo(*store_, progress_, 0.1);
   ASSERT_TRUE(again) << again.error().detail;

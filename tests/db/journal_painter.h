@@ -84,8 +84,8 @@ class Painter {
     return entry;
   }
 
-  store::JournalEntry::Revision revision(TileAddress address, const TileData& before, const TileData& after,
-                                         const TileMask& written) {
+  store::JournalEntry::Revision revision(TileAddress address, const TileData& before,
+                                         const TileData& after, const TileMask& written) {
     store::JournalEntry::Revision revision;
     revision.tile = address;
     revision.difference = encode_revision(make_revision(address, before, after, written));
@@ -116,7 +116,8 @@ inline Painter::Content content_of(const TileMirror::Snapshot& snapshot) {
 inline Result<void> save(store::JournalWriter& writer, store::JournalEntry entry) {
   auto answer = std::make_shared<std::promise<Result<void>>>();
   auto future = answer->get_future();
-  if (!writer.submit(std::move(entry), [answer](Result<void> result) { answer->set_value(std::move(result)); }))
+  if (!writer.submit(std::move(entry),
+                     [answer](Result<void> result) { answer->set_value(std::move(result)); }))
     return fail(503, "Not accepted", "The writer takes no edits now.");
   return future.get();
 }

@@ -1,4 +1,5 @@
-// Edits of whole areas: expressions, pieces of the surface, connected values, polygons. With a real database and renderer.
+// Edits of whole areas: expressions, pieces of the surface, connected values, polygons. With a real
+// database and renderer.
 #include <gmock/gmock.h>
 
 #include <bit>
@@ -55,7 +56,8 @@ class RoomAreas : public RoomTest {
     return snapshot ? snapshot->tiles : TileMap{};
   }
 
-  // Undo brings back what was there, redo what the edit made, and all of it can be read as of its sequence and after a restart.
+  // Undo brings back what was there, redo what the edit made, and all of it can be read as of its
+  // sequence and after a restart.
   void expect_durable_and_undoable(const Layer& layer, room::EditRequest edit) {
     const TileMap before = tiles(layer.slug);
     const auto answer = send(edit);
@@ -79,7 +81,8 @@ class RoomAreas : public RoomTest {
     expect_room_equals_journal(layer);
   }
 
-  room::PolygonEdit polygon(std::vector<glm::dvec2> path, std::uint32_t value, bool through = false) const {
+  room::PolygonEdit polygon(std::vector<glm::dvec2> path, std::uint32_t value,
+                            bool through = false) const {
     room::PolygonEdit edit;
     edit.value_bits = value;
     edit.outline.camera = view();
@@ -93,7 +96,8 @@ class RoomAreas : public RoomTest {
 
 std::uint64_t valid_texels(const TileMap& tiles) {
   std::uint64_t count = 0;
-  for (const auto& [address, tile] : tiles) count += static_cast<std::uint64_t>(tile->valid.count());
+  for (const auto& [address, tile] : tiles)
+    count += static_cast<std::uint64_t>(tile->valid.count());
   return count;
 }
 
@@ -120,8 +124,8 @@ TEST_F(RoomAreas, a_fill_where_a_condition_holds_follows_the_other_layers) {
   ASSERT_TRUE(send(stroke(crack_, 1, {{320, 200}, {320, 280}}, 15)));
   FillEdit fill;
   fill.value_bits = 900;
-  fill.region = FillEdit::Where{
-      of(Op::all, {of(Op::equal, {layer_value("wet"), number(5)}), of(Op::negation, {valid("crack")})})};
+  fill.region = FillEdit::Where{of(Op::all, {of(Op::equal, {layer_value("wet"), number(5)}),
+                                             of(Op::negation, {valid("crack")})})};
   expect_durable_and_undoable(marks_, request(marks_, fill));
   const TileMap wet = tiles("wet"), crack = tiles("crack"), marks = tiles("marks");
   std::uint64_t checked = 0;
@@ -229,7 +233,8 @@ TEST_F(RoomAreas, a_polygon_paints_what_a_square_brush_of_its_shape_does) {
     ASSERT_TRUE(answer) << answer.error().detail;
     EXPECT_GT(answer->texels_changed, 1000u);
     const std::uint64_t count = valid_texels(tiles("wet"));
-    EXPECT_LE(differing_texels(tiles("wet"), tiles("crack")), 2 + count / 20'000) << "rounding at the border";
+    EXPECT_LE(differing_texels(tiles("wet"), tiles("crack")), 2 + count / 20'000)
+        << "rounding at the border";
     FillEdit erase;
     erase.erase = true;
     for (const Layer& layer : {wet_, crack_}) ASSERT_TRUE(send(request(layer, erase)));
@@ -237,7 +242,8 @@ TEST_F(RoomAreas, a_polygon_paints_what_a_square_brush_of_its_shape_does) {
 }
 
 TEST_F(RoomAreas, a_polygon_is_durable_and_undoable) {
-  expect_durable_and_undoable(marks_, request(marks_, polygon({{220, 140}, {420, 200}, {300, 220}, {360, 360}}, 77)));
+  expect_durable_and_undoable(
+      marks_, request(marks_, polygon({{220, 140}, {420, 200}, {300, 220}, {360, 360}}, 77)));
 }
 
 TEST_F(RoomAreas, a_polygon_erases_and_its_notch_stays) {
@@ -245,7 +251,9 @@ TEST_F(RoomAreas, a_polygon_erases_and_its_notch_stays) {
   auto edit = polygon({{200, 150}, {440, 150}, {440, 330}, {320, 240}, {200, 330}}, 0);
   edit.erase = true;
   ASSERT_TRUE(send(request(marks_, edit)));
-  const auto value_at = [&](double x, double y) { return room()->pick(view(), x, y, {"marks"})->values.at(0); };
+  const auto value_at = [&](double x, double y) {
+    return room()->pick(view(), x, y, {"marks"})->values.at(0);
+  };
   EXPECT_FALSE(value_at(320, 180).valid);
   EXPECT_FALSE(value_at(230, 250).valid);
   EXPECT_TRUE(value_at(320, 300).valid) << "in the notch";
@@ -255,7 +263,8 @@ TEST_F(RoomAreas, a_polygon_out_of_the_window_paints_nothing_and_is_an_edit_all_
   const auto answer = send(request(marks_, polygon({{-900, -900}, {-800, -900}, {-800, -800}}, 1)));
   ASSERT_TRUE(answer) << answer.error().detail;
   EXPECT_EQ(answer->texels_changed, 0u);
-  const auto whole = send(request(marks_, polygon({{-1e6, -1e6}, {1e6, -1e6}, {1e6, 1e6}, {-1e6, 1e6}}, 1)));
+  const auto whole =
+      send(request(marks_, polygon({{-1e6, -1e6}, {1e6, -1e6}, {1e6, 1e6}, {-1e6, 1e6}}, 1)));
   ASSERT_TRUE(whole);
   EXPECT_GT(whole->texels_changed, 10'000u);
 }

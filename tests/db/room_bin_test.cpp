@@ -14,15 +14,16 @@ class LayersInTheBin : public RoomTest {
     ASSERT_TRUE(done) << done.error().detail;
   }
   Result<store::BinRestored> restore(const Layer& layer) {
-    const auto entry =
-        store_->bin().entry(model_.project_id, store::BinEntry::Kind::layer, layer.id, 0, {Role::curator, {}});
+    const auto entry = store_->bin().entry(model_.project_id, store::BinEntry::Kind::layer,
+                                           layer.id, 0, {Role::curator, {}});
     if (!entry) return tl::unexpected(entry.error());
     return room()->restore_layer(*entry, {.key = {}, .make = {}, .user = "carl"});
   }
 };
 
 TEST_F(LayersInTheBin, come_back_with_texels_history_and_undo_while_others_go_on) {
-  const Layer layer = make_layer(ValueType::u8, 2048, "cracks"), other = make_layer(ValueType::u8, 2048, "other");
+  const Layer layer = make_layer(ValueType::u8, 2048, "cracks"),
+              other = make_layer(ValueType::u8, 2048, "other");
   ASSERT_TRUE(send(stroke(layer, 9, {{320, 240}, {380, 250}}, 20)));
   ASSERT_TRUE(send(stroke(layer, 8, {{300, 240}}, 20)));
   const TileMap before = room()->tiles(layer.slug, {})->tiles;
@@ -47,7 +48,8 @@ TEST_F(LayersInTheBin, come_back_with_texels_history_and_undo_while_others_go_on
 }
 
 TEST_F(LayersInTheBin, stay_there_over_a_restart_and_a_lost_context) {
-  const Layer layer = make_layer(ValueType::u16, 2048, "cracks"), other = make_layer(ValueType::u8, 2048, "other");
+  const Layer layer = make_layer(ValueType::u16, 2048, "cracks"),
+              other = make_layer(ValueType::u8, 2048, "other");
   ASSERT_TRUE(send(stroke(layer, 900, {{320, 240}, {380, 250}}, 20)));
   const TileMap before = room()->tiles(layer.slug, {})->tiles;
   put(layer);
@@ -74,13 +76,14 @@ TEST_F(LayersInTheBin, are_not_deleted_with_a_room_that_takes_them_back) {
   rooms_->forget(model_.id);
   EXPECT_EQ(held->picture({}, camera()).error().status, 410) << "who holds the room is told why";
   EXPECT_EQ(rooms_->open(std::to_string(model_.id), Role::owner).error().status, 404);
-  EXPECT_EQ(store_->bin()
-                .entry(model_.project_id, store::BinEntry::Kind::layer, layer.id, 0, {Role::owner, {}})
-                .error()
-                .status,
-            404);
-  const auto model =
-      store_->bin().entry(model_.project_id, store::BinEntry::Kind::model, model_.id, 0, {Role::owner, {}});
+  EXPECT_EQ(
+      store_->bin()
+          .entry(model_.project_id, store::BinEntry::Kind::layer, layer.id, 0, {Role::owner, {}})
+          .error()
+          .status,
+      404);
+  const auto model = store_->bin().entry(model_.project_id, store::BinEntry::Kind::model, model_.id,
+                                         0, {Role::owner, {}});
   ASSERT_TRUE(model);
   ASSERT_TRUE(store_->bin().restore(*model, {}));
   EXPECT_TRUE(room()->layers().empty());

@@ -150,7 +150,8 @@ TEST_F(RoomTest, a_lost_context_comes_back_with_every_layer) {
   auto answer = send(stroke(layer, 91, {{300, 200}}, 10));
   for (int i = 0; i < 3000 && !answer; ++i) answer = send(stroke(layer, 91, {{300, 200}}, 10));
   ASSERT_TRUE(answer);
-  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, room()->tiles("layer", answer->sequence)->tiles));
+  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles,
+                          room()->tiles("layer", answer->sequence)->tiles));
 }
 
 // What the people in a room hear of failed saves.
@@ -192,8 +193,9 @@ TEST_F(RoomTest, edits_whose_commit_fails_are_taken_back_everywhere) {
     auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
     answers.push_back(promise->get_future());
     lost.push_back(stroke(layer, 10 + i, {{320.0 + 10 * i, 240}}, 20));
-    room()->edit(lost.back(), {},
-                 [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
+    room()->edit(lost.back(), {}, [promise](Result<room::EditAnswer> answer) {
+      promise->set_value(std::move(answer));
+    });
   }
   for (auto& answer : answers) EXPECT_FALSE(answer.get());
   EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, saved->tiles));
@@ -215,7 +217,8 @@ TEST_F(RoomTest, with_the_database_gone_edits_are_refused_and_viewing_goes_on) {
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
   const auto picture = room()->picture({}, camera());
   auto& cluster = test::shared_cluster();
-  test::Hang(cluster).kill();  // with its sessions, which may write for a moment after the postmaster is gone
+  // with its sessions, which may write for a moment after the postmaster is gone
+  test::Hang(cluster).kill();
   auto edit = stroke(layer, 6, {{340, 240}}, 20);
   EXPECT_FALSE(send(edit));
   EXPECT_EQ(room()->picture({}, camera())->pixels, picture->pixels);
@@ -228,14 +231,15 @@ TEST_F(RoomTest, with_the_database_gone_edits_are_refused_and_viewing_goes_on) {
     if (!resent) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   ASSERT_TRUE(resent) << resent.error().detail;
-  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, room()->tiles("layer", resent->sequence)->tiles));
+  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles,
+                          room()->tiles("layer", resent->sequence)->tiles));
 }
 
 TEST_F(RoomTest, every_type_is_painted_and_read_back) {
-  const std::pair<ValueType, double> cases[] = {{ValueType::u8, 200},           {ValueType::u16, 60000},
-                                                {ValueType::u32, 4000000000.0}, {ValueType::i8, -100},
-                                                {ValueType::i16, -30000},       {ValueType::i32, -2000000000.0},
-                                                {ValueType::f16, -0.375},       {ValueType::f32, 1e-3f}};
+  const std::pair<ValueType, double> cases[] = {
+      {ValueType::u8, 200},     {ValueType::u16, 60000},  {ValueType::u32, 4000000000.0},
+      {ValueType::i8, -100},    {ValueType::i16, -30000}, {ValueType::i32, -2000000000.0},
+      {ValueType::f16, -0.375}, {ValueType::f32, 1e-3f}};
   for (const auto& [type, value] : cases) {
     const Layer layer = make_layer(type, 2048, std::string(name(type)));
     ASSERT_TRUE(send(stroke(layer, value, {{320, 240}}, 20)));
@@ -249,7 +253,8 @@ TEST_F(RoomTest, every_type_is_painted_and_read_back) {
 }
 
 TEST_F(RoomTest, the_painted_area_is_that_of_a_disc_on_a_flat_spot) {
-  // An orthographic look along the normal of what is under the cursor: there the brush is a disc of known size.
+  // An orthographic look along the normal of what is under the cursor: there the brush is a disc of
+  // known size.
   const Layer layer = make_layer(ValueType::u8, 4096);
   auto edit = stroke(layer, 1, {{320, 240}}, 0);
   auto& batch = std::get<room::StrokeEdit>(edit.edit).batch;
@@ -257,7 +262,8 @@ TEST_F(RoomTest, the_painted_area_is_that_of_a_disc_on_a_flat_spot) {
   ASSERT_TRUE(spot && spot->hit);
   batch.camera = camera(glm::dvec3(spot->normal), true);
   // Where the spot is in the new window.
-  const glm::dvec4 clip = batch.camera.projection * batch.camera.view * glm::dvec4(spot->position, 1);
+  const glm::dvec4 clip =
+      batch.camera.projection * batch.camera.view * glm::dvec4(spot->position, 1);
   batch.path = {{(clip.x * 0.5 + 0.5) * 640, (0.5 - clip.y * 0.5) * 480}};
   batch.radius_px = 0;
   batch.radius_world = 2.0;  // mm, small against the curvature of the pot

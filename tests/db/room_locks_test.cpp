@@ -27,9 +27,10 @@ class LockedLayers : public RoomTest {
   }
 };
 
-// One of each kind; all of them change something on a layer that holds a stroke of Anna's and an undone one.
-std::vector<std::pair<std::string, decltype(room::EditRequest::edit)>> edits_of(const Camera& camera,
-                                                                                const TileMap& other) {
+// One of each kind; all of them change something on a layer that holds a stroke of Anna's and an
+// undone one.
+std::vector<std::pair<std::string, decltype(room::EditRequest::edit)>> edits_of(
+    const Camera& camera, const TileMap& other) {
   room::StrokeEdit stroke;
   stroke.batch.camera = camera;
   stroke.batch.path = {{300, 200}};
@@ -64,13 +65,15 @@ TEST_F(LockedLayers, no_edit_below_curator_touches_a_locked_layer) {
     const auto refused = send(request(layer, edit));
     ASSERT_FALSE(refused) << what;
     EXPECT_EQ(refused.error().status, 403) << what;
-    EXPECT_EQ(refused.error().detail, "The layer Layer is locked: a curator can unlock it.") << what;
+    EXPECT_EQ(refused.error().detail, "The layer Layer is locked: a curator can unlock it.")
+        << what;
     EXPECT_EQ(refused.error().field, "layer") << what;
   }
   EXPECT_TRUE(test::equal(tiles(layer), before));
   EXPECT_EQ(room()->sequence(), sequence);
   restart();
-  EXPECT_EQ(send(stroke(layer, 1, {{320, 240}}, 20)).error().status, 403) << "the lock was forgotten";
+  EXPECT_EQ(send(stroke(layer, 1, {{320, 240}}, 20)).error().status, 403)
+      << "the lock was forgotten";
   for (const auto& [what, edit] : edits) {
     const TileMap then = tiles(layer);
     const auto done = send(by_curator(request(layer, edit)));
@@ -105,9 +108,11 @@ TEST_F(LockedLayers, what_was_saved_before_the_lock_keeps_its_answer) {
 // Each of these strokes paints texels of its own, so any that came later would be seen.
 TEST_F(LockedLayers, once_a_lock_is_answered_nothing_is_painted_any_more) {
   const Layer layer = make_layer(ValueType::u8);
-  ASSERT_TRUE(send(stroke(layer, 1, {{320, 240}}, 20)));  // the surface map is there: what follows does not wait for it
+  // the surface map is there: what follows does not wait for it
+  ASSERT_TRUE(send(stroke(layer, 1, {{320, 240}}, 20)));
   std::vector<std::future<Result<room::EditAnswer>>> answers;
-  for (int i = 0; i < 60; ++i) answers.push_back(start(stroke(layer, 2 + i, {{200.0 + 4 * i, 180.0 + 2 * i}}, 10)));
+  for (int i = 0; i < 60; ++i)
+    answers.push_back(start(stroke(layer, 2 + i, {{200.0 + 4 * i, 180.0 + 2 * i}}, 10)));
   lock(layer);
   const TileMap then = tiles(layer);
   const auto sequence = room()->sequence();

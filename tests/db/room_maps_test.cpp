@@ -38,8 +38,10 @@ TEST_F(RoomMaps, readings_are_painted_around_their_places_over_what_is_there) {
   EXPECT_EQ(pick(330, 180).values.at(0).value, 9) << "the rest stays";
   const auto statistics = room()->statistics("map");
   const double disc_m2 = 3.14159 * radius * radius * 1e-6;
-  for (const double key : {1.0, 2.0}) EXPECT_NEAR(statistics->keys.at(key).area_m2, disc_m2, 0.25 * disc_m2);
-  EXPECT_NEAR(answer->area_m2, statistics->keys.at(1).area_m2 + statistics->keys.at(2).area_m2, 1e-9);
+  for (const double key : {1.0, 2.0})
+    EXPECT_NEAR(statistics->keys.at(key).area_m2, disc_m2, 0.25 * disc_m2);
+  EXPECT_NEAR(answer->area_m2, statistics->keys.at(1).area_m2 + statistics->keys.at(2).area_m2,
+              1e-9);
   ASSERT_TRUE(send(request(layer_, room::UndoEdit{})));
   EXPECT_TRUE(test::equal(room()->tiles("map", {})->tiles, before->tiles));
   ASSERT_TRUE(send(request(layer_, room::RedoEdit{})));
@@ -50,7 +52,8 @@ TEST_F(RoomMaps, readings_are_painted_around_their_places_over_what_is_there) {
 
 TEST_F(RoomMaps, a_reading_too_far_from_the_surface_is_refused_with_its_line) {
   const auto a = pick(300, 240);
-  const auto tiles = room()->dabs(layer_, {{a.position, 1, 2}, {a.position + glm::dvec3(0, -500, 0), 2, 7}}, 3, 1);
+  const auto tiles =
+      room()->dabs(layer_, {{a.position, 1, 2}, {a.position + glm::dvec3(0, -500, 0), 2, 7}}, 3, 1);
   ASSERT_FALSE(tiles);
   EXPECT_EQ(tiles.error().status, 422);
   EXPECT_NE(tiles.error().detail.find("Line 7"), std::string::npos);
@@ -65,24 +68,29 @@ TEST_F(RoomMaps, a_map_is_painted_on_what_is_seen_first_along_its_direction) {
   auto tiles = room()->project(layer_, {0, 1, 0}, east);  // seen from -y
   ASSERT_TRUE(tiles) << tiles.error().detail;
   ASSERT_TRUE(paint(*tiles));
-  // Rays along the direction tell what is seen first, and its values; others of its kind from behind see none.
+  // Rays along the direction tell what is seen first, and its values; others of its kind from
+  // behind see none.
   const double size = glm::length(model_.bounds_max - model_.bounds_min);
   int right = 0, wrong = 0, behind = 0;
   for (int i = 0; i < 400; ++i) {
-    const double x = middle.x + size * 0.3 * std::sin(i * 1.7), z = middle.z + size * 0.3 * std::cos(i * 2.3);
+    const double x = middle.x + size * 0.3 * std::sin(i * 1.7),
+                 z = middle.z + size * 0.3 * std::cos(i * 2.3);
     const Camera ray = camera({0, -1, 0.0001}, true);
     const glm::dvec4 clip = ray.projection * ray.view * glm::dvec4(x, middle.y, z, 1);
-    const auto seen = room()->pick(ray, (clip.x * 0.5 + 0.5) * ray.width, (0.5 - clip.y * 0.5) * ray.height, {"map"});
-    if (!seen->hit || std::abs(seen->position.x - middle.x) < 0.3 || std::abs(seen->position.z - middle.z) < 0.3)
+    const auto seen = room()->pick(ray, (clip.x * 0.5 + 0.5) * ray.width,
+                                   (0.5 - clip.y * 0.5) * ray.height, {"map"});
+    if (!seen->hit || std::abs(seen->position.x - middle.x) < 0.3 ||
+        std::abs(seen->position.z - middle.z) < 0.3)
       continue;
     if (std::abs(seen->normal.y) < 0.4) continue;  // grazed
     const auto expected = east(seen->position);
     const auto& value = seen->values.at(0);
-    ++(value.valid == expected.has_value() && (!expected || value.value == *expected) ? right : wrong);
+    ++(value.valid == expected.has_value() && (!expected || value.value == *expected) ? right
+                                                                                      : wrong);
     const Camera other = camera({0, 1, 0.0001}, true);
     const glm::dvec4 back = other.projection * other.view * glm::dvec4(x, middle.y, z, 1);
-    const auto hidden =
-        room()->pick(other, (back.x * 0.5 + 0.5) * other.width, (0.5 - back.y * 0.5) * other.height, {"map"});
+    const auto hidden = room()->pick(other, (back.x * 0.5 + 0.5) * other.width,
+                                     (0.5 - back.y * 0.5) * other.height, {"map"});
     if (hidden->hit && std::abs(hidden->normal.y) > 0.4) behind += hidden->values.at(0).valid;
   }
   EXPECT_GT(right, 100);

@@ -73,7 +73,8 @@ TEST_F(RoomMemory, that_is_used_up_refuses_edits_until_something_is_given_back) 
   const auto second = make_layer(ValueType::u32, 2048, "second");
   restart_with(bytes_with_map(first) + 4 * kMiB);
   ASSERT_TRUE(
-      send_until_taken(request(first, room::FillEdit{false, 9})));  // what an edit brought is kept, budget or not
+      // what an edit brought is kept, budget or not
+      send_until_taken(request(first, room::FillEdit{false, 9})));
   const auto refused = send(request(second, room::FillEdit{false, 9}));
   ASSERT_FALSE(refused);
   EXPECT_TRUE(is_used_up(refused.error()));

@@ -1,4 +1,5 @@
-// Questions to an open model: what layers held then, where a condition holds, around a place, inside an outline.
+// Questions to an open model: what layers held then, where a condition holds, around a place,
+// inside an outline.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -164,7 +165,8 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
   const double first = keys->at(1).area_m2, second = keys->at(2).area_m2;
   EXPECT_NEAR(area("pieces.thickness < 5"), first, 1e-9 * first);
   EXPECT_NEAR(area("pieces.state = 'firm'"), second, 1e-9 * second);
-  EXPECT_NEAR(area("pieces.state like '%o%' or pieces.thickness > 5"), first + second, 1e-9 * first);
+  EXPECT_NEAR(area("pieces.state like '%o%' or pieces.thickness > 5"), first + second,
+              1e-9 * first);
   EXPECT_EQ(area("pieces.thickness > depth and valid(depth)"), area("pieces = 2 and valid(depth)"));
   EXPECT_GT(area("pieces.thickness > depth"), 0);
 
@@ -175,17 +177,18 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
 
   room::FillEdit fill;
   fill.value_bits = 5;
-  fill.region =
-      room::FillEdit::Where{*query::parse_condition("pieces.state = 'firm' and pieces.thickness < 9", "where")};
+  fill.region = room::FillEdit::Where{
+      *query::parse_condition("pieces.state = 'firm' and pieces.thickness < 9", "where")};
   const auto filled = send(request(marks_, fill));
   ASSERT_TRUE(filled) << filled.error().detail;
   EXPECT_NEAR(filled->area_m2, second, 1e-9 * second);
 
-  for (const auto& [text, says] : std::map<std::string, std::string>{
-           {"pieces.thick > 1", "has no column 'thick'"},
-           {"depth > 1 and marks.thickness > 1",
-            "'marks' holds numbers: only database layers have records with columns (at character 15)"},
-           {"peaces.thickness > 1", "no layer 'peaces'"}}) {
+  for (
+      const auto& [text, says] : std::map<std::string, std::string>{
+          {"pieces.thick > 1", "has no column 'thick'"},
+          {"depth > 1 and marks.thickness > 1",
+           "'marks' holds numbers: only database layers have records with columns (at character 15)"},
+          {"peaces.thickness > 1", "no layer 'peaces'"}}) {
     const auto refused = room()->select(where(text), {});
     ASSERT_FALSE(refused) << text;
     EXPECT_EQ(refused.error().status, 422);
@@ -204,7 +207,8 @@ TEST_F(RoomQueries, a_cross_table_holds_each_layers_area) {
   const double units_area = room()->statistics("units")->area_m2;
   EXPECT_NEAR(table->area_m2[0][0] + table->area_m2[0][1], units_area, 1e-6 * units_area);
   const double marks_area = room()->statistics("marks")->area_m2;
-  EXPECT_NEAR(table->area_m2[0][0] + table->area_m2[1][0], marks_area, 0.01 * marks_area) << "at twice the texels";
+  EXPECT_NEAR(table->area_m2[0][0] + table->area_m2[1][0], marks_area, 0.01 * marks_area)
+      << "at twice the texels";
   EXPECT_GT(table->area_m2[0][0], 0);
   EXPECT_EQ(table->area_m2[1][1], 0);
   EXPECT_EQ(room()->cross_table("units", "depth").error().field, "columns");

@@ -1,6 +1,6 @@
-// Faults: the GPU's memory is used up or its context goes, the database is away or holds more than the room knows, the room
-// closes.
-// Whatever happens, what was answered as saved is in the journal, and the room and the GPU hold what the journal holds.
+// Faults: the GPU's memory is used up or its context goes, the database is away or holds more than
+// the room knows, the room closes. Whatever happens, what was answered as saved is in the journal,
+// and the room and the GPU hold what the journal holds.
 #include <libpq-fe.h>
 
 #include <chrono>
@@ -68,8 +68,9 @@ class RoomRecovery : public RoomTest {
  protected:
   void execute(const char* sql) { Connection(dsn_).execute(sql); }
 
-  // Starts again with a GPU that has room for one slice of pages of four bytes, 20 MiB: for a layer of 2048² that is painted all
-  // over, not for one of 4096². What is shown and painted is not more than that now.
+  // Starts again with a GPU that has room for one slice of pages of four bytes, 20 MiB: for a layer
+  // of 2048² that is painted all over, not for one of 4096². What is shown and painted is not more
+  // than that now.
   void restart_with_little_gpu_memory(std::initializer_list<Layer> layers) {
     for (const Layer& layer : layers) {
       EXPECT_TRUE(send(stroke(layer, 5, {{320, 240}}, 20)));
@@ -79,7 +80,8 @@ class RoomRecovery : public RoomTest {
   }
 
   // Commits an edit behind the room's back, as a commit does whose answer was lost.
-  void commit_behind(const room::EditRequest& edit, const Layer& layer, std::int64_t sequence, bool damaged) {
+  void commit_behind(const room::EditRequest& edit, const Layer& layer, std::int64_t sequence,
+                     bool damaged) {
     store::JournalEntry entry;
     entry.model_id = model_.id;
     entry.layer_id = layer.id;
@@ -99,11 +101,13 @@ class RoomRecovery : public RoomTest {
       written.set(texel);
       after.write(texel, 77);
     }
-    entry.revisions.push_back({address, encode_revision(make_revision(address, *before, after, written)), {}});
+    entry.revisions.push_back(
+        {address, encode_revision(make_revision(address, *before, after, written)), {}});
     if (damaged) entry.revisions[0].difference = {1, 2, 3};
     store::JournalWriter writer(*store_, {});
     std::promise<Result<void>> saved;
-    ASSERT_TRUE(writer.submit(std::move(entry), [&](Result<void> result) { saved.set_value(std::move(result)); }));
+    ASSERT_TRUE(writer.submit(std::move(entry),
+                              [&](Result<void> result) { saved.set_value(std::move(result)); }));
     const auto result = saved.get_future().get();
     ASSERT_TRUE(result) << result.error().detail;
   }
@@ -117,7 +121,8 @@ TEST(TileChanges, a_stroke_changes_what_it_wrote_whatever_the_gpu_holds_elsewher
     written.set(texel);
     read_back.write(texel, 9);
   }
-  const auto change = room::painted_change({1, 2}, std::make_shared<const TileData>(before), written, read_back);
+  const auto change =
+      room::painted_change({1, 2}, std::make_shared<const TileData>(before), written, read_back);
   TileData expected = before;
   for (int texel : {5, 6, 200}) expected.write(texel, 9);
   EXPECT_TRUE(*change.after == expected);
@@ -144,7 +149,8 @@ TEST_F(RoomRecovery, layers_that_do_not_fit_the_gpu_together_are_painted_in_turn
 }
 
 TEST_F(RoomRecovery, a_fill_that_does_not_fit_the_gpu_is_refused_and_leaves_all_as_it_was) {
-  const Layer other = make_layer(ValueType::u32, 2048, "other"), layer = make_layer(ValueType::u32, 4096, "large");
+  const Layer other = make_layer(ValueType::u32, 2048, "other"),
+              layer = make_layer(ValueType::u32, 4096, "large");
   restart_with_little_gpu_memory({other, layer});
   const auto before = room()->tiles(layer.slug, {});
   const Answer filled = send(request(layer, room::FillEdit{false, 3}));
@@ -191,10 +197,13 @@ TEST_F(RoomRecovery, contexts_lost_in_the_middle_of_edits_lose_none_that_was_sav
   std::vector<std::int64_t> sequences{1};
   for (int round = 0; round < 8; ++round) {
     std::vector<std::future<Answer>> answers;
-    for (int i = 0; i < 4; ++i) answers.push_back(start(stroke(layer, 10 + i, {{300.0 + 10 * i, 240.0 + round}}, 12)));
+    for (int i = 0; i < 4; ++i)
+      answers.push_back(start(stroke(layer, 10 + i, {{300.0 + 10 * i, 240.0 + round}}, 12)));
     answers.push_back(start(request(layer, room::FillEdit{false, std::uint32_t(round + 2)})));
-    for (int i = 0; i < 4; ++i) answers.push_back(start(stroke(layer, 20 + i, {{310.0 + 10 * i, 240.0 - round}}, 12)));
-    // At another moment each time: before, among and after the strokes and in the middle of the fill.
+    for (int i = 0; i < 4; ++i)
+      answers.push_back(start(stroke(layer, 20 + i, {{310.0 + 10 * i, 240.0 - round}}, 12)));
+    // At another moment each time: before, among and after the strokes and in the middle of the
+    // fill.
     for (int i = 0; i < round; ++i) answers[i].wait();
     renderer_->lose_context_for_test();
     for (auto& future : answers) {
@@ -252,7 +261,8 @@ TEST_F(RoomRecovery, a_context_lost_after_the_rooms_are_gone_harms_nobody) {
   rooms_.reset();
   renderer_->lose_context_for_test();
   std::promise<Result<render::ModelHandle>> answered;
-  renderer_->add_model({}, [&](Result<render::ModelHandle> model) { answered.set_value(std::move(model)); });
+  renderer_->add_model(
+      {}, [&](Result<render::ModelHandle> model) { answered.set_value(std::move(model)); });
   EXPECT_FALSE(answered.get_future().get());  // refused by a thread that is still there
 }
 
@@ -282,7 +292,8 @@ TEST_F(RoomRecovery, an_edit_that_reaches_the_journal_behind_the_room_is_not_pai
   const Layer layer = make_layer(ValueType::u8);
   ASSERT_TRUE(send(stroke(layer, 5, {{300, 240}}, 20)));
   commit_behind(stroke(layer, 6, {{340, 240}}, 20), layer, 2, false);
-  // The room takes sequence 2 for its own edit; the journal refuses it, and the room reads what is there.
+  // The room takes sequence 2 for its own edit; the journal refuses it, and the room reads what is
+  // there.
   const auto edit = stroke(layer, 7, {{320, 240}}, 20);
   EXPECT_FALSE(send(edit));
   const auto resent = send_until_taken(edit);
@@ -336,7 +347,8 @@ TEST_F(RoomRecovery, a_database_that_hangs_holds_up_neither_the_room_nor_the_end
   std::vector<std::future<Answer>> answers;
   {
     const test::Hang hang(test::shared_cluster());
-    for (int i = 0; i < 12; ++i) answers.push_back(start(stroke(layer, 6 + i, {{300.0 + i, 240}}, 10)));
+    for (int i = 0; i < 12; ++i)
+      answers.push_back(start(stroke(layer, 6 + i, {{300.0 + i, 240}}, 10)));
     for (int i = 8; i < 12; ++i) {
       ASSERT_EQ(answers[i].wait_for(std::chrono::seconds(0)), std::future_status::ready)
           << "refused before anything waits";
@@ -363,7 +375,8 @@ TEST_F(RoomRecovery, edits_that_waited_for_the_database_keep_their_order) {
   std::vector<std::future<Answer>> answers;
   {
     const test::Hang hang(test::shared_cluster());
-    for (int i = 0; i < 40; ++i) answers.push_back(start(stroke(layer, 2 + i, {{300.0 + i % 5, 240}}, 12)));
+    for (int i = 0; i < 40; ++i)
+      answers.push_back(start(stroke(layer, 2 + i, {{300.0 + i % 5, 240}}, 12)));
   }
   for (int i = 0; i < 40; ++i) {
     const Answer answer = answers[i].get();
@@ -383,7 +396,8 @@ TEST_F(RoomRecovery, undo_goes_back_through_more_revisions_than_are_read_at_once
     for (const Layer* each : {&layer, &without_ben})
       ASSERT_TRUE(send(stroke(*each, 1 + i, {{312.0 + i % 9, 240.0 + i % 4}}, 8)));
   ASSERT_TRUE(send(request(layer, room::UndoEdit{}, "ben")));
-  EXPECT_TRUE(test::equal(room()->tiles("layer", {})->tiles, room()->tiles("without-ben", {})->tiles));
+  EXPECT_TRUE(
+      test::equal(room()->tiles("layer", {})->tiles, room()->tiles("without-ben", {})->tiles));
   ASSERT_TRUE(send(request(layer, room::RedoEdit{}, "ben")));
   EXPECT_TRUE(room()->statistics("layer")->keys.contains(200));
 }
@@ -399,7 +413,8 @@ TEST_F(RoomRecovery, people_in_a_deleted_model_are_told_and_their_edits_are_refu
   rooms_->forget(model_.id);
   EXPECT_EQ(ears.deleted(), 1);
   std::promise<Answer> answered;
-  held->edit(stroke(layer, 5, {{300, 240}}, 20), {}, [&](Answer answer) { answered.set_value(std::move(answer)); });
+  held->edit(stroke(layer, 5, {{300, 240}}, 20), {},
+             [&](Answer answer) { answered.set_value(std::move(answer)); });
   EXPECT_EQ(answered.get_future().get().error().status, 410);
 }
 
@@ -427,7 +442,8 @@ TEST_F(RoomRecovery, a_layer_that_waits_for_edits_is_answered_when_its_room_clos
   }
 }
 
-TEST_F(RoomRecovery, who_waits_until_the_rooms_are_settled_waits_for_what_is_on_its_way_to_the_journal) {
+TEST_F(RoomRecovery,
+       who_waits_until_the_rooms_are_settled_waits_for_what_is_on_its_way_to_the_journal) {
   options_.retry_for = std::chrono::milliseconds(60'000);
   restart();
   const Layer layer = make_layer(ValueType::u8);

@@ -40,7 +40,8 @@ class Reviews : public RoomTest {
     edit.author.role = Role::curator;
     return edit;
   }
-  room::EditRequest review(Decision decision, store::Reviewees which = {}, std::string reason = "") const {
+  room::EditRequest review(Decision decision, store::Reviewees which = {},
+                           std::string reason = "") const {
     room::EditRequest edit = request(layer_, room::ReviewEdit{decision, which, reason}, "cleo");
     edit.record = {{"op", name(decision)}, {"reason", reason}};
     return as_curator(std::move(edit));
@@ -61,7 +62,9 @@ class Reviews : public RoomTest {
     for (const auto& [tile, data] : waiting) count += static_cast<std::size_t>(data->valid.count());
     return count;
   }
-  std::vector<std::uint8_t> picture() { return room()->picture({}, camera({0.3, -1, 0.4}))->pixels; }
+  std::vector<std::uint8_t> picture() {
+    return room()->picture({}, camera({0.3, -1, 0.4}))->pixels;
+  }
 };
 
 TEST_F(Reviews, what_an_annotator_paints_is_in_force_and_marked_until_it_is_accepted) {
@@ -100,7 +103,8 @@ TEST_F(Reviews, what_a_curator_paints_waits_for_nobody_and_covers_what_does) {
   EXPECT_EQ(row(2).review, Review::none);
   EXPECT_EQ(texels_waiting(), 0u);
   const auto plain = waits(make_layer(ValueType::u8, 2048, "plain"), false);
-  EXPECT_FALSE(send(stroke(plain, 3, {{320, 240}}, 20))->provisional) << "this layer asks for no review";
+  EXPECT_FALSE(send(stroke(plain, 3, {{320, 240}}, 20))->provisional)
+      << "this layer asks for no review";
   expect_picture_of_journal();
 }
 
@@ -153,7 +157,8 @@ TEST_F(Reviews, annotators_undo_only_what_waits_and_redo_nothing_that_was_reject
   ASSERT_TRUE(send(request(layer_, room::RedoEdit{})));
   ASSERT_TRUE(send(review(Decision::reject)));
   EXPECT_EQ(send(request(layer_, room::RedoEdit{})).error().status, 409);
-  EXPECT_EQ(send(as_curator(request(layer_, room::RedoEdit{}))).error().status, 409) << "anna as a curator, too";
+  EXPECT_EQ(send(as_curator(request(layer_, room::RedoEdit{}))).error().status, 409)
+      << "anna as a curator, too";
   // Without review, and as a curator, what was accepted is one's own as ever.
   EXPECT_TRUE(send(as_curator(request(layer_, room::UndoEdit{}))));
   expect_picture_of_journal();
@@ -268,7 +273,8 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
     std::unique_ptr<PGresult, decltype(&PQclear)> result(PQexec(other.get(), sql), &PQclear);
     ASSERT_EQ(PQresultStatus(result.get()), PGRES_COMMAND_OK) << PQerrorMessage(other.get());
   };
-  // Sends edits whose last is seen before any is durable, and looks at the newest durable state then.
+  // Sends edits whose last is seen before any is durable, and looks at the newest durable state
+  // then.
   const auto while_unsaved = [&](std::vector<room::EditRequest> edits, const auto& look) {
     execute("begin");
     execute("lock table edits in share row exclusive mode");  // may be read, and not written
@@ -278,8 +284,10 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
     const auto answer = std::make_shared<std::promise<Result<room::EditAnswer>>>();
     answers.push_back(answer->get_future());
     room()->edit(
-        edits.back(), [seen](const auto&) { seen->set_value(); }, [answer](auto result) { answer->set_value(result); });
-    const bool is_seen = seen->get_future().wait_for(std::chrono::minutes(2)) == std::future_status::ready;
+        edits.back(), [seen](const auto&) { seen->set_value(); },
+        [answer](auto result) { answer->set_value(result); });
+    const bool is_seen =
+        seen->get_future().wait_for(std::chrono::minutes(2)) == std::future_status::ready;
     EXPECT_TRUE(is_seen);
     if (is_seen) look(room()->durable_state());
     execute("commit");
@@ -303,7 +311,8 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
                 [&](const room::Room::DurableState& still) {
                   EXPECT_EQ(still.sequence, 1);
                   ASSERT_EQ(still.provisional.size(), 1u);
-                  EXPECT_TRUE(test::equal(still.provisional.begin()->second, saved.provisional.begin()->second));
+                  EXPECT_TRUE(test::equal(still.provisional.begin()->second,
+                                          saved.provisional.begin()->second));
                   EXPECT_NE(picture(), one);
                   EXPECT_EQ(picture_at(still), one);
                 });
@@ -311,7 +320,9 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
   EXPECT_EQ(all.sequence, 4);
   EXPECT_EQ(picture_at(all), picture());
 
-  const auto seen_by_viewers = [&] { return (*rooms_->open(model_.slug, Role::viewer))->durable_state().provisional; };
+  const auto seen_by_viewers = [&] {
+    return (*rooms_->open(model_.slug, Role::viewer))->durable_state().provisional;
+  };
   EXPECT_TRUE(seen_by_viewers().contains(layer_.id));
   Layer hidden = *room()->layer(layer_.slug);
   hidden.visibility = Visibility::curators;
@@ -319,8 +330,8 @@ TEST_F(Reviews, a_picture_of_the_newest_durable_state_is_hatched_as_that_of_now_
   EXPECT_THAT(seen_by_viewers(), IsEmpty());
 }
 
-// What the layer shows and what of it waits, by the journal's own words: the newest edit in force decides. The edits' state is kept by
-// a model of its own.
+// What the layer shows and what of it waits, by the journal's own words: the newest edit in force
+// decides. The edits' state is kept by a model of its own.
 TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
   struct Stroke {
     std::string user;
@@ -341,7 +352,9 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
     };
     for (int step = 0; step < 24; ++step) {
       const std::string user = random() % 2 ? "anna" : "ben";
-      const auto is_waiting = [](const Stroke& stroke) { return stroke.in_force && stroke.review == Review::pending; };
+      const auto is_waiting = [](const Stroke& stroke) {
+        return stroke.in_force && stroke.review == Review::pending;
+      };
       if (strokes.size() < 3 || random() % 2) {
         const bool curates = random() % 4 == 0;
         const std::uint32_t value = 1 + random() % 200;
@@ -360,7 +373,8 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
         if (newest) strokes[newest].in_force = false;
       } else if (random() % 3 == 0) {
         const auto decided = pick_of([](const Stroke& stroke) {
-          return stroke.review == Review::rejected || (stroke.review == Review::accepted && stroke.in_force);
+          return stroke.review == Review::rejected ||
+                 (stroke.review == Review::accepted && stroke.in_force);
         });
         if (!decided) continue;
         ASSERT_TRUE(send(review(Decision::reopen, {{decided}, {}})));
@@ -377,11 +391,13 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
     for (const auto& [sequence, stroke] : strokes) {
       if (!stroke.in_force) continue;
       for (const auto& [address, written] : stroke.written) {
-        auto tile = std::make_shared<TileData>(content[address] ? *content[address] : TileData(ValueType::u8));
+        auto tile = std::make_shared<TileData>(content[address] ? *content[address]
+                                                                : TileData(ValueType::u8));
         for (int texel = 0; texel < kTexelsPerTile; ++texel)
           if (written.test(texel)) tile->write(texel, stroke.value);
         content[address] = tile;
-        auto mark = std::make_shared<TileData>(marks[address] ? *marks[address] : TileData(ValueType::u8));
+        auto mark =
+            std::make_shared<TileData>(marks[address] ? *marks[address] : TileData(ValueType::u8));
         for (int texel = 0; texel < kTexelsPerTile; ++texel)
           if (written.test(texel) && stroke.review == Review::pending)
             mark->write(texel, 1);
@@ -396,9 +412,12 @@ TEST_F(Reviews, any_order_of_edits_undos_and_decisions_equals_the_oracle) {
     drop_empty(content);
     drop_empty(marks);
     EXPECT_TRUE(test::equal(tiles(), content)) << "seed " << seed;
-    EXPECT_TRUE(test::equal(room::read_provisional(*store_, layer_).value(), marks)) << "seed " << seed;
-    EXPECT_TRUE(test::equal(room()->durable_state().provisional[layer_.id], marks)) << "seed " << seed;
-    expect_picture_of_journal();  // the marks that the room kept up to date are those of the journal
+    EXPECT_TRUE(test::equal(room::read_provisional(*store_, layer_).value(), marks))
+        << "seed " << seed;
+    EXPECT_TRUE(test::equal(room()->durable_state().provisional[layer_.id], marks))
+        << "seed " << seed;
+    // the marks that the room kept up to date are those of the journal
+    expect_picture_of_journal();
     expect_room_equals_journal(layer_);
   }
 }

@@ -21,8 +21,8 @@ using test::Painter;
 std::vector<std::string> told(const ActivityPage& page) {
   std::vector<std::string> lines;
   for (const Activity& line : page.lines)
-    lines.push_back((line.user.empty() ? "-" : line.user) + " " + line.kind + " " + line.op + " " + line.name + " ×" +
-                    std::to_string(line.count));
+    lines.push_back((line.user.empty() ? "-" : line.user) + " " + line.kind + " " + line.op + " " +
+                    line.name + " ×" + std::to_string(line.count));
   return lines;
 }
 
@@ -35,10 +35,12 @@ class ActivityOfAProject : public ::testing::Test {
  protected:
   ActivityOfAProject() { forget(); }
   void forget() { ASSERT_TRUE(connection_->query("DELETE FROM activities")); }
-  void forget_made_layers() { ASSERT_TRUE(connection_->query("DELETE FROM activities WHERE kind = 'layer'")); }
+  void forget_made_layers() {
+    ASSERT_TRUE(connection_->query("DELETE FROM activities WHERE kind = 'layer'"));
+  }
   // An edit that is saved, `after` the first one.
-  void edit(const Layer& layer, std::chrono::seconds after, const std::string& user, const std::string& op = "stroke",
-            std::optional<Uuid> stroke = {}) {
+  void edit(const Layer& layer, std::chrono::seconds after, const std::string& user,
+            const std::string& op = "stroke", std::optional<Uuid> stroke = {}) {
     JournalEntry entry = Painter(layer, 1).entry(++sequence_, op, user);
     entry.time = begin_ + after;
     if (stroke) entry.stroke = *stroke;
@@ -71,7 +73,9 @@ class ActivityOfAProject : public ::testing::Test {
     writer.drain();
     entries_.clear();
   }
-  ActivityPage page(ActivityQuery query = {}) { return store_->activity(1, Role::curator, query).value(); }
+  ActivityPage page(ActivityQuery query = {}) {
+    return store_->activity(1, Role::curator, query).value();
+  }
 
   const std::string dsn_ = test::fresh_database();
   std::unique_ptr<Store> store_ = test::open_store(dsn_);
@@ -100,8 +104,9 @@ TEST_F(ActivityOfAProject, strokes_of_one_person_on_one_layer_within_ten_minutes
   save();
   const ActivityPage found = page();
   EXPECT_THAT(told(found),
-              ::testing::ElementsAre("ada edit stroke layer ×1", "ada edit fill layer ×1", "ada edit stroke layer ×3",
-                                     "bob edit stroke layer ×1", "ada edit stroke other ×1"));
+              ::testing::ElementsAre("ada edit stroke layer ×1", "ada edit fill layer ×1",
+                                     "ada edit stroke layer ×3", "bob edit stroke layer ×1",
+                                     "ada edit stroke other ×1"));
   const Activity& run = found.lines[2];
   EXPECT_EQ(run.begun, begin_);
   EXPECT_EQ(run.time, begin_ + 1000s);
@@ -115,7 +120,8 @@ TEST_F(ActivityOfAProject, strokes_of_one_person_on_one_layer_within_ten_minutes
 
 TEST_F(ActivityOfAProject, pages_have_every_line_once_whatever_their_size) {
   for (int i = 0; i < 40; ++i) {
-    edit(i % 3 == 0 ? other_ : layer_, 700s * (i / 2), i % 2 == 0 ? "ada" : "bob", i % 5 == 0 ? "undo" : "stroke");
+    edit(i % 3 == 0 ? other_ : layer_, 700s * (i / 2), i % 2 == 0 ? "ada" : "bob",
+         i % 5 == 0 ? "undo" : "stroke");
     if (i % 7 == 0) save();
   }
   save();
@@ -143,8 +149,9 @@ TEST_F(ActivityOfAProject, things_that_people_make_change_and_delete_are_told) {
   layer.opacity = 0.5;
   layer.locked = true;
   layer = store_->update_layer(layer, by<Layer>("ada")).value();
-  EXPECT_THAT(told(page()), ::testing::ElementsAre("ada layer changed Cracks ×2", "ada layer created Cracks ×1",
-                                                   "- model created vase ×1"));
+  EXPECT_THAT(told(page()),
+              ::testing::ElementsAre("ada layer changed Cracks ×2", "ada layer created Cracks ×1",
+                                     "- model created vase ×1"));
   EXPECT_THAT(page().lines[0].changed, ::testing::ElementsAre("locked", "name", "opacity"));
   layer.visible = !layer.visible;
   layer = store_->update_layer(layer).value();
@@ -176,13 +183,15 @@ TEST_F(ActivityOfAProject, views_and_tours_that_people_make_change_and_delete_ar
     ASSERT_TRUE(parts.remove(part, by<>("bob")));
   };
   tell(store_->views(), "West wall");
-  EXPECT_THAT(told(page({.model = model_.id})),
-              ::testing::ElementsAre("bob view deleted West wall ×1", "bob view changed West wall ×1",
-                                     "ada view created West wall ×1"));
+  EXPECT_THAT(
+      told(page({.model = model_.id})),
+      ::testing::ElementsAre("bob view deleted West wall ×1", "bob view changed West wall ×1",
+                             "ada view created West wall ×1"));
   forget();
   tell(store_->tours(), "The pot");
-  EXPECT_THAT(told(page()), ::testing::ElementsAre("bob tour deleted The pot ×1", "bob tour changed The pot ×1",
-                                                   "ada tour created The pot ×1"));
+  EXPECT_THAT(told(page()),
+              ::testing::ElementsAre("bob tour deleted The pot ×1", "bob tour changed The pot ×1",
+                                     "ada tour created The pot ×1"));
   EXPECT_EQ(page().lines[0].model, model_.id);
 }
 
@@ -203,7 +212,8 @@ TEST_F(ActivityOfAProject, records_and_columns_are_told_and_their_record_where_i
   weight.name = "weight";
   ASSERT_TRUE(store_->create_column(table.id, weight, "ada"));
   write_records(table.id, 1);
-  EXPECT_THAT(told(page()), ::testing::ElementsAre("ada records records Finds ×1", "ada columns create-column Finds ×1",
+  EXPECT_THAT(told(page()), ::testing::ElementsAre("ada records records Finds ×1",
+                                                   "ada columns create-column Finds ×1",
                                                    "ada table created Finds ×1"));
   EXPECT_EQ(page().lines[0].record, 1);
   write_records(table.id, 2);
@@ -232,9 +242,9 @@ TEST_F(ActivityOfAProject, a_model_has_the_lines_of_the_tables_whose_records_lie
     ASSERT_TRUE(store_->create_layer(layer));
   }
   forget_made_layers();
-  EXPECT_THAT(
-      told(page({.model = model_.id})),
-      ::testing::ElementsAre("ada records records Finds ×1", "ada table created Finds ×1", "ada edit stroke layer ×1"));
+  EXPECT_THAT(told(page({.model = model_.id})),
+              ::testing::ElementsAre("ada records records Finds ×1", "ada table created Finds ×1",
+                                     "ada edit stroke layer ×1"));
   std::vector<std::string> read;
   for (ActivityQuery query{.model = model_.id, .limit = 1};;) {
     const ActivityPage part = page(query);
@@ -260,8 +270,9 @@ TEST_F(ActivityOfAProject, comments_are_told_while_they_stand) {
   first = store_->comments().update(first).value();
   first.resolved.reset();
   first = store_->comments().update(first, by<Comment>("cyd")).value();
-  EXPECT_THAT(told(page()), ::testing::ElementsAre("cyd comment reopened  ×1", "bob comment resolved  ×1",
-                                                   "bob comment replied  ×1", "ada comment written  ×1"));
+  EXPECT_THAT(told(page()),
+              ::testing::ElementsAre("cyd comment reopened  ×1", "bob comment resolved  ×1",
+                                     "bob comment replied  ×1", "ada comment written  ×1"));
   EXPECT_EQ(page().lines[2].text, "Yes");
   EXPECT_EQ(page().lines[2].comment, reply.id);
   EXPECT_EQ(page().lines[3].text.size(), 200u);
@@ -277,7 +288,8 @@ TEST_F(ActivityOfAProject, members_are_told_to_those_who_may_know_them) {
   ASSERT_TRUE(store_->remove_member(1, "Gus", "ada"));
   EXPECT_THAT(told(page()), ::testing::IsEmpty());
   const ActivityPage known = page({.with_members = true});
-  EXPECT_THAT(told(known), ::testing::ElementsAre("ada member removed Default ×1", "ada member changed Default ×1",
+  EXPECT_THAT(told(known), ::testing::ElementsAre("ada member removed Default ×1",
+                                                  "ada member changed Default ×1",
                                                   "ada member added Default ×1"));
   EXPECT_EQ(known.lines[1].person, "Gus");
   EXPECT_EQ(known.lines[1].role, "curator");
@@ -294,12 +306,14 @@ TEST_F(ActivityOfAProject, lines_of_a_model_go_where_it_goes) {
   model.project_id = villa.id;
   ASSERT_TRUE(store_->update_model(model, by<Model>("ada")));
   EXPECT_THAT(told(page()), ::testing::IsEmpty());
-  EXPECT_THAT(told(store_->activity(villa.id, Role::curator, {}).value()),
-              ::testing::UnorderedElementsAre("ada model changed pot ×1", "ada project created Villa ×1",
-                                              "ada edit stroke layer ×1"));
+  EXPECT_THAT(
+      told(store_->activity(villa.id, Role::curator, {}).value()),
+      ::testing::UnorderedElementsAre("ada model changed pot ×1", "ada project created Villa ×1",
+                                      "ada edit stroke layer ×1"));
 }
 
-// Pages are read by an index, in order and no further than the page goes, however long the history is.
+// Pages are read by an index, in order and no further than the page goes, however long the history
+// is.
 TEST_F(ActivityOfAProject, a_page_reads_no_more_of_a_long_history_than_it_tells) {
   ASSERT_TRUE(connection_->query(
       "INSERT INTO activities (project_id, model_id, subject, user_name, kind, op, begun, time) "
@@ -311,12 +325,14 @@ TEST_F(ActivityOfAProject, a_page_reads_no_more_of_a_long_history_than_it_tells)
     store_.reset();
     std::int64_t rows = 0;
     for (const auto until = std::chrono::steady_clock::now() + 60s;
-         rows < at_least && std::chrono::steady_clock::now() < until; std::this_thread::sleep_for(20ms))
-      rows = connection_
-                 ->query(
-                     "SELECT seq_tup_read + coalesce(idx_tup_fetch, 0) FROM pg_stat_user_tables WHERE relname = "
-                     "'activities'")
-                 ->integer(0, 0);
+         rows < at_least && std::chrono::steady_clock::now() < until;
+         std::this_thread::sleep_for(20ms))
+      rows =
+          connection_
+              ->query(
+                  "SELECT seq_tup_read + coalesce(idx_tup_fetch, 0) FROM pg_stat_user_tables WHERE relname = "
+                  "'activities'")
+              ->integer(0, 0);
     store_ = test::open_store(dsn_);
     return rows;
   };

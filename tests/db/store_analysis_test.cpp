@@ -24,7 +24,8 @@ class Analysis : public ::testing::Test {
   const Model model_ = test::make_model(*store_);
 };
 
-Column marks(const std::string& name, ColumnKind kind, Visibility visibility = Visibility::everyone) {
+Column marks(const std::string& name, ColumnKind kind,
+             Visibility visibility = Visibility::everyone) {
   Column column;
   column.name = name;
   column.kind = kind;
@@ -43,8 +44,10 @@ TEST_F(Analysis, an_area_has_its_middle_as_a_point_in_the_models_system) {
   run("INSERT INTO tile_sums VALUES (" + id +
       ", 0, 0, '{1,2}', '{4,0}', '{2,0}', '{3,0}', '{5,0}', '{1,0}', '{0,0}', '{0,0}', '{0,0}', '{1,1}', '{1,1}', '{1,1}')");
   run("UPDATE all_models SET origin = '{100,200,300}', crs = 'EPSG:25832'");
-  EXPECT_EQ(ask("SELECT geometry_wkt FROM analysis.areas WHERE key = 1"), "POINT Z (101.5 202.5 300.5)");
-  EXPECT_EQ(ask("SELECT geometry_wkt FROM analysis.areas WHERE key = 2"), std::nullopt) << "no area, no middle";
+  EXPECT_EQ(ask("SELECT geometry_wkt FROM analysis.areas WHERE key = 1"),
+            "POINT Z (101.5 202.5 300.5)");
+  EXPECT_EQ(ask("SELECT geometry_wkt FROM analysis.areas WHERE key = 2"), std::nullopt)
+      << "no area, no middle";
   EXPECT_EQ(ask("SELECT srid FROM analysis.areas WHERE key = 1"), "25832");
   EXPECT_EQ(ask("SELECT srid FROM analysis.models"), "25832");
   run("UPDATE all_models SET crs = ''");
@@ -58,11 +61,14 @@ TEST_F(Analysis, lines_and_points_of_records_are_well_known_text) {
   table.project_id = model_.project_id;
   table.name = "Damage";
   table.columns = {marks("Crack", ColumnKind::line), marks("Sample", ColumnKind::point),
-                   marks("Tomb", ColumnKind::point, Visibility::curators), marks("Crack (wkt)", ColumnKind::text)};
+                   marks("Tomb", ColumnKind::point, Visibility::curators),
+                   marks("Crack (wkt)", ColumnKind::text)};
   table = store_->create_table(table).value();
-  EXPECT_EQ(ask("SELECT string_agg(attname, ', ' ORDER BY attnum) FROM pg_attribute WHERE attrelid = "
-                "'analysis.\"Damage\"'::regclass AND attnum > 0"),
-            "key, Crack, Sample, Crack (wkt), Crack (c" + std::to_string(table.columns[0].id) + ", wkt), Sample (wkt)");
+  EXPECT_EQ(
+      ask("SELECT string_agg(attname, ', ' ORDER BY attnum) FROM pg_attribute WHERE attrelid = "
+          "'analysis.\"Damage\"'::regclass AND attnum > 0"),
+      "key, Crack, Sample, Crack (wkt), Crack (c" + std::to_string(table.columns[0].id) +
+          ", wkt), Sample (wkt)");
   const std::string model = std::to_string(model_.id);
   const auto json = [&](const std::string& places) {
     return nlohmann::json::parse("[{\"model\": " + model + ", \"coordinates\": " + places + "}]");
@@ -81,7 +87,8 @@ TEST_F(Analysis, lines_and_points_of_records_are_well_known_text) {
   EXPECT_EQ(ask("SELECT \"Sample (wkt)\" FROM analysis.\"Damage\" WHERE key = 1"),
             "MULTIPOINT Z ((4500000.25 7.0 -1.0))");
   EXPECT_EQ(ask("SELECT " + crack + " FROM analysis.\"Damage\" WHERE key = 2"), std::nullopt);
-  EXPECT_EQ(ask("SELECT analysis.wkt(\"Sample\", " + model + " + 1) FROM analysis.\"Damage\" WHERE key = 1"),
+  EXPECT_EQ(ask("SELECT analysis.wkt(\"Sample\", " + model +
+                " + 1) FROM analysis.\"Damage\" WHERE key = 1"),
             std::nullopt)
       << "of another model";
 }

@@ -41,7 +41,9 @@ class Attachments : public ::testing::Test {
     EXPECT_TRUE(store_->write_records(made.id, asked, "ana"));
     return made;
   }
-  std::int64_t column_id(const std::string& slug) const { return find_column(table_.columns, slug)->id; }
+  std::int64_t column_id(const std::string& slug) const {
+    return find_column(table_.columns, slug)->id;
+  }
 
   Store::NewAttachment file(const std::string& name, const std::string& content,
                             const std::string& type = "image/jpeg") {
@@ -54,14 +56,16 @@ class Attachments : public ::testing::Test {
     return store_->attach(table_.id, key, column, files, {}, {"ana", Role::owner});
   }
   json cell(std::int64_t key, const std::string& slug, std::optional<std::int64_t> at = {}) {
-    const auto page = store_->records(table_.id, Role::owner, {{}, std::vector{key}, at, 10, 0}).value();
+    const auto page =
+        store_->records(table_.id, Role::owner, {{}, std::vector{key}, at, 10, 0}).value();
     return to_json(page.records.at(0), page.table.columns).at("values").at(slug);
   }
   Result<TableChange> patch(std::int64_t key, const std::string& slug, json value) {
     WriteRecords asked;
     asked.records = {{key, {{column_id(slug), std::move(value)}}}};
     auto change = store_->write_records(table_.id, asked, "ana");
-    if (change && !change->problems.empty()) return tl::unexpected(change->problems.front().problem);
+    if (change && !change->problems.empty())
+      return tl::unexpected(change->problems.front().problem);
     return change;
   }
   void undo(bool redo = false) {
@@ -70,12 +74,14 @@ class Attachments : public ::testing::Test {
     const auto done = store_->undo_table(table_.id, "ana", redo, plan->table_sequence);
     ASSERT_TRUE(done) << done.error().detail;
   }
-  std::string content(const Attachment& attachment, std::uint64_t begin = 0, std::uint64_t end = UINT64_MAX) {
+  std::string content(const Attachment& attachment, std::uint64_t begin = 0,
+                      std::uint64_t end = UINT64_MAX) {
     std::string bytes;
-    const auto read = store_->read_attachment(attachment, begin, end, [&](std::span<const std::uint8_t> piece) {
-      bytes.append(reinterpret_cast<const char*>(piece.data()), piece.size());
-      return true;
-    });
+    const auto read =
+        store_->read_attachment(attachment, begin, end, [&](std::span<const std::uint8_t> piece) {
+          bytes.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+          return true;
+        });
     EXPECT_TRUE(read) << read.error().detail;
     return bytes;
   }
@@ -104,7 +110,8 @@ TEST_F(Attachments, files_are_kept_bit_for_bit_and_listed_in_their_cell) {
   EXPECT_EQ(north.user, "ana");
   EXPECT_EQ(cell(1, "photos"), json({north.id, attached->attachments[1].id}));
   EXPECT_EQ(content(north), large);
-  EXPECT_EQ(content(north, 1'048'575, 1'048'578), large.substr(1'048'575, 3)) << "across two chunks";
+  EXPECT_EQ(content(north, 1'048'575, 1'048'578), large.substr(1'048'575, 3))
+      << "across two chunks";
   EXPECT_EQ(content(north, 2'999'999), large.substr(2'999'999));
   EXPECT_EQ(store_->attachment(north.id, {"", Role::owner})->sha256, north.sha256);
 }
@@ -134,7 +141,10 @@ TEST_F(Attachments, what_does_not_fit_is_refused_and_leaves_nothing) {
   EXPECT_EQ(attach(1, {file("a.jpg", "a")}, column_id("code")).error().field, "column");
   EXPECT_EQ(attach(9, {file("a.jpg", "a")}).error().status, 404);
   EXPECT_EQ(attach(1, {file("", "a")}).error().status, 400);
-  EXPECT_EQ(store_->attach(table_.id, 1, {}, {file("a.jpg", "a")}, 77, {"ana", Role::owner}).error().status, 412);
+  EXPECT_EQ(store_->attach(table_.id, 1, {}, {file("a.jpg", "a")}, 77, {"ana", Role::owner})
+                .error()
+                .status,
+            412);
   EXPECT_EQ(count("attachments") + count("blobs") + count("blob_chunks"), 0);
   EXPECT_EQ(cell(1, "photos"), json());
 }
@@ -206,9 +216,9 @@ TEST_F(Attachments, orphans_go_with_their_table_and_at_start_and_others_stay) {
   EXPECT_EQ(count("blobs"), 1) << "what another table has stays";
   EXPECT_EQ(content(other->attachments[0]), "shared");
   auto connection = PgConnection::connect(dsn_);
-  ASSERT_TRUE(
-      connection->script("INSERT INTO blobs (sha256, bytes) VALUES (sha256('left behind'), 1);"
-                         "INSERT INTO blob_chunks (sha256, chunk, data) VALUES (sha256('left behind'), 0, 'x')"));
+  ASSERT_TRUE(connection->script(
+      "INSERT INTO blobs (sha256, bytes) VALUES (sha256('left behind'), 1);"
+      "INSERT INTO blob_chunks (sha256, chunk, data) VALUES (sha256('left behind'), 0, 'x')"));
   EXPECT_EQ(store_->drop_orphans().value(), 1);
   EXPECT_EQ(count("blob_chunks"), 1);
 }
@@ -218,7 +228,8 @@ TEST_F(Attachments, small_pictures_are_kept_by_content_and_go_with_it) {
   const std::vector<std::uint8_t> small{1, 2, 3};
   EXPECT_EQ(store_->thumbnail(attached->attachments[0], 256).value(), std::nullopt);
   ASSERT_TRUE(store_->keep_thumbnail(attached->attachments[0], 256, small));
-  ASSERT_TRUE(store_->keep_thumbnail(attached->attachments[1], 256, small)) << "of two at once one is kept";
+  ASSERT_TRUE(store_->keep_thumbnail(attached->attachments[1], 256, small))
+      << "of two at once one is kept";
   EXPECT_EQ(store_->thumbnail(attached->attachments[1], 256).value(), small);
   EXPECT_EQ(store_->thumbnail(attached->attachments[1], 64).value(), std::nullopt);
   ASSERT_TRUE(store_->delete_table(table_.id));

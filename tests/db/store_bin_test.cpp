@@ -30,7 +30,9 @@ class BinOfAProject : public ::testing::Test {
     EXPECT_EQ(page.total, static_cast<std::int64_t>(names.size()));
     return names;
   }
-  BinEntry entry(Kind kind, std::int64_t id) { return bin_.entry(1, kind, id, 0, {Role::curator, days(30)}).value(); }
+  BinEntry entry(Kind kind, std::int64_t id) {
+    return bin_.entry(1, kind, id, 0, {Role::curator, days(30)}).value();
+  }
   BinRestored restore(Kind kind, std::int64_t id) {
     return bin_.restore(entry(kind, id), by<BinRestored>("carl")).value();
   }
@@ -55,7 +57,8 @@ class BinOfAProject : public ::testing::Test {
   void paint(const Layer& layer, int edits) {
     test::Painter painter(layer, 7);
     JournalWriter writer(*store_, {});
-    for (int i = 0; i < edits; ++i) ASSERT_TRUE(test::save(writer, painter.paint(++sequence_, 3, 4)));
+    for (int i = 0; i < edits; ++i)
+      ASSERT_TRUE(test::save(writer, painter.paint(++sequence_, 3, 4)));
   }
 
   const std::string dsn_ = test::fresh_database();
@@ -103,7 +106,8 @@ TEST_F(BinOfAProject, a_layer_in_the_bin_is_there_for_nobody_and_comes_back_as_i
   EXPECT_EQ(test::content_of({again, 0}), test::content_of({tiles, 0}));
   EXPECT_EQ(store_->history(layer.id, 100, 0)->total, history.total);
   EXPECT_THAT(listed(), ::testing::IsEmpty());
-  EXPECT_EQ(bin_.restore(in_bin, by<BinRestored>("carl")).error().status, 404) << "it was restored already";
+  EXPECT_EQ(bin_.restore(in_bin, by<BinRestored>("carl")).error().status, 404)
+      << "it was restored already";
   paint(now, 1);  // the journal goes on where it was
 }
 
@@ -132,7 +136,8 @@ TEST_F(BinOfAProject, a_model_takes_all_along_and_brings_it_back) {
   EXPECT_EQ(store_->geometry(model_.id).error().status, 404);
   EXPECT_EQ(store_->comments().comment(written.id, Role::owner).error().status, 404);
   EXPECT_EQ(store_->last_sequence(model_.id).error().status, 404);
-  for (const char* what : {"models", "layers", "analysis.models", "analysis.layers", "analysis.edits"})
+  for (const char* what :
+       {"models", "layers", "analysis.models", "analysis.layers", "analysis.edits"})
     EXPECT_EQ(count(what), 0) << what;
   EXPECT_EQ(store_->drop_orphans().value(), 0) << "its files are kept";
   EXPECT_THAT(listed(), ::testing::ElementsAre("pot"));
@@ -164,7 +169,8 @@ TEST_F(BinOfAProject, who_does_not_see_a_layer_sees_it_in_neither_bin_nor_activi
   ASSERT_TRUE(bin_.put_layer(secret.id, by<>("carl")));
   EXPECT_THAT(listed(), ::testing::ElementsAre("Graves", "Cracks"));
   EXPECT_THAT(listed(Role::annotator), ::testing::IsEmpty()) << "layers are for curators";
-  EXPECT_EQ(bin_.entry(1, Kind::layer, secret.id, 0, {Role::annotator, days(30)}).error().status, 404);
+  EXPECT_EQ(bin_.entry(1, Kind::layer, secret.id, 0, {Role::annotator, days(30)}).error().status,
+            404);
   EXPECT_EQ(bin_.entry(2, Kind::layer, secret.id, 0, {Role::owner, days(30)}).error().status, 404)
       << "of another project";
   const auto tells = [&](const std::string& name) {
@@ -193,7 +199,8 @@ TEST_F(BinOfAProject, activity_tells_who_deleted_and_restored_and_no_more_when_i
   run("DELETE FROM activities");
   ASSERT_TRUE(bin_.put_layer(layer.id, by<>("ada")));
   restore(Kind::layer, layer.id);
-  EXPECT_THAT(told(), ::testing::ElementsAre("carl layer restored Cracks", "ada layer deleted Cracks"));
+  EXPECT_THAT(told(),
+              ::testing::ElementsAre("carl layer restored Cracks", "ada layer deleted Cracks"));
   ASSERT_TRUE(bin_.put_layer(layer.id, by<>("ada")));
   ASSERT_TRUE(bin_.put_model(model_.id, by<>("ada")));
   restore(Kind::model, model_.id);
@@ -209,8 +216,10 @@ TEST_F(BinOfAProject, what_was_in_it_long_enough_is_erased_in_steps_and_nothing_
   for (const Layer& layer : {old, fresh, kept}) paint(layer, 2);
   ASSERT_TRUE(bin_.put_layer(old.id, by<>("ada")));
   ASSERT_TRUE(bin_.put_layer(fresh.id, by<>("ada")));
-  run("UPDATE all_layers SET binned = now() - interval '31 days' WHERE id = " + std::to_string(old.id));
-  run("UPDATE all_layers SET binned = now() - interval '29 days' WHERE id = " + std::to_string(fresh.id));
+  run("UPDATE all_layers SET binned = now() - interval '31 days' WHERE id = " +
+      std::to_string(old.id));
+  run("UPDATE all_layers SET binned = now() - interval '29 days' WHERE id = " +
+      std::to_string(fresh.id));
   ASSERT_TRUE(bin_.expire(days(30)));
   EXPECT_THAT(listed(), ::testing::ElementsAre("Fresh")) << "before its content is gone";
   EXPECT_GT(erase_all(), 2);
@@ -255,9 +264,13 @@ TEST_F(BinOfAProject, projects_and_tables_that_something_in_it_needs_are_kept) {
   units = store_->create_layer(units).value();
   ASSERT_TRUE(bin_.put_layer(units.id, by<>("ada")));
   ASSERT_TRUE(bin_.put_model(vase.id, by<>("ada")));
-  EXPECT_THAT(store_->delete_table(*units.table).error().detail, ::testing::HasSubstr("lies in the Bin"));
-  EXPECT_THAT(store_->delete_project(villa.id).error().detail, ::testing::HasSubstr("Bin still holds 1"));
-  ASSERT_TRUE(bin_.erase(bin_.entry(villa.id, Kind::model, vase.id, 0, {Role::owner, days(30)}).value(), by<>("carl")));
+  EXPECT_THAT(store_->delete_table(*units.table).error().detail,
+              ::testing::HasSubstr("lies in the Bin"));
+  EXPECT_THAT(store_->delete_project(villa.id).error().detail,
+              ::testing::HasSubstr("Bin still holds 1"));
+  ASSERT_TRUE(
+      bin_.erase(bin_.entry(villa.id, Kind::model, vase.id, 0, {Role::owner, days(30)}).value(),
+                 by<>("carl")));
   ASSERT_TRUE(bin_.erase(entry(Kind::layer, units.id), by<>("carl")));
   EXPECT_TRUE(store_->delete_table(*units.table)) << "before all of it is erased";
   EXPECT_TRUE(store_->delete_project(villa.id));

@@ -15,9 +15,12 @@ namespace {
 using test::TemporaryFolder;
 
 std::string ask(const std::string& dsn, const char* sql) {
-  const std::unique_ptr<PGconn, decltype(&PQfinish)> connection(PQconnectdb(dsn.c_str()), &PQfinish);
-  const std::unique_ptr<PGresult, decltype(&PQclear)> result(PQexec(connection.get(), sql), &PQclear);
-  return PQntuples(result.get()) == 1 ? PQgetvalue(result.get(), 0, 0) : PQerrorMessage(connection.get());
+  const std::unique_ptr<PGconn, decltype(&PQfinish)> connection(PQconnectdb(dsn.c_str()),
+                                                                &PQfinish);
+  const std::unique_ptr<PGresult, decltype(&PQclear)> result(PQexec(connection.get(), sql),
+                                                             &PQclear);
+  return PQntuples(result.get()) == 1 ? PQgetvalue(result.get(), 0, 0)
+                                      : PQerrorMessage(connection.get());
 }
 
 bool wait_until(const std::function<bool()>& done) {
@@ -34,7 +37,8 @@ TEST(Cluster, it_listens_on_its_socket_only_and_survives_a_restart_of_the_server
     auto cluster = Cluster::start(folder.path());
     ASSERT_TRUE(cluster) << cluster.error().detail;
     EXPECT_EQ(ask((*cluster)->dsn(), "SHOW listen_addresses"), "");
-    EXPECT_EQ(ask((*cluster)->dsn(), "CREATE TABLE kept AS SELECT 7 AS n RETURNING 1").substr(0, 5), "ERROR");
+    EXPECT_EQ(ask((*cluster)->dsn(), "CREATE TABLE kept AS SELECT 7 AS n RETURNING 1").substr(0, 5),
+              "ERROR");
     ask((*cluster)->dsn(), "CREATE TABLE kept AS SELECT 7 AS n");
   }
   auto again = Cluster::start(folder.path());
@@ -100,7 +104,8 @@ TEST(Cluster, the_database_stops_when_its_server_is_killed_and_a_new_server_take
     for (;;) pause();
   }
   int postmaster = 0;
-  ASSERT_EQ(read(channel[0], &postmaster, sizeof postmaster), static_cast<ssize_t>(sizeof postmaster));
+  ASSERT_EQ(read(channel[0], &postmaster, sizeof postmaster),
+            static_cast<ssize_t>(sizeof postmaster));
   ASSERT_GT(postmaster, 0);
   kill(server, SIGKILL);
   waitpid(server, nullptr, 0);
@@ -112,7 +117,8 @@ TEST(Cluster, the_database_stops_when_its_server_is_killed_and_a_new_server_take
 
 TEST(Cluster, a_folder_with_a_very_long_path_works) {
   TemporaryFolder folder;
-  auto cluster = Cluster::start(folder.path() / std::string(60, 'a') / (std::string(60, 'b') + " it's"));
+  auto cluster =
+      Cluster::start(folder.path() / std::string(60, 'a') / (std::string(60, 'b') + " it's"));
   ASSERT_TRUE(cluster) << cluster.error().detail;
   EXPECT_EQ(ask((*cluster)->dsn(), "SELECT 1"), "1");
 }
@@ -131,7 +137,8 @@ TEST(Cluster, data_of_a_postgresql_that_is_not_installed_is_refused_by_name) {
   std::ofstream(folder.path() / "postgres/pgdata/PG_VERSION") << "99\n";
   auto cluster = Cluster::start(folder.path());
   ASSERT_FALSE(cluster);
-  EXPECT_NE(cluster.error().detail.find("PostgreSQL 99"), std::string::npos) << cluster.error().detail;
+  EXPECT_NE(cluster.error().detail.find("PostgreSQL 99"), std::string::npos)
+      << cluster.error().detail;
 }
 
 TEST(Cluster, a_folder_that_the_database_user_cannot_reach_is_refused_with_advice) {

@@ -35,7 +35,9 @@ class CommentsOfAModel : public ::testing::Test {
     comment.user = user;
     return comment;
   }
-  std::int64_t count() { return connection_->query("SELECT count(*) FROM comments")->integer(0, 0); }
+  std::int64_t count() {
+    return connection_->query("SELECT count(*) FROM comments")->integer(0, 0);
+  }
 
   const std::string dsn_ = test::fresh_database();
   std::unique_ptr<Store> store_ = test::open_store(dsn_);
@@ -50,7 +52,8 @@ TEST_F(CommentsOfAModel, what_was_written_comes_back) {
   EXPECT_EQ(first.text, "Is this\nthe crack — δ?");
   EXPECT_EQ(first.place->position, glm::dvec3(1, 2.5, -3e6));
   EXPECT_EQ(first.place->normal, glm::dvec3(0, 0, 1));
-  EXPECT_FALSE(first.resolved || first.edited || first.deleted || first.thread || first.layer_id || first.record);
+  EXPECT_FALSE(first.resolved || first.edited || first.deleted || first.thread || first.layer_id ||
+               first.record);
   const auto answer = comments_.create(reply(first.id, "Yes")).value();
   EXPECT_EQ(answer.model_id, model_);
   EXPECT_EQ(answer.thread, first.id);
@@ -120,7 +123,8 @@ TEST_F(CommentsOfAModel, a_thread_is_resolved_by_the_first_who_says_so_until_it_
   comment = comments_.update(comment).value();
   EXPECT_EQ(comment.resolved->user, "bob");
   EXPECT_EQ(comment.resolved->time, when);
-  EXPECT_EQ(comments_.of_model(model_, Role::owner, {true, {}})->total, 2) << "the thread with its reply";
+  EXPECT_EQ(comments_.of_model(model_, Role::owner, {true, {}})->total, 2)
+      << "the thread with its reply";
   EXPECT_EQ(comments_.of_model(model_, Role::owner, {false, {}})->total, 1);
   comment.resolved.reset();
   EXPECT_FALSE(comments_.update(comment)->resolved);
@@ -134,7 +138,8 @@ TEST_F(CommentsOfAModel, those_that_changed_since_a_time_are_found) {
   comments_.create(thread("New")).value();
   const auto day_ago =
       connection_
-          ->query("SELECT to_char(now() AT TIME ZONE 'UTC' - interval '1 day', 'YYYY-MM-DD\"T\"HH24:MI:SS\"Z\"')")
+          ->query(
+              "SELECT to_char(now() AT TIME ZONE 'UTC' - interval '1 day', 'YYYY-MM-DD\"T\"HH24:MI:SS\"Z\"')")
           ->text(0, 0);
   EXPECT_EQ(comments_.of_model(model_, Role::owner, {{}, day_ago})->total, 1);
   auto resolved = old;
@@ -152,14 +157,17 @@ TEST_F(CommentsOfAModel, the_first_one_stays_without_its_text_while_there_are_re
   ASSERT_TRUE(removal.left);
   EXPECT_TRUE(removal.left->deleted);
   EXPECT_EQ(removal.left->text, "");
-  EXPECT_EQ(connection_->query("SELECT count(*) FROM comments c WHERE c::text ~ 'secret'")->integer(0, 0), 0);
+  EXPECT_EQ(
+      connection_->query("SELECT count(*) FROM comments c WHERE c::text ~ 'secret'")->integer(0, 0),
+      0);
   EXPECT_EQ(comments_.remove(first).error().status, 412);
   EXPECT_EQ(comments_.remove(*removal.left).error().status, 409);
   EXPECT_TRUE(comments_.create(reply(first.id, "Three"))) << "it can be talked about";
   const auto three = comments_.replies(first.id, Role::owner, 10, 2)->comments.at(0);
   EXPECT_EQ(comments_.remove(one)->gone, std::vector{one.id});
   EXPECT_EQ(comments_.remove(three)->gone, std::vector{three.id});
-  EXPECT_EQ(comments_.remove(two)->gone, (std::vector{two.id, first.id})) << "nothing is left of the thread";
+  EXPECT_EQ(comments_.remove(two)->gone, (std::vector{two.id, first.id}))
+      << "nothing is left of the thread";
   EXPECT_EQ(count(), 0);
   EXPECT_EQ(comments_.remove(two).error().status, 404);
 }
@@ -182,7 +190,8 @@ TEST_F(CommentsOfAModel, of_replies_deleted_at_once_the_last_takes_the_deleted_f
     std::vector<std::jthread> people;
     for (const Comment& each : replies)
       people.emplace_back([&] {
-        if (const auto removal = comments_.remove(each)) gone += static_cast<int>(removal->gone.size());
+        if (const auto removal = comments_.remove(each))
+          gone += static_cast<int>(removal->gone.size());
       });
   }
   EXPECT_EQ(gone, 5);
@@ -190,7 +199,9 @@ TEST_F(CommentsOfAModel, of_replies_deleted_at_once_the_last_takes_the_deleted_f
 }
 
 TEST_F(CommentsOfAModel, an_answer_is_kept_with_the_comment) {
-  const FirstAnswer<Comment> answer{"k", [](const Comment& made) { return nlohmann::json{{"id", made.id}}; }};
+  const FirstAnswer<Comment> answer{"k", [](const Comment& made) {
+                                      return nlohmann::json{{"id", made.id}};
+                                    }};
   const auto first = comments_.create(thread("Look"), answer).value();
   EXPECT_EQ(store_->find_answer("k").value()->at("id"), first.id);
   EXPECT_EQ(comments_.create(thread("Look"), answer).error().status, 409);
@@ -228,20 +239,27 @@ TEST_F(CommentsOfAModel, of_who_is_deleted_no_name_is_left_in_them) {
   const Person ada = store_->create_person("Ada.L", "", Role::annotator).value();
   const std::string former = "former-" + std::to_string(ada.id);
   const auto hers = comments_.create(thread("Mine", "Ada.L")).value();
-  auto settled = comments_.create(thread("@ada.l, look. (@ADA.L) x@ada.l @ada.lovelace @adaxl @Ada.L", "bob")).value();
+  auto settled =
+      comments_.create(thread("@ada.l, look. (@ADA.L) x@ada.l @ada.lovelace @adaxl @Ada.L", "bob"))
+          .value();
   settled.resolved = {"Ada.L", {}};
   ASSERT_TRUE(comments_.update(settled));
-  const FirstAnswer<Comment> answer{"k", [](const Comment& made) { return nlohmann::json{{"body", made.text}}; }};
+  const FirstAnswer<Comment> answer{"k", [](const Comment& made) {
+                                      return nlohmann::json{{"body", made.text}};
+                                    }};
   ASSERT_TRUE(comments_.create(reply(settled.id, "For @ada.l only"), answer));
   ASSERT_TRUE(store_->delete_person("ada.l"));
   EXPECT_EQ(comments_.comment(hers.id, Role::owner)->user, former);
   settled = comments_.comment(settled.id, Role::owner).value();
   EXPECT_EQ(settled.resolved->user, former);
   EXPECT_EQ(settled.user, "bob");
-  EXPECT_EQ(settled.text, "@" + former + ", look. (@" + former + ") x@ada.l @ada.lovelace @adaxl @" + former)
+  EXPECT_EQ(settled.text,
+            "@" + former + ", look. (@" + former + ") x@ada.l @ada.lovelace @adaxl @" + former)
       << "addresses of mail and other people's names stay";
-  EXPECT_EQ(comments_.replies(settled.id, Role::owner, 1, 0)->comments.at(0).text, "For @" + former + " only");
-  EXPECT_FALSE(store_->find_answer("k").value()) << "what was said to them is not told again either";
+  EXPECT_EQ(comments_.replies(settled.id, Role::owner, 1, 0)->comments.at(0).text,
+            "For @" + former + " only");
+  EXPECT_FALSE(store_->find_answer("k").value())
+      << "what was said to them is not told again either";
 }
 
 }  // namespace

@@ -47,7 +47,8 @@ class Filter : public ::testing::Test {
     WriteRecords asked;
     for (const auto& [key, values] : rows) {
       RecordInput input{key, {}};
-      for (const auto& [slug, value] : values) input.values[find_column(table.columns, slug)->id] = value;
+      for (const auto& [slug, value] : values)
+        input.values[find_column(table.columns, slug)->id] = value;
       asked.records.push_back(std::move(input));
     }
     auto change = store_->write_records(table.id, asked, "ana");
@@ -99,16 +100,21 @@ Truth test_of(const std::optional<T>& value, Test test) {
 }
 
 TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
-  const Table materials = make("Materials", {column("Code", ColumnKind::text), column("Since", ColumnKind::date)});
-  write(materials, {{1, {{"code", "LIME"}, {"since", "1900-01-01"}}}, {2, {{"code", "gypsum"}}}, {3, {}}});
-  const Table table = make(
-      "Units",
-      {column("Name", ColumnKind::text), column("State", ColumnKind::enumeration), column("Day", ColumnKind::date),
-       column("Moment", ColumnKind::timestamp), column("Period", ColumnKind::period),
-       column("Depth", ColumnKind::numeric), column("Count", ColumnKind::integer), column("Wet", ColumnKind::boolean),
-       column("Material", ColumnKind::term, materials.id), column("Above", ColumnKind::relation, materials.id)});
+  const Table materials =
+      make("Materials", {column("Code", ColumnKind::text), column("Since", ColumnKind::date)});
+  write(materials,
+        {{1, {{"code", "LIME"}, {"since", "1900-01-01"}}}, {2, {{"code", "gypsum"}}}, {3, {}}});
+  const Table table =
+      make("Units", {column("Name", ColumnKind::text), column("State", ColumnKind::enumeration),
+                     column("Day", ColumnKind::date), column("Moment", ColumnKind::timestamp),
+                     column("Period", ColumnKind::period), column("Depth", ColumnKind::numeric),
+                     column("Count", ColumnKind::integer), column("Wet", ColumnKind::boolean),
+                     column("Material", ColumnKind::term, materials.id),
+                     column("Above", ColumnKind::relation, materials.id)});
   std::mt19937 random(7);
-  const auto one_of = [&]<class T>(const std::vector<T>& all) { return all[random() % all.size()]; };
+  const auto one_of = [&]<class T>(const std::vector<T>& all) {
+    return all[random() % all.size()];
+  };
   std::map<std::int64_t, Row> rows;
   std::map<std::int64_t, std::map<std::string, json>> asked;
   for (std::int64_t key = 10; key < 310; ++key) {
@@ -116,18 +122,21 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
     const auto maybe = [&](auto& member, auto value) {
       if (random() % 5 != 0) member = value;
     };
-    maybe(row.name, one_of(std::vector<std::string>{"Crack 1", "crack 2", "Größe", "grosse", "100%", "a\\b", "it's",
-                                                    "Café", "cafe"}));
+    maybe(row.name, one_of(std::vector<std::string>{"Crack 1", "crack 2", "Größe", "grosse", "100%",
+                                                    "a\\b", "it's", "Café", "cafe"}));
     maybe(row.state, one_of(std::vector<std::string>{"good", "poor", "it's lost"}));
     maybe(row.day, one_of(std::vector<std::string>{"2024-02-29", "1999-12-31", "2024-03-01"}));
     maybe(row.moment,
-          one_of(std::vector<std::string>{"2024-02-29T12:00:00Z", "2024-02-29T12:00:00.001Z", "1999-01-01T00:00:00Z"}));
-    maybe(row.period, one_of(std::vector<std::string>{"1560", "1560~/1580", "-0043", "15XX", "1570/..", "../1400"}));
+          one_of(std::vector<std::string>{"2024-02-29T12:00:00Z", "2024-02-29T12:00:00.001Z",
+                                          "1999-01-01T00:00:00Z"}));
+    maybe(row.period, one_of(std::vector<std::string>{"1560", "1560~/1580", "-0043", "15XX",
+                                                      "1570/..", "../1400"}));
     maybe(row.depth, static_cast<double>(static_cast<int>(random() % 21)) / 4 - 2);
     maybe(row.count, static_cast<double>(random() % 7));
     maybe(row.wet, random() % 2 == 0);
     maybe(row.material, static_cast<std::int64_t>(1 + random() % 3));
-    maybe(row.above, one_of(std::vector<std::vector<std::int64_t>>{{1}, {1, 2}, {2, 3}, {1, 2, 3}}));
+    maybe(row.above,
+          one_of(std::vector<std::vector<std::int64_t>>{{1}, {1, 2}, {2, 3}, {1, 2, 3}}));
     auto& values = asked[key];
     if (row.name) values["name"] = *row.name;
     if (row.state) values["state"] = *row.state;
@@ -152,20 +161,30 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
     return std::find(all.begin(), all.end(), key) != all.end();
   };
   const std::vector<Case> cases{
-      {"name = 'crack 2'", [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "crack 2"; }); }},
-      {"'it''s' = name", [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "it's"; }); }},
-      {"name <> 'Größe'", [](const Row& r) { return test_of(r.name, [](auto& n) { return n != "Größe"; }); }},
-      {"name like 'crack%'", [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "crack 2"; }); }},
+      {"name = 'crack 2'",
+       [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "crack 2"; }); }},
+      {"'it''s' = name",
+       [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "it's"; }); }},
+      {"name <> 'Größe'",
+       [](const Row& r) { return test_of(r.name, [](auto& n) { return n != "Größe"; }); }},
+      {"name like 'crack%'",
+       [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "crack 2"; }); }},
       {"casei(name) like casei('CRACK%')",
-       [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "crack 2" || n == "Crack 1"; }); }},
-      {"name like '%\\%'", [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "100%"; }); }},
-      {"name like 'a\\\\_'", [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "a\\b"; }); }},
-      {"name not like 'crack__'", [](const Row& r) { return test_of(r.name, [](auto& n) { return n != "crack 2"; }); }},
+       [](const Row& r) {
+         return test_of(r.name, [](auto& n) { return n == "crack 2" || n == "Crack 1"; });
+       }},
+      {"name like '%\\%'",
+       [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "100%"; }); }},
+      {"name like 'a\\\\_'",
+       [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "a\\b"; }); }},
+      {"name not like 'crack__'",
+       [](const Row& r) { return test_of(r.name, [](auto& n) { return n != "crack 2"; }); }},
       {"accenti(name) = accenti('cafe')",
        [](const Row& r) { return test_of(r.name, [](auto& n) { return n == "cafe"; }); }},
       {"casei(accenti(name)) in (casei('CAFE'), 'grosse')",
        [](const Row& r) {
-         return test_of(r.name, [](auto& n) { return n == "cafe" || n == "Café" || n == "grosse"; });
+         return test_of(r.name,
+                        [](auto& n) { return n == "cafe" || n == "Café" || n == "grosse"; });
        }},
       {"name is null", [](const Row& r) { return !r.name.has_value(); }},
       {"state = 'it''s lost' or wet",
@@ -180,11 +199,17 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
       {"wet <> false", [](const Row& r) { return r.wet; }},
       {"not wet", [](const Row& r) { return test_of(r.wet, [](bool w) { return !w; }); }},
       {"depth between -1 and 1.25",
-       [](const Row& r) { return test_of(r.depth, [](double d) { return d >= -1 && d <= 1.25; }); }},
+       [](const Row& r) {
+         return test_of(r.depth, [](double d) { return d >= -1 && d <= 1.25; });
+       }},
       {"depth * 2 + count > 4",
-       [](const Row& r) { return r.depth && r.count ? Truth(*r.depth * 2 + *r.count > 4) : Truth(); }},
-      {"1 / depth > 0", [](const Row& r) { return r.depth && *r.depth != 0 ? Truth(1 / *r.depth > 0) : Truth(); }},
-      {"sqrt(depth) <= 1", [](const Row& r) { return r.depth && *r.depth >= 0 ? Truth(*r.depth <= 1) : Truth(); }},
+       [](const Row& r) {
+         return r.depth && r.count ? Truth(*r.depth * 2 + *r.count > 4) : Truth();
+       }},
+      {"1 / depth > 0",
+       [](const Row& r) { return r.depth && *r.depth != 0 ? Truth(1 / *r.depth > 0) : Truth(); }},
+      {"sqrt(depth) <= 1",
+       [](const Row& r) { return r.depth && *r.depth >= 0 ? Truth(*r.depth <= 1) : Truth(); }},
       {"key < 100 and count in (1, 3)",
        [](const Row& r) { return test_of(r.count, [](double c) { return c == 1 || c == 3; }); }},
       {"if(wet, depth, count) = 2",
@@ -194,7 +219,8 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
        }},
       {"day = date('2024-02-29')",
        [](const Row& r) { return test_of(r.day, [](auto& d) { return d == "2024-02-29"; }); }},
-      {"day > '1999-12-31'", [](const Row& r) { return test_of(r.day, [](auto& d) { return d > "1999-12-31"; }); }},
+      {"day > '1999-12-31'",
+       [](const Row& r) { return test_of(r.day, [](auto& d) { return d > "1999-12-31"; }); }},
       {"day between '1999-12-31' and '2024-02-29'",
        [](const Row& r) { return test_of(r.day, [](auto& d) { return d <= "2024-02-29"; }); }},
       {"t_during(day, '2024')",
@@ -202,15 +228,25 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
       {"t_during(day, interval('2024-03-01', '..'))",
        [](const Row& r) { return test_of(r.day, [](auto& d) { return d == "2024-03-01"; }); }},
       {"moment > timestamp('2024-02-29T13:00:00+01:00')",
-       [](const Row& r) { return test_of(r.moment, [](auto& m) { return m == "2024-02-29T12:00:00.001Z"; }); }},
+       [](const Row& r) {
+         return test_of(r.moment, [](auto& m) { return m == "2024-02-29T12:00:00.001Z"; });
+       }},
       {"t_during(moment, day)",
-       [](const Row& r) { return r.moment && r.day ? Truth(r.moment->substr(0, 10) == *r.day) : Truth(); }},
+       [](const Row& r) {
+         return r.moment && r.day ? Truth(r.moment->substr(0, 10) == *r.day) : Truth();
+       }},
       {"t_before(period, '1560')",
-       [](const Row& r) { return test_of(r.period, [](auto& p) { return days(p).last < days("1560").first; }); }},
+       [](const Row& r) {
+         return test_of(r.period, [](auto& p) { return days(p).last < days("1560").first; });
+       }},
       {"period < '1560' or false",
-       [](const Row& r) { return test_of(r.period, [](auto& p) { return days(p).last < days("1560").first; }); }},
+       [](const Row& r) {
+         return test_of(r.period, [](auto& p) { return days(p).last < days("1560").first; });
+       }},
       {"t_after('1500', period)",
-       [](const Row& r) { return test_of(r.period, [](auto& p) { return days("1500").first > days(p).last; }); }},
+       [](const Row& r) {
+         return test_of(r.period, [](auto& p) { return days("1500").first > days(p).last; });
+       }},
       {"t_intersects(period, interval('1575', '1590'))",
        [](const Row& r) {
          return test_of(r.period, [](auto& p) {
@@ -219,8 +255,9 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
        }},
       {"t_disjoint(period, '15XX')",
        [](const Row& r) {
-         return test_of(r.period,
-                        [](auto& p) { return days(p).first > days("15XX").last || days(p).last < days("15XX").first; });
+         return test_of(r.period, [](auto& p) {
+           return days(p).first > days("15XX").last || days(p).last < days("15XX").first;
+         });
        }},
       {"t_contains(period, '1572-05')",
        [](const Row& r) {
@@ -230,7 +267,8 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
        }},
       {"t_equals(period, '1560/1580')",
        [](const Row& r) { return test_of(r.period, [](auto& p) { return p == "1560~/1580"; }); }},
-      {"material = 2", [](const Row& r) { return test_of(r.material, [](auto m) { return m == 2; }); }},
+      {"material = 2",
+       [](const Row& r) { return test_of(r.material, [](auto m) { return m == 2; }); }},
       {"material.code = 'gypsum'",
        [&](const Row& r) { return test_of(code(r), [](auto& c) { return c == "gypsum"; }); }},
       {"material.since < '1950' and count >= 0",
@@ -239,14 +277,17 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
          return Truth();
        }},
       {"a_contains(above, (2, 1))",
-       [&](const Row& r) { return test_of(r.above, [&](auto& a) { return has(a, 1) && has(a, 2); }); }},
-      {"a_overlaps(above, (3, 9))", [&](const Row& r) { return test_of(r.above, [&](auto& a) { return has(a, 3); }); }},
+       [&](const Row& r) {
+         return test_of(r.above, [&](auto& a) { return has(a, 1) && has(a, 2); });
+       }},
+      {"a_overlaps(above, (3, 9))",
+       [&](const Row& r) { return test_of(r.above, [&](auto& a) { return has(a, 3); }); }},
       {"a_containedby(above, (1, 2))",
        [&](const Row& r) { return test_of(r.above, [&](auto& a) { return !has(a, 3); }); }},
       {"a_equals(above, (3, 2))",
-       [&](const Row& r) { return test_of(r.above, [&](auto& a) {
-                             return a == std::vector<std::int64_t>{2, 3};
-                           }); }},
+       [&](const Row& r) {
+         return test_of(r.above, [&](auto& a) { return a == std::vector<std::int64_t>{2, 3}; });
+       }},
   };
   for (const auto& [text, expected] : cases)
     for (const bool negated : {false, true}) {
@@ -279,7 +320,8 @@ TEST_F(Filter, every_kind_of_column_is_filtered_as_plain_code_would) {
   EXPECT_EQ(*keys(table, "depth > 1 and t_during(period, '15XX')", then), *before);
 }
 
-// Random formulas over numbers: what PostgreSQL says of a record is what the texels say that hold the same numbers.
+// Random formulas over numbers: what PostgreSQL says of a record is what the texels say that hold
+// the same numbers.
 class RandomFormula {
  public:
   explicit RandomFormula(std::mt19937& random) : random_(random) {}
@@ -290,7 +332,8 @@ class RandomFormula {
     switch (random_() % 8) {
       case 0: return "(" + x + one_of({" + ", " - ", " * ", " / ", " div "}) + y + ")";
       case 1:
-        return one_of({"abs", "floor", "ceil", "round", "sqrt", "atan", "sin", "ln", "log10", "degrees", "acos"}) +
+        return one_of({"abs", "floor", "ceil", "round", "sqrt", "atan", "sin", "ln", "log10",
+                       "degrees", "acos"}) +
                ("(" + x + ")");
       case 2: return one_of({"min", "max"}) + ("(" + x + ", " + y + ", " + number(0) + ")");
       case 3: return "if(" + condition(depth - 1) + ", " + x + ", " + y + ")";
@@ -303,23 +346,28 @@ class RandomFormula {
   std::string condition(int depth) {
     if (depth == 0) return one_of({"a > b", "b <= 1", "c is null", "a = c", "true", "not b > 2"});
     switch (random_() % 6) {
-      case 0: return "(" + condition(depth - 1) + one_of({" and ", " or "}) + condition(depth - 1) + ")";
+      case 0:
+        return "(" + condition(depth - 1) + one_of({" and ", " or "}) + condition(depth - 1) + ")";
       case 1: return "not (" + condition(depth - 1) + ")";
       case 2: return number(depth - 1) + " is not null";
       case 3: return "(" + number(depth - 1) + " between " + number(0) + " and " + number(0) + ")";
       case 4: return "(" + number(depth - 1) + " in (" + number(0) + ", 1, 2))";
-      default: return "(" + number(depth - 1) + one_of({" < ", " >= ", " <> "}) + number(depth - 1) + ")";
+      default:
+        return "(" + number(depth - 1) + one_of({" < ", " >= ", " <> "}) + number(depth - 1) + ")";
     }
   }
 
  private:
-  std::string one_of(std::initializer_list<const char*> all) { return all.begin()[random_() % all.size()]; }
+  std::string one_of(std::initializer_list<const char*> all) {
+    return all.begin()[random_() % all.size()];
+  }
   std::mt19937& random_;
 };
 
 TEST_F(Filter, the_database_and_the_texels_reckon_alike) {
-  const Table table = make("Numbers", {column("a", ColumnKind::numeric), column("b", ColumnKind::integer),
-                                       column("c", ColumnKind::numeric)});
+  const Table table =
+      make("Numbers", {column("a", ColumnKind::numeric), column("b", ColumnKind::integer),
+                       column("c", ColumnKind::numeric)});
   std::mt19937 random(11);
   std::map<std::int64_t, std::map<std::string, json>> rows;
   std::vector<query::LayerView> layers;
@@ -351,7 +399,8 @@ TEST_F(Filter, the_database_and_the_texels_reckon_alike) {
   map.resolution = kTileSize;
   map.blocks_per_side = kTileSize / kBlockSize;
   map.slot_of_block.assign(
-      static_cast<std::size_t>(map.blocks_per_side) * static_cast<std::size_t>(map.blocks_per_side), mesh::kNoSlot);
+      static_cast<std::size_t>(map.blocks_per_side) * static_cast<std::size_t>(map.blocks_per_side),
+      mesh::kNoSlot);
   map.slot_of_block[0] = 0;
   map.block_of_slot = {0};
   map.surface_mask = {~std::uint64_t{0}};
@@ -382,28 +431,30 @@ struct Bad {
 
 TEST_F(Filter, what_the_columns_do_not_fit_is_refused_at_its_character) {
   const Table other = make("Terms", {column("Code", ColumnKind::text)});
-  const Table table = make("Units", {column("Name", ColumnKind::text), column("Depth", ColumnKind::numeric),
-                                     column("Wet", ColumnKind::boolean), column("State", ColumnKind::enumeration),
-                                     column("Day", ColumnKind::date), column("Term", ColumnKind::term, other.id),
-                                     column("Above", ColumnKind::relation, other.id)});
-  const std::vector<Bad> cases{{"dept > 1", "no column 'dept'; it has key, name, depth", 0},
-                               {"wet and dept > 1", "no column 'dept'", 8},
-                               {"depth = 'x'", "'depth' holds numbers, not texts", 0},
-                               {"name = 1", "numbers, not texts", 7},
-                               {"name > 'a' and name + 1 > 2", "'name' holds texts, not numbers", 15},
-                               {"state = 'god'", "no choice of state; there are good, poor", 8},
-                               {"day > 'yesterday'", "is no date", 6},
-                               {"depth and wet", "'depth' holds numbers, not true or false", 0},
-                               {"wet > 1", "'wet' holds true or false", 0},
-                               {"name.code = 'x'", "holds no key", 0},
-                               {"term.kode = 'x'", "no column 'kode'", 0},
-                               {"term = 'x'", "as in term.code", 0},
-                               {"above = 3", "ask a_contains", 0},
-                               {"a_contains(name, (1))", "not keys of records", 11},
-                               {"a_contains(above, (1.5))", "whole numbers", 19},
-                               {"t_before(name, '1560')", "not times", 9},
-                               {"depth like '1%'", "'depth' holds numbers, not texts", 0},
-                               {"exp(depth * 1000 + 9000) > 1", "", 0}};
+  const Table table =
+      make("Units", {column("Name", ColumnKind::text), column("Depth", ColumnKind::numeric),
+                     column("Wet", ColumnKind::boolean), column("State", ColumnKind::enumeration),
+                     column("Day", ColumnKind::date), column("Term", ColumnKind::term, other.id),
+                     column("Above", ColumnKind::relation, other.id)});
+  const std::vector<Bad> cases{
+      {"dept > 1", "no column 'dept'; it has key, name, depth", 0},
+      {"wet and dept > 1", "no column 'dept'", 8},
+      {"depth = 'x'", "'depth' holds numbers, not texts", 0},
+      {"name = 1", "numbers, not texts", 7},
+      {"name > 'a' and name + 1 > 2", "'name' holds texts, not numbers", 15},
+      {"state = 'god'", "no choice of state; there are good, poor", 8},
+      {"day > 'yesterday'", "is no date", 6},
+      {"depth and wet", "'depth' holds numbers, not true or false", 0},
+      {"wet > 1", "'wet' holds true or false", 0},
+      {"name.code = 'x'", "holds no key", 0},
+      {"term.kode = 'x'", "no column 'kode'", 0},
+      {"term = 'x'", "as in term.code", 0},
+      {"above = 3", "ask a_contains", 0},
+      {"a_contains(name, (1))", "not keys of records", 11},
+      {"a_contains(above, (1.5))", "whole numbers", 19},
+      {"t_before(name, '1560')", "not times", 9},
+      {"depth like '1%'", "'depth' holds numbers, not texts", 0},
+      {"exp(depth * 1000 + 9000) > 1", "", 0}};
   write(table, {{1, {{"depth", 1}}}});
   for (const Bad& bad : cases) {
     SCOPED_TRACE(bad.text);
@@ -423,10 +474,11 @@ TEST_F(Filter, what_the_columns_do_not_fit_is_refused_at_its_character) {
 
 TEST_F(Filter, what_looks_like_sql_is_a_text_like_any_other) {
   const Table table = make("Units", {column("Name", ColumnKind::text)});
-  const std::vector<std::string> names{"x' OR '1'='1", "'; DROP TABLE records.t1; --", "$1", "\\", "%", "{}",
-                                       "E'\\047'"};
+  const std::vector<std::string> names{
+      "x' OR '1'='1", "'; DROP TABLE records.t1; --", "$1", "\\", "%", "{}", "E'\\047'"};
   std::map<std::int64_t, std::map<std::string, json>> rows;
-  for (std::size_t i = 0; i < names.size(); ++i) rows[static_cast<std::int64_t>(i + 1)] = {{"name", names[i]}};
+  for (std::size_t i = 0; i < names.size(); ++i)
+    rows[static_cast<std::int64_t>(i + 1)] = {{"name", names[i]}};
   write(table, rows);
   for (std::size_t i = 0; i < names.size(); ++i) {
     std::string quoted;

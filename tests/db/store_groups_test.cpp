@@ -22,10 +22,14 @@ std::int64_t project(Store& store, const std::string& name) {
 
 std::string session_of(Store& store, const std::string& user, Role role) {
   EXPECT_TRUE(store.create_person(user, "", role));
-  return store.create_token(TokenKind::session, user, role, std::chrono::seconds(60)).value().secret;
+  return store.create_token(TokenKind::session, user, role, std::chrono::seconds(60))
+      .value()
+      .secret;
 }
 
-Roles roles_of(Store& store, const std::string& secret) { return store.find_token(secret).value()->roles; }
+Roles roles_of(Store& store, const std::string& secret) {
+  return store.find_token(secret).value()->roles;
+}
 
 Names names_of(const std::vector<GroupDetail::Member>& members) {
   Names names;
@@ -38,8 +42,9 @@ TEST(Groups, are_told_apart_by_their_names_in_any_case) {
   Groups& groups = store->groups();
   const auto students = groups.create("Ärzte 2026", {}).value().group;
   EXPECT_EQ(groups.create("äRZTE 2026", {}).error().status, 409);
-  for (const std::string& name : {std::string(), std::string(" x"), std::string("x "), std::string(101, 'x'),
-                                  std::string("\xff"), std::string("a\0b", 3), std::string("x\n")}) {
+  for (const std::string& name :
+       {std::string(), std::string(" x"), std::string("x "), std::string(101, 'x'),
+        std::string("\xff"), std::string("a\0b", 3), std::string("x\n")}) {
     EXPECT_GE(groups.create(name, {}).error().status, 400) << name;
     EXPECT_LT(groups.create(name, {}).error().status, 500) << name;
   }
@@ -63,7 +68,8 @@ TEST(Groups, the_database_itself_refuses_what_is_no_group) {
   ASSERT_TRUE(store->groups().create("Students", {}));
   for (const char* sql :
        {"INSERT INTO groups (name) VALUES ('')", "INSERT INTO groups (name) VALUES (' x')",
-        "INSERT INTO groups (name) VALUES (repeat('x', 101))", "INSERT INTO groups (name) VALUES ('sTUDENTS')",
+        "INSERT INTO groups (name) VALUES (repeat('x', 101))",
+        "INSERT INTO groups (name) VALUES ('sTUDENTS')",
         "INSERT INTO project_groups SELECT 1, id, 'guest' FROM groups",
         "INSERT INTO project_groups SELECT 1, id, 'administrator' FROM groups"})
     EXPECT_FALSE(PgConnection::connect(dsn)->script(sql)) << sql;
@@ -81,13 +87,17 @@ TEST(Groups, the_highest_of_ones_own_role_and_those_of_ones_groups_counts) {
   ASSERT_TRUE(groups.put(villa, students, Role::annotator, {}));
   ASSERT_TRUE(groups.put(villa, diggers, Role::curator, {}));
   ASSERT_TRUE(groups.put(forum, diggers, Role::viewer, {}));
-  EXPECT_EQ(roles_of(*store, gus), (Roles{Role::guest, {{villa, Role::curator}, {forum, Role::viewer}}}));
-  EXPECT_EQ(roles_of(*store, weak), (Roles{Role::guest, {{villa, Role::viewer}, {forum, Role::viewer}}}));
+  EXPECT_EQ(roles_of(*store, gus),
+            (Roles{Role::guest, {{villa, Role::curator}, {forum, Role::viewer}}}));
+  EXPECT_EQ(roles_of(*store, weak),
+            (Roles{Role::guest, {{villa, Role::viewer}, {forum, Role::viewer}}}));
   ASSERT_TRUE(store->put_member(villa, "Gus", Role::viewer));
-  EXPECT_EQ(roles_of(*store, gus).in(villa), Role::curator) << "a lower role of their own takes nothing";
+  EXPECT_EQ(roles_of(*store, gus).in(villa), Role::curator)
+      << "a lower role of their own takes nothing";
   const auto given = groups.roles_of("Gus").value();
   ASSERT_EQ(given.size(), 3u);
-  EXPECT_EQ(given[0].group + " " + given[1].group + " " + given[2].group, "Diggers Diggers Students");
+  EXPECT_EQ(given[0].group + " " + given[1].group + " " + given[2].group,
+            "Diggers Diggers Students");
   ASSERT_TRUE(store->put_member(forum, "Gus", Role::annotator));
   EXPECT_EQ(roles_of(*store, gus).in(forum), Role::annotator) << "nor does a lower one of a group";
   EXPECT_EQ(groups.roles_of("Gus")->size(), 2u) << "what is less than their own is given by nobody";
@@ -129,7 +139,8 @@ TEST(Groups, only_roles_of_projects_are_given_and_to_what_is_there) {
 TEST(Groups, people_are_put_in_and_taken_out_all_or_none) {
   auto store = test::fresh_store();
   Groups& groups = store->groups();
-  for (const char* name : {"Ada", "Bob", "Cyd"}) ASSERT_TRUE(store->create_person(name, "", Role::viewer));
+  for (const char* name : {"Ada", "Bob", "Cyd"})
+    ASSERT_TRUE(store->create_person(name, "", Role::viewer));
   EXPECT_EQ(groups.create("Students", {"Ada", "nobody"}).error().status, 422);
   EXPECT_TRUE(groups.all()->empty()) << "nothing is left of what was refused";
   const auto students = groups.create("Students", {"bob", "Ada", "Ada"}).value();
@@ -138,7 +149,9 @@ TEST(Groups, people_are_put_in_and_taken_out_all_or_none) {
   for (const char* nobody : {"nobody", "", "\xff",
                              "\xc3\x84"
                              "da"}) {
-    EXPECT_EQ(groups.change(id, {.name = "Changed", .add = {"Cyd", nobody}}, {}).error().status, 422) << nobody;
+    EXPECT_EQ(groups.change(id, {.name = "Changed", .add = {"Cyd", nobody}}, {}).error().status,
+              422)
+        << nobody;
     EXPECT_EQ(groups.change(id, {.remove = {"Ada", nobody}}, {}).error().field, "remove") << nobody;
   }
   EXPECT_EQ(groups.group(id)->group.name, "Students");
@@ -150,7 +163,8 @@ TEST(Groups, people_are_put_in_and_taken_out_all_or_none) {
   // Who is deleted leaves; who is invited may come with groups.
   ASSERT_TRUE(store->delete_person("Ada"));
   EXPECT_EQ(names_of(groups.group(id)->members), Names{"Cyd"});
-  EXPECT_EQ(store->create_person("Dan", "", Role::guest, {id, id}).value().groups, Names{"Students"});
+  EXPECT_EQ(store->create_person("Dan", "", Role::guest, {id, id}).value().groups,
+            Names{"Students"});
   EXPECT_EQ(store->create_person("Eve", "", Role::guest, {id, id + 1}).error().status, 422);
   EXPECT_EQ(store->person("Eve").error().status, 404);
 }
@@ -159,13 +173,15 @@ TEST(Groups, it_is_told_who_could_do_less_without_one) {
   auto store = test::fresh_store();
   Groups& groups = store->groups();
   const auto villa = project(*store, "Villa"), forum = project(*store, "Forum");
-  // Of these only who has nothing else loses: not those who may look everywhere, or are in another group, or have a role of their own.
+  // Of these only who has nothing else loses: not those who may look everywhere, or are in another
+  // group, or have a role of their own.
   session_of(*store, "Only", Role::guest);
   session_of(*store, "Viewer", Role::viewer);
   session_of(*store, "Other", Role::guest);
   session_of(*store, "Own", Role::guest);
   session_of(*store, "Out", Role::guest);
-  const auto students = groups.create("Students", {"Only", "Viewer", "Other", "Own", "Out"}).value().group.id;
+  const auto students =
+      groups.create("Students", {"Only", "Viewer", "Other", "Own", "Out"}).value().group.id;
   const auto other = groups.create("Others", {"Other"}).value().group.id;
   ASSERT_TRUE(groups.put(villa, students, Role::viewer, {}));
   ASSERT_TRUE(groups.put(villa, other, Role::viewer, {}));
@@ -193,7 +209,8 @@ TEST(Groups, there_are_not_too_many_and_none_is_too_large) {
   ASSERT_TRUE(groups.change(students, {.add = {"p1000"}}, {}));
   EXPECT_EQ(groups.change(students, {.add = {"p1001"}}, {}).error().status, 409);
   EXPECT_EQ(store->create_person("New", "", Role::viewer, {students}).error().status, 409);
-  ASSERT_TRUE(groups.change(students, {.add = {"p1001"}, .remove = {"p1"}}, {})) << "who leaves makes room";
+  ASSERT_TRUE(groups.change(students, {.add = {"p1001"}, .remove = {"p1"}}, {}))
+      << "who leaves makes room";
   EXPECT_EQ(groups.group(students)->members.size(), 1000u);
   // Of many who make the last one at once, one does.
   std::atomic<int> made = 0;
@@ -228,13 +245,14 @@ TEST(Groups, who_asked_for_what_is_told_in_each_project) {
     const auto page = store->activity(of_project, Role::owner, query).value();
     for (const Activity& line : page.lines)
       if (line.kind == "member")
-        lines.push_back(line.user + " " + line.op + " " + line.group + " " + line.person + " " + line.role);
+        lines.push_back(line.user + " " + line.op + " " + line.group + " " + line.person + " " +
+                        line.role);
     std::ranges::sort(lines);
     return lines;
   };
-  EXPECT_EQ(told(villa),
-            (Names{"Anne added Pupils Gus curator", "Anne added Students  viewer", "Anne changed Students  curator",
-                   "Anne removed Pupils  ", "Anne removed Pupils Gus "}));
+  EXPECT_EQ(told(villa), (Names{"Anne added Pupils Gus curator", "Anne added Students  viewer",
+                                "Anne changed Students  curator", "Anne removed Pupils  ",
+                                "Anne removed Pupils Gus "}));
   EXPECT_EQ(told(forum), Names{"Anne removed Pupils  "});
 }
 

@@ -21,7 +21,8 @@ class History : public ::testing::Test {
   std::int64_t sequence_ = 0;
 
   // Batches of one stroke; returns its sequences.
-  std::vector<std::int64_t> stroke(const std::string& user, int batches = 1, const std::string& op = "stroke") {
+  std::vector<std::int64_t> stroke(const std::string& user, int batches = 1,
+                                   const std::string& op = "stroke") {
     const Uuid id = random_uuid();
     std::vector<std::int64_t> sequences;
     for (int i = 0; i < batches; ++i) {
@@ -44,8 +45,12 @@ class History : public ::testing::Test {
     ASSERT_FALSE(entry.enable.empty());
     ASSERT_TRUE(save(writer_, entry));
   }
-  std::vector<std::int64_t> undoable(const std::string& user) { return store_->undoable(layer_.id, user).value(); }
-  std::vector<std::int64_t> redoable(const std::string& user) { return store_->redoable(layer_.id, user).value(); }
+  std::vector<std::int64_t> undoable(const std::string& user) {
+    return store_->undoable(layer_.id, user).value();
+  }
+  std::vector<std::int64_t> redoable(const std::string& user) {
+    return store_->redoable(layer_.id, user).value();
+  }
 };
 
 TEST_F(History, undo_takes_the_whole_newest_stroke_of_its_author) {
@@ -120,8 +125,10 @@ TEST_F(History, written_tiles_are_the_union_of_the_edits_masks) {
     const auto entry = painter_.paint(i, 3, 3);
     if (i == 2 || i == 5)
       for (const auto& revision : entry.revisions) {
-        const auto decoded = decode_revision(revision.tile, layer_.type, revision.difference).value();
-        for (int w = 0; w < kMaskWords; ++w) expected[revision.tile].words[w] |= decoded.written.words[w];
+        const auto decoded =
+            decode_revision(revision.tile, layer_.type, revision.difference).value();
+        for (int w = 0; w < kMaskWords; ++w)
+          expected[revision.tile].words[w] |= decoded.written.words[w];
       }
     ASSERT_TRUE(save(writer_, entry));
   }
@@ -139,7 +146,8 @@ TEST_F(History, every_revision_of_a_tile_comes_newest_first_and_leads_back_to_no
   entry.disable = {29, 30};
   ASSERT_TRUE(save(writer_, entry));
   for (const TileAddress tile : {TileAddress{0, 0}, TileAddress{1, 0}}) {
-    auto current = painter_.content().contains(tile) ? painter_.content().at(tile) : TileData(layer_.type);
+    auto current =
+        painter_.content().contains(tile) ? painter_.content().at(tile) : TileData(layer_.type);
     std::int64_t before = 1000;
     for (;;) {
       const auto page = store_->tile_history(layer_, tile, before, 4).value();

@@ -1,4 +1,5 @@
-// What is kept of long work over a restart: every end that it can come to, and that success is written with its effect or not at all.
+// What is kept of long work over a restart: every end that it can come to, and that success is
+// written with its effect or not at all.
 #include "store/jobs.h"
 
 #include <gtest/gtest.h>
@@ -26,14 +27,18 @@ TEST(Jobs, those_that_did_not_end_are_lost_with_the_server_and_others_are_as_the
   const auto dsn = test::fresh_database();
   const auto store = test::open_store(dsn);
   const auto project = store->project("default")->id;
-  for (const std::int64_t id : {11, 12, 13, 14}) ASSERT_TRUE(store->jobs().begin(job_of(id, project)));
+  for (const std::int64_t id : {11, 12, 13, 14})
+    ASSERT_TRUE(store->jobs().begin(job_of(id, project)));
   StoredJob done = job_of(12, project);
   done.state = "done";
   done.result = {{"model", 7}, {"layers", {1, 2}}};
   ASSERT_TRUE(store->jobs().end(done));
   StoredJob failed = job_of(13, project);
   failed.state = "failed";
-  failed.problem = {{"status", 422}, {"title", "Mesh file refused"}, {"detail", "No triangle."}, {"field", "file"}};
+  failed.problem = {{"status", 422},
+                    {"title", "Mesh file refused"},
+                    {"detail", "No triangle."},
+                    {"field", "file"}};
   ASSERT_TRUE(store->jobs().end(failed));
 
   for (int restart = 0; restart < 2; ++restart) {  // twice is harmless
@@ -108,7 +113,8 @@ TEST(Jobs, go_after_seven_days_and_with_their_project) {
   ASSERT_EQ(store->jobs().take_over(10)->size(), 3u);
   auto connection = PgConnection::connect(dsn);
   ASSERT_TRUE(connection);
-  ASSERT_TRUE(connection->query("UPDATE jobs SET ended = now() - interval '7 days 1 hour' WHERE id = 2"));
+  ASSERT_TRUE(
+      connection->query("UPDATE jobs SET ended = now() - interval '7 days 1 hour' WHERE id = 2"));
   ASSERT_TRUE(store->delete_project(project->id));
   const auto left = store->jobs().take_over(10);
   ASSERT_EQ(left->size(), 1u);

@@ -31,10 +31,11 @@ TEST_P(JournalOfType, a_layer_reads_as_it_was_after_every_edit) {
     JournalWriter writer(*store_, {});
     int saved = 0;
     for (int i = 1; i <= 220; ++i) {
-      ASSERT_TRUE(writer.submit(painter.paint(i, 1 + painter.random() % 3, 2), [&](Result<void> result) {
-        EXPECT_TRUE(result) << result.error().detail;
-        ++saved;
-      }));
+      ASSERT_TRUE(
+          writer.submit(painter.paint(i, 1 + painter.random() % 3, 2), [&](Result<void> result) {
+            EXPECT_TRUE(result) << result.error().detail;
+            ++saved;
+          }));
       states.push_back(painter.content());
     }
     writer.drain();
@@ -55,7 +56,8 @@ TEST_P(JournalOfType, a_layer_reads_as_it_was_after_every_edit) {
   EXPECT_EQ(newest.sequence, 220);
   EXPECT_TRUE(content_of(newest) == states.back());
 }
-INSTANTIATE_TEST_SUITE_P(Types, JournalOfType, ::testing::Values(ValueType::u8, ValueType::i16, ValueType::f32));
+INSTANTIATE_TEST_SUITE_P(Types, JournalOfType,
+                         ::testing::Values(ValueType::u8, ValueType::i16, ValueType::f32));
 
 TEST_F(Journal, layers_of_a_model_share_its_sequence_and_keep_their_own_state) {
   Painter one(test::make_layer(*store_, model_.id, ValueType::u8, "one"), 1);
@@ -77,7 +79,8 @@ TEST_F(Journal, damaged_revisions_are_a_problem_and_not_a_crash) {
   Painter painter(test::make_layer(*store_, model_.id), 1);
   JournalWriter writer(*store_, {});
   ASSERT_TRUE(save(writer, painter.paint(1, 2, 4)));
-  ASSERT_TRUE(PgConnection::connect(dsn_)->script("UPDATE tile_revisions SET difference = '\\x0102030405'"));
+  ASSERT_TRUE(PgConnection::connect(dsn_)->script(
+      "UPDATE tile_revisions SET difference = '\\x0102030405'"));
   EXPECT_EQ(store_->load_tiles(painter.layer()).error().status, 500);
   const std::vector<std::int64_t> first{1};
   EXPECT_EQ(store_->written_by(painter.layer(), first).error().status, 500);
@@ -125,7 +128,8 @@ TEST_F(Journal, three_painted_layers_of_4096_load_in_well_under_a_second_and_a_h
   JournalWriter writer(*store_, {});
   std::int64_t sequence = 0;
   for (int n = 0; n < 3; ++n) {
-    layers.push_back(test::make_layer(*store_, model_.id, n == 2 ? ValueType::f32 : ValueType::u8, "big"));
+    layers.push_back(
+        test::make_layer(*store_, model_.id, n == 2 ? ValueType::f32 : ValueType::u8, "big"));
     Painter painter(layers.back(), 10 + n);
     auto fill = painter.entry(++sequence, "fill");
     for (std::uint16_t y = 0; y < 32; ++y)
@@ -136,10 +140,12 @@ TEST_F(Journal, three_painted_layers_of_4096_load_in_well_under_a_second_and_a_h
           after.write(texel, 1 + (painter.random() % 97 == 0 ? 3u : 0u));
           written.set(texel);
         }
-        fill.revisions.push_back(painter.revision({x, y}, TileData(layers.back().type), after, written));
+        fill.revisions.push_back(
+            painter.revision({x, y}, TileData(layers.back().type), after, written));
       }
     ASSERT_TRUE(save(writer, std::move(fill)));
-    for (int i = 0; i < 8; ++i) {  // strokes over everything, as differences to nothing: content does not matter here
+    for (int i = 0; i < 8; ++i) {
+      // strokes over everything, as differences to nothing: content does not matter here
       auto stroke = painter.entry(++sequence);
       const TileData before(layers.back().type);
       TileData after(layers.back().type);
@@ -150,16 +156,19 @@ TEST_F(Journal, three_painted_layers_of_4096_load_in_well_under_a_second_and_a_h
       }
       const auto revision = painter.revision({0, 0}, before, after, written);
       for (std::uint16_t y = 0; y < 32; ++y)
-        for (std::uint16_t x = 0; x < 32; ++x) stroke.revisions.push_back({{x, y}, revision.difference, {}});
+        for (std::uint16_t x = 0; x < 32; ++x)
+          stroke.revisions.push_back({{x, y}, revision.difference, {}});
       ASSERT_TRUE(save(writer, std::move(stroke)));
     }
   }
   const auto start = std::chrono::steady_clock::now();
   for (const Layer& layer : layers) EXPECT_EQ(store_->load_tiles(layer)->tiles.size(), 1024u);
-  const auto elapsed_ms =
-      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start).count();
-  std::printf("[ figure   ] 3 layers of 4096² (2 u8, 1 f32), 9 revisions of every tile: loaded in %lld ms\n",
-              static_cast<long long>(elapsed_ms));
+  const auto elapsed_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
+                              std::chrono::steady_clock::now() - start)
+                              .count();
+  std::printf(
+      "[ figure   ] 3 layers of 4096² (2 u8, 1 f32), 9 revisions of every tile: loaded in %lld ms\n",
+      static_cast<long long>(elapsed_ms));
   RecordProperty("load_ms", static_cast<int>(elapsed_ms));
 }
 

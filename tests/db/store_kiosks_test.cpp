@@ -32,7 +32,8 @@ class KiosksOfATour : public ::testing::Test {
     tour.user = "carl";
     return tours_.create(tour).value();
   }
-  NewKiosk made(const std::string& name = "Hall", std::optional<std::chrono::seconds> lifetime = {}) {
+  NewKiosk made(const std::string& name = "Hall",
+                std::optional<std::chrono::seconds> lifetime = {}) {
     return kiosks_.create(tour_, name, "carl", lifetime).value();
   }
   void run(const std::string& sql) { ASSERT_TRUE(connection_->script(sql)); }
@@ -145,7 +146,8 @@ TEST_F(KiosksOfATour, those_of_some_projects_are_listed) {
   other.name = "Other";
   other.slug = "other";
   other = store_->create_project(other).value();
-  const auto elsewhere = kiosks_.create(new_tour(new_model(other.id, "wall")).id, "Two", "carl", {}).value();
+  const auto elsewhere =
+      kiosks_.create(new_tour(new_model(other.id, "wall")).id, "Two", "carl", {}).value();
   EXPECT_EQ(kiosks_.all({}, 10, 0)->total, 2);
   EXPECT_EQ(kiosks_.all(std::vector<std::int64_t>{}, 10, 0)->total, 0);
   const auto page = kiosks_.all(std::vector{other.id}, 10, 0).value();

@@ -32,18 +32,20 @@ Look look_named(std::int64_t model_id, const std::string& name) {
 
 class Looks : public ::testing::Test {
  protected:
-  std::int64_t count(const char* sql) { return PgConnection::connect(dsn_)->query(sql)->integer(0, 0); }
+  std::int64_t count(const char* sql) {
+    return PgConnection::connect(dsn_)->query(sql)->integer(0, 0);
+  }
   const std::string dsn_ = test::fresh_database();
   std::unique_ptr<Store> store_ = test::open_store(dsn_);
 };
 
 TEST_F(Looks, those_of_an_import_come_back_bit_for_bit_and_the_first_is_shown) {
   const Picture color(3'000'000, 7), infrared(1000, 9);
-  const auto model =
-      store_
-          ->create_model(
-              model_with({{"colour", "image/jpeg", color, 4096, 2048}, {"IR", "image/png", infrared, 64, 32}}), {})
-          .value();
+  const auto model = store_
+                         ->create_model(model_with({{"colour", "image/jpeg", color, 4096, 2048},
+                                                    {"IR", "image/png", infrared, 64, 32}}),
+                                        {})
+                         .value();
   const auto looks = store_->looks(model.id).value();
   ASSERT_EQ(looks.size(), 2u);
   EXPECT_EQ(looks[0].name, "colour");
@@ -84,7 +86,8 @@ TEST_F(Looks, they_are_added_changed_and_found_like_layers) {
 
 TEST_F(Looks, a_picture_goes_with_the_last_that_uses_it) {
   const Picture picture(2'000'000, 5);
-  const auto one = store_->create_model(model_with({{"colour", "image/png", picture, 8, 8}}), {}).value();
+  const auto one =
+      store_->create_model(model_with({{"colour", "image/png", picture, 8, 8}}), {}).value();
   auto other = model_with({});
   other.geometry = {4};
   const auto two = store_->create_model(other, {}).value();
@@ -101,8 +104,10 @@ TEST_F(Looks, a_picture_goes_with_the_last_that_uses_it) {
 TEST_F(Looks, what_cannot_be_a_look_is_refused_and_nothing_is_kept) {
   const auto bad = store_->create_model(model_with({{"x", "text/html", {1}, 1, 1}}), {});
   EXPECT_EQ(bad.error().status, 415);
-  EXPECT_EQ(store_->create_model(model_with({{"", "image/png", {1}, 1, 1}}), {}).error().status, 400);
-  EXPECT_EQ(store_->create_model(model_with({{"x", "image/png", {1}, 0, 1}}), {}).error().status, 422);
+  EXPECT_EQ(store_->create_model(model_with({{"", "image/png", {1}, 1, 1}}), {}).error().status,
+            400);
+  EXPECT_EQ(store_->create_model(model_with({{"x", "image/png", {1}, 0, 1}}), {}).error().status,
+            422);
   EXPECT_EQ(count("SELECT count(*) FROM blobs"), 0);
   EXPECT_EQ(store_->create_look(look_named(77, "x"), Picture{1}).error().status, 404);
   const auto model = store_->create_model(model_with({}), {}).value();
@@ -118,7 +123,8 @@ TEST_F(Looks, a_model_holds_no_more_than_its_limit_however_many_ask_at_once) {
     ASSERT_TRUE(store_->create_look(look_named(model.id, "n"), Picture{1}));
   std::vector<std::thread> people;
   for (int i = 0; i < 4; ++i)
-    people.emplace_back([&] { (void)store_->create_look(look_named(model.id, "late"), Picture{1}); });
+    people.emplace_back(
+        [&] { (void)store_->create_look(look_named(model.id, "late"), Picture{1}); });
   for (auto& person : people) person.join();
   EXPECT_EQ(store_->looks(model.id)->size(), static_cast<std::size_t>(Store::kMostLooks));
   EXPECT_EQ(store_->create_look(look_named(model.id, "x"), Picture{1}).error().status, 409);

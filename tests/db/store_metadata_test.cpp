@@ -16,7 +16,9 @@ Store::NewModel small_model(const std::string& name, std::int64_t project = 1) {
   return fresh;
 }
 
-Model create(Store& store, const std::string& name) { return store.create_model(small_model(name), {}).value(); }
+Model create(Store& store, const std::string& name) {
+  return store.create_model(small_model(name), {}).value();
+}
 
 Layer new_layer(std::int64_t model_id, const std::string& name) {
   Layer layer;
@@ -91,9 +93,9 @@ TEST(Projects, unknown_and_unstorable_references_are_not_found) {
 
 TEST(Projects, text_that_cannot_be_stored_is_the_callers_mistake) {
   auto store = test::fresh_store();
-  for (const std::string& bad :
-       {std::string("a\0b", 3), std::string("\xff\xfe"), std::string("\xc0\xaf"), std::string("\xed\xa0\x80"),
-        std::string("\xf4\x90\x80\x80"), std::string("cut \xe2\x82")}) {
+  for (const std::string& bad : {std::string("a\0b", 3), std::string("\xff\xfe"),
+                                 std::string("\xc0\xaf"), std::string("\xed\xa0\x80"),
+                                 std::string("\xf4\x90\x80\x80"), std::string("cut \xe2\x82")}) {
     Project project;
     project.name = bad;
     EXPECT_EQ(store->create_project(project).error().status, 400);
@@ -126,7 +128,9 @@ TEST(Models, every_field_comes_back) {
   m.triangles = 10'000'000'000ULL;
   m.vertices = 5;
   m.area = 0.1 + 0.2;
-  m.atlas = {"made", 4096, 246, 0.61, 0.0006, 1.25, 3.5, 1e-9, {{4096, 0.1, 1.0 / 3}, {8192, 1e-300, 0.2}}};
+  m.atlas = {"made", 4096,   246,
+             0.61,   0.0006, 1.25,
+             3.5,    1e-9,   {{4096, 0.1, 1.0 / 3}, {8192, 1e-300, 0.2}}};
   m.repairs = {{"dropped degenerate faces", 12}, {"welded", 7}};
   m.default_resolution = 8192;
   m.inventory_number = "ÄM 21300";
@@ -235,7 +239,8 @@ TEST(Layers, changes_need_the_version_and_keep_to_the_rules) {
   named.descriptions = {{"pt-BR", "Brancos"}};
   named = store->update_layer(named).value();
   EXPECT_EQ(store->layer(model.id, "salt", Role::viewer)->labels, (Labels{{"de", "Salze"}}));
-  EXPECT_EQ(store->layer(model.id, "salt", Role::viewer)->descriptions, (Labels{{"pt-BR", "Brancos"}}));
+  EXPECT_EQ(store->layer(model.id, "salt", Role::viewer)->descriptions,
+            (Labels{{"pt-BR", "Brancos"}}));
   auto bad = named;
   bad.slug = "other";
   EXPECT_EQ(store->update_layer(bad).error().status, 409);

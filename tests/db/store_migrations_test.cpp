@@ -19,7 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-PgConnection connect(const std::string& dsn) { return std::move(PgConnection::connect(dsn).value()); }
+PgConnection connect(const std::string& dsn) {
+  return std::move(PgConnection::connect(dsn).value());
+}
 
 void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
 
@@ -87,14 +89,17 @@ TEST(Migrations, a_failing_file_leaves_nothing_behind_and_works_once_mended) {
   test::TemporaryFolder folder;
   copy_migrations(folder.path());
   const auto dsn = test::fresh_database();
-  write(folder.path() / "900000_more.sql",
-        "-- migrate:up\nCREATE TABLE more (n int);\nSELECT 1/0;\n-- migrate:down\nDROP TABLE more;\n");
+  write(
+      folder.path() / "900000_more.sql",
+      "-- migrate:up\nCREATE TABLE more (n int);\nSELECT 1/0;\n-- migrate:down\nDROP TABLE more;\n");
   auto store = Store::open({dsn, 1}, folder.path());
   ASSERT_FALSE(store);
   EXPECT_NE(store.error().detail.find("900000_more.sql"), std::string::npos);
   auto connection = connect(dsn);
   EXPECT_TRUE(connection.query("SELECT to_regclass('more') IS NULL")->boolean(0, 0));
-  EXPECT_EQ(connection.query("SELECT count(*) FROM schema_migrations WHERE version = '900000'")->integer(0, 0), 0);
+  EXPECT_EQ(connection.query("SELECT count(*) FROM schema_migrations WHERE version = '900000'")
+                ->integer(0, 0),
+            0);
   write(folder.path() / "900000_more.sql",
         "-- migrate:up\nCREATE TABLE more (n int);\n-- migrate:down\nDROP TABLE more;\n");
   ASSERT_TRUE(Store::open({dsn, 1}, folder.path()));
@@ -104,11 +109,13 @@ TEST(Migrations, a_failing_file_leaves_nothing_behind_and_works_once_mended) {
 TEST(Migrations, a_database_that_dbmate_migrated_is_taken_over) {
   const auto dsn = test::fresh_database();
   auto connection = connect(dsn);
-  ASSERT_TRUE(connection.script("CREATE TABLE schema_migrations (version character varying(128) PRIMARY KEY)"));
+  ASSERT_TRUE(connection.script(
+      "CREATE TABLE schema_migrations (version character varying(128) PRIMARY KEY)"));
   const auto known = read_migrations(STRATA_MIGRATIONS_DIR).value();
   for (const auto& migration : known)
-    ASSERT_TRUE(connection.script("BEGIN;" + migration.sql + "INSERT INTO schema_migrations VALUES ('" +
-                                  migration.version + "'); COMMIT"));
+    ASSERT_TRUE(connection.script("BEGIN;" + migration.sql +
+                                  "INSERT INTO schema_migrations VALUES ('" + migration.version +
+                                  "'); COMMIT"));
   ASSERT_TRUE(Store::open({dsn, 1}, STRATA_MIGRATIONS_DIR));
   EXPECT_EQ(connection.query("SELECT count(*) FROM schema_checksums")->integer(0, 0),
             static_cast<std::int64_t>(known.size()));
@@ -132,11 +139,13 @@ TEST(Migrations, a_folder_without_or_with_bad_files_is_refused) {
 TEST(Migrations, the_schema_file_is_what_a_fresh_database_has) {
   const auto dsn = test::fresh_database();
   test::open_store(dsn);
-  const std::string command = std::string(STRATA_SOURCE_DIR) + "/tests/db/dump_schema.sh \"" + dsn + "\"";
+  const std::string command =
+      std::string(STRATA_SOURCE_DIR) + "/tests/db/dump_schema.sh \"" + dsn + "\"";
   const std::unique_ptr<FILE, decltype(&pclose)> pipe(popen(command.c_str(), "r"), &pclose);
   std::string dumped;
   std::array<char, 4096> buffer{};
-  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe.get())) > 0;) dumped.append(buffer.data(), n);
+  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe.get())) > 0;)
+    dumped.append(buffer.data(), n);
   ASSERT_NE(dumped.find("CREATE TABLE"), std::string::npos);
   const fs::path file = fs::path(STRATA_SOURCE_DIR) / "db/schema.sql";
   if (std::getenv("STRATA_UPDATE_GOLDEN")) write(file, dumped);

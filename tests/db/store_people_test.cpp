@@ -20,8 +20,9 @@ TEST(Tokens, a_token_is_found_until_it_is_revoked_or_expires) {
   ASSERT_TRUE(store->create_person("Ada", "", Role::owner));
   const auto token = store->create_token(TokenKind::script, "Ada", Role::owner, {}).value().secret;
   EXPECT_EQ(token.size(), 43u);
-  EXPECT_EQ(token.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"),
-            std::string::npos);
+  EXPECT_EQ(
+      token.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"),
+      std::string::npos);
   const auto found = store->find_token(token).value();
   ASSERT_TRUE(found);
   EXPECT_EQ(found->user, "Ada");
@@ -29,11 +30,15 @@ TEST(Tokens, a_token_is_found_until_it_is_revoked_or_expires) {
   EXPECT_EQ(found->kind, TokenKind::script);
   ASSERT_TRUE(store->revoke_token(token));
   EXPECT_FALSE(store->find_token(token).value());
-  const auto old = store->create_token(TokenKind::session, "Ada", Role::owner, seconds(-1)).value().secret;
+  const auto old =
+      store->create_token(TokenKind::session, "Ada", Role::owner, seconds(-1)).value().secret;
   EXPECT_FALSE(store->find_token(old).value());
-  const auto fresh = store->create_token(TokenKind::session, "Ada", Role::owner, seconds(3600)).value().secret;
+  const auto fresh =
+      store->create_token(TokenKind::session, "Ada", Role::owner, seconds(3600)).value().secret;
   EXPECT_TRUE(store->find_token(fresh).value());
-  EXPECT_NE(fresh, store->create_token(TokenKind::session, "Ada", Role::owner, seconds(3600)).value().secret);
+  EXPECT_NE(
+      fresh,
+      store->create_token(TokenKind::session, "Ada", Role::owner, seconds(3600)).value().secret);
 }
 
 TEST(Tokens, guesses_and_oddities_are_nobody) {
@@ -60,7 +65,8 @@ TEST(Tokens, secrets_are_not_in_the_database) {
 
 TEST(Tokens, an_owner_link_opens_sessions_until_it_is_revoked) {
   auto store = test::fresh_store();
-  const auto link = store->create_token(TokenKind::owner_link, "owner", Role::owner, {}).value().secret;
+  const auto link =
+      store->create_token(TokenKind::owner_link, "owner", Role::owner, {}).value().secret;
   const auto first = store->redeem_owner_link(link, seconds(60)).value();
   const auto second = store->redeem_owner_link(link, seconds(60)).value();
   ASSERT_TRUE(first && second);
@@ -101,7 +107,8 @@ TEST(People, names_for_signing_in_are_plain) {
   EXPECT_EQ(store->create_person(std::string(65, 'x'), "", Role::viewer).error().status, 422);
   ASSERT_TRUE(store->create_person("kirk", "", Role::viewer));
   ASSERT_TRUE(store->set_password("kirk", "a hash", {}));
-  EXPECT_EQ(store->password_of("\xe2\x84\xaairk").value(), "") << "the sign of Kelvin is a k in lower case";
+  EXPECT_EQ(store->password_of("\xe2\x84\xaairk").value(), "")
+      << "the sign of Kelvin is a k in lower case";
   EXPECT_TRUE(store->create_person("a@b.c-d_9", "", Role::viewer));
 }
 
@@ -122,7 +129,9 @@ TEST(People, a_session_is_opened_only_by_the_password_that_holds) {
 
 TEST(People, of_links_only_the_newest_is_good_and_none_once_there_is_a_password) {
   auto store = test::fresh_store();
-  const auto link = [&] { return store->create_link(TokenKind::owner_link, "owner", seconds(60)).value().secret; };
+  const auto link = [&] {
+    return store->create_link(TokenKind::owner_link, "owner", seconds(60)).value().secret;
+  };
   const auto old = link(), now = link();
   EXPECT_FALSE(store->redeem_owner_link(old, seconds(60)).value());
   EXPECT_TRUE(store->redeem_owner_link(now, seconds(60)).value());
@@ -133,20 +142,25 @@ TEST(People, of_links_only_the_newest_is_good_and_none_once_there_is_a_password)
 TEST(People, a_token_does_no_more_than_its_person_and_a_session_the_same) {
   auto store = test::fresh_store();
   const Person ada = store->create_person("Ada", "", Role::curator).value();
-  const auto session = store->create_token(TokenKind::session, "Ada", Role::curator, seconds(60)).value().secret;
+  const auto session =
+      store->create_token(TokenKind::session, "Ada", Role::curator, seconds(60)).value().secret;
   const auto weak = store->create_token(TokenKind::script, "Ada", Role::viewer, {}).value().secret;
   const auto strong = store->create_token(TokenKind::script, "Ada", Role::owner, {}).value().secret;
-  const auto role_of = [&](const std::string& secret) { return store->find_token(secret).value()->roles.everywhere; };
+  const auto role_of = [&](const std::string& secret) {
+    return store->find_token(secret).value()->roles.everywhere;
+  };
   EXPECT_EQ(role_of(session), Role::curator);
   EXPECT_EQ(role_of(weak), Role::viewer);
   EXPECT_EQ(role_of(strong), Role::curator);
   ASSERT_TRUE(store->change_person(ada.id, {{}, Role::administrator, {}}));
   EXPECT_EQ(role_of(session), Role::administrator);
   EXPECT_EQ(role_of(weak), Role::viewer);
-  const auto invitation = store->create_link(TokenKind::invitation, "Ada", seconds(60)).value().secret;
+  const auto invitation =
+      store->create_link(TokenKind::invitation, "Ada", seconds(60)).value().secret;
   ASSERT_TRUE(store->change_person(ada.id, {{}, {}, true}));
   EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::viewer, {}).error().status, 404);
-  for (const auto& secret : {session, weak, strong}) EXPECT_FALSE(store->find_token(secret).value());
+  for (const auto& secret : {session, weak, strong})
+    EXPECT_FALSE(store->find_token(secret).value());
   // What somebody says of themselves at the same time takes nothing of it back.
   EXPECT_TRUE(store->change_person(ada.id, {"Ada L.", {}, {}}).value().disabled);
   ASSERT_TRUE(store->change_person(ada.id, {{}, {}, false}));
@@ -158,14 +172,17 @@ TEST(People, an_invitation_is_good_for_one_of_many_who_use_it_at_once) {
   auto store = test::fresh_store();
   ASSERT_TRUE(store->create_person("Ada", "", Role::annotator));
   const auto invitation =
-      store->create_token(TokenKind::invitation, "Ada", Role::annotator, seconds(60)).value().secret;
+      store->create_token(TokenKind::invitation, "Ada", Role::annotator, seconds(60))
+          .value()
+          .secret;
   EXPECT_FALSE(store->redeem_owner_link(invitation, seconds(60)).value());
   std::atomic<int> in = 0;
   {
     std::vector<std::jthread> browsers;
     for (int i = 0; i < 8; ++i)
       browsers.emplace_back([&] {
-        const auto session = store->accept_invitation(invitation, "hash", "Ada L.", seconds(60), "");
+        const auto session =
+            store->accept_invitation(invitation, "hash", "Ada L.", seconds(60), "");
         if (session && *session) ++in;
       });
   }
@@ -180,11 +197,15 @@ TEST(People, in_a_project_somebody_may_do_more) {
   villa.name = "Villa";
   const auto project = store->create_project(villa).value().id;
   ASSERT_TRUE(store->create_person("Gus", "Gustav G.", Role::guest));
-  const auto session = store->create_token(TokenKind::session, "Gus", Role::guest, seconds(60)).value().secret;
+  const auto session =
+      store->create_token(TokenKind::session, "Gus", Role::guest, seconds(60)).value().secret;
   const auto weak = store->create_token(TokenKind::script, "Gus", Role::viewer, {}).value().secret;
-  const auto roles_of = [&](const std::string& secret) { return store->find_token(secret).value()->roles; };
+  const auto roles_of = [&](const std::string& secret) {
+    return store->find_token(secret).value()->roles;
+  };
   EXPECT_EQ(roles_of(session), Roles{});
-  EXPECT_EQ(store->put_member(project, "gus", Role::annotator).value().person.full_name, "Gustav G.");
+  EXPECT_EQ(store->put_member(project, "gus", Role::annotator).value().person.full_name,
+            "Gustav G.");
   ASSERT_TRUE(store->put_member(project, "Gus", Role::curator)) << "in place of the other";
   EXPECT_EQ(roles_of(session), (Roles{Role::guest, {{project, Role::curator}}}));
   EXPECT_EQ(roles_of(weak), (Roles{Role::guest, {{project, Role::viewer}}}));
@@ -221,13 +242,16 @@ TEST(Tokens, of_one_project_are_good_there_alone_and_go_with_it) {
   const auto token_of = [&](const char* name, Role role) {
     return store->create_token(TokenKind::script, name, role, {}, "", {}, project);
   };
-  const auto roles_of = [&](const std::string& secret) { return store->find_token(secret).value()->roles; };
+  const auto roles_of = [&](const std::string& secret) {
+    return store->find_token(secret).value()->roles;
+  };
   const auto roots = token_of("root", Role::curator).value().secret,
              adas = token_of("Ada", Role::curator).value().secret;
   const auto weak = token_of("root", Role::viewer).value().secret,
              of_guest = token_of("Gus", Role::viewer).value().secret;
   EXPECT_EQ(roles_of(roots), (Roles{Role::guest, {{project, Role::curator}}}));
-  EXPECT_EQ(roles_of(adas), (Roles{Role::guest, {{project, Role::annotator}}})) << "no more than its person";
+  EXPECT_EQ(roles_of(adas), (Roles{Role::guest, {{project, Role::annotator}}}))
+      << "no more than its person";
   EXPECT_EQ(roles_of(weak), (Roles{Role::guest, {{project, Role::viewer}}}));
   EXPECT_EQ(roles_of(of_guest), Roles{}) << "who has no role there gives none";
   ASSERT_TRUE(store->put_member(project, "Gus", Role::curator));
@@ -235,10 +259,15 @@ TEST(Tokens, of_one_project_are_good_there_alone_and_go_with_it) {
   EXPECT_EQ(store->tokens("Ada", TokenKind::script)->at(0).project, "villa");
   for (const Role role : {Role::guest, Role::administrator, Role::owner})
     EXPECT_EQ(token_of("root", role).error().status, 422);
-  EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::viewer, {}, "", {}, project + 1).error().status, 404);
-  const auto everywhere = store->create_token(TokenKind::script, "Ada", Role::viewer, {}).value().secret;
+  EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::viewer, {}, "", {}, project + 1)
+                .error()
+                .status,
+            404);
+  const auto everywhere =
+      store->create_token(TokenKind::script, "Ada", Role::viewer, {}).value().secret;
   ASSERT_TRUE(store->delete_project(project));
-  for (const auto& secret : {roots, adas, weak, of_guest}) EXPECT_FALSE(store->find_token(secret).value());
+  for (const auto& secret : {roots, adas, weak, of_guest})
+    EXPECT_FALSE(store->find_token(secret).value());
   EXPECT_TRUE(store->find_token(everywhere).value());
 }
 
@@ -246,7 +275,8 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
   const auto dsn = test::fresh_database();
   auto store = test::open_store(dsn);
   const Person ada = store->create_person("Ada.Lovelace", "The Countess", Role::annotator).value();
-  ASSERT_TRUE(store->create_token(TokenKind::script, "Ada.Lovelace", Role::annotator, {}, "Countess's script"));
+  ASSERT_TRUE(store->create_token(TokenKind::script, "Ada.Lovelace", Role::annotator, {},
+                                  "Countess's script"));
   Table finds;
   finds.project_id = 1;
   finds.name = "Finds";
@@ -271,8 +301,9 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
   JournalWriter writer(*store, {});
   ASSERT_TRUE(test::save(writer, painter.entry(1, "stroke", "Ada.Lovelace")));
   auto decision = painter.entry(2, "reject", "Ben");
-  decision.record = {
-      {"op", "reject"}, {"user", "Ada.Lovelace"}, {"reason", "@ada.lovelace: too far, b@ada.lovelacex.org"}};
+  decision.record = {{"op", "reject"},
+                     {"user", "Ada.Lovelace"},
+                     {"reason", "@ada.lovelace: too far, b@ada.lovelacex.org"}};
   decision.reviewed = {{1}, Review::rejected};
   decision.disable = {1};
   ASSERT_TRUE(test::save(writer, decision));
@@ -286,8 +317,8 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
   EXPECT_EQ(edits[0].record, decision.record) << "the rest of it is as it was";
   auto connection = PgConnection::connect(dsn);
   // Whatever tables there are, and whatever columns come to them.
-  auto tables =
-      connection->query("SELECT format('%I.%I', schemaname, tablename) FROM pg_tables WHERE schemaname = 'public'");
+  auto tables = connection->query(
+      "SELECT format('%I.%I', schemaname, tablename) FROM pg_tables WHERE schemaname = 'public'");
   ASSERT_TRUE(tables);
   for (int i = 0; i < tables->rows(); ++i) {
     auto found = connection->query_once("SELECT count(*) FROM " + tables->text(i, 0) +
@@ -295,8 +326,8 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
     ASSERT_TRUE(found) << found.error().detail;
     EXPECT_EQ(found->integer(0, 0), 0) << tables->text(i, 0);
   }
-  const auto history =
-      connection->query("SELECT count(*) FROM table_edits WHERE user_name = $1", Params().text(former));
+  const auto history = connection->query("SELECT count(*) FROM table_edits WHERE user_name = $1",
+                                         Params().text(former));
   EXPECT_EQ(history->integer(0, 0), 1);
   for (const char* taken : {"former-7", "Former-8"})
     EXPECT_EQ(store->create_person(taken, "", Role::viewer).error().status, 409);
@@ -310,12 +341,15 @@ TEST(Passwords, fit_only_their_own_hash) {
   EXPECT_TRUE(password_fits(hash, "seven blue herons").value());
   for (const char* guess : {"", "seven blue heron", "Seven blue herons", "seven blue herons "})
     EXPECT_FALSE(password_fits(hash, guess).value()) << guess;
-  for (const char* broken : {"", "x", "$argon2id$v=19$m=65536,t=2,p=1$", "a password that nobody has"})
+  for (const char* broken :
+       {"", "x", "$argon2id$v=19$m=65536,t=2,p=1$", "a password that nobody has"})
     EXPECT_FALSE(password_fits(broken, "a password that nobody has").value()) << broken;
 }
 
 FirstAnswer<Project> answer_of(const std::string& key) {
-  return {key, [](const Project& made) { return nlohmann::json{{"status", 201}, {"id", made.id}, {"area", 0.1}}; }};
+  return {key, [](const Project& made) {
+            return nlohmann::json{{"status", 201}, {"id", made.id}, {"area", 0.1}};
+          }};
 }
 
 Project named(const std::string& name) {
@@ -360,7 +394,8 @@ TEST(Answers, what_changes_nothing_keeps_no_answer) {
 TEST(Answers, bad_keys_are_the_callers_mistake) {
   auto store = test::fresh_store();
   EXPECT_EQ(store->find_answer("").error().status, 400);
-  for (const std::string& key : {std::string(256, 'k'), std::string("a\0b", 3), std::string("\xff")}) {
+  for (const std::string& key :
+       {std::string(256, 'k'), std::string("a\0b", 3), std::string("\xff")}) {
     EXPECT_EQ(store->find_answer(key).error().status, 400);
     EXPECT_EQ(store->create_project(named("x"), answer_of(key)).error().status, 400);
   }

@@ -75,7 +75,9 @@ TEST_F(Sources, a_reader_may_stop_and_unknown_files_are_not_found) {
   EXPECT_TRUE(store_->read_source(model.id, "größe 1.ply", [&](auto) { return ++chunks < 2; }));
   EXPECT_EQ(chunks, 2);
   EXPECT_EQ(store_->read_source(model.id, "other", [](auto) { return true; }).error().status, 404);
-  EXPECT_EQ(store_->read_source(model.id + 1, "größe 1.ply", [](auto) { return true; }).error().status, 404);
+  EXPECT_EQ(
+      store_->read_source(model.id + 1, "größe 1.ply", [](auto) { return true; }).error().status,
+      404);
   EXPECT_EQ(store_->geometry(model.id + 1).error().status, 404);
 }
 
@@ -132,10 +134,12 @@ TEST_F(Sources, imports_and_deletions_of_one_file_at_once_lose_nothing) {
 TEST_F(Sources, a_cancelled_or_unreadable_import_leaves_nothing_behind) {
   write(folder_.path() / "scan", noise(8'000'000, 1));
   int asked = 0;
-  const auto cancelled = store_->create_model(model_of(folder_.path() / "scan", {1}), [&] { return ++asked > 12; });
+  const auto cancelled =
+      store_->create_model(model_of(folder_.path() / "scan", {1}), [&] { return ++asked > 12; });
   ASSERT_FALSE(cancelled);
   EXPECT_EQ(cancelled.error().status, 499);
-  EXPECT_EQ(store_->create_model(model_of(folder_.path() / "missing", {1}), {}).error().title, "File not readable");
+  EXPECT_EQ(store_->create_model(model_of(folder_.path() / "missing", {1}), {}).error().title,
+            "File not readable");
   auto twice = model_of(folder_.path() / "scan", {1});
   twice.sources.push_back(twice.sources[0]);
   EXPECT_EQ(store_->create_model(twice, {}).error().status, 409);
@@ -143,8 +147,9 @@ TEST_F(Sources, a_cancelled_or_unreadable_import_leaves_nothing_behind) {
   nameless.sources[0].name = "";
   EXPECT_EQ(store_->create_model(nameless, {}).error().status, 400);
   EXPECT_EQ(
-      count(dsn_,
-            "SELECT (SELECT count(*) FROM models) + (SELECT count(*) FROM blobs) + (SELECT count(*) FROM blob_chunks)"),
+      count(
+          dsn_,
+          "SELECT (SELECT count(*) FROM models) + (SELECT count(*) FROM blobs) + (SELECT count(*) FROM blob_chunks)"),
       0);
 }
 

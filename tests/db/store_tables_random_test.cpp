@@ -1,5 +1,5 @@
-// Random work of three people on two tables, with undo and redo, against a model in plain C++: a cell shows what the newest edit in
-// force that wrote it left there.
+// Random work of three people on two tables, with undo and redo, against a model in plain C++: a
+// cell shows what the newest edit in force that wrote it left there.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -43,7 +43,8 @@ class Oracle {
   Edit* redoable(const std::string& user) {
     Edit* last = nullptr;
     for (Edit& edit : edits_)
-      if (edit.user == user && !edit.in_force && (!last || edit.undone_by > last->undone_by)) last = &edit;
+      if (edit.user == user && !edit.in_force && (!last || edit.undone_by > last->undone_by))
+        last = &edit;
     if (!last) return nullptr;
     for (std::size_t i = 0; i < edits_.size(); ++i)
       if (edits_[i].user == user && edits_[i].in_force && at_[i] > last->undone_by) return nullptr;
@@ -57,7 +58,8 @@ class Oracle {
   json value(const Cell& cell) const {
     for (auto edit = edits_.rbegin(); edit != edits_.rend(); ++edit)
       if (edit->in_force)
-        if (const auto found = edit->cells.find(cell); found != edit->cells.end()) return found->second;
+        if (const auto found = edit->cells.find(cell); found != edit->cells.end())
+          return found->second;
     return nullptr;
   }
   // {key: {column: value}} of records that are there and columns that are shown.
@@ -68,7 +70,8 @@ class Oracle {
       json& values = all[std::to_string(key)] = json::object();
       for (const auto column : columns)
         if (is_shown(column))
-          if (const json held = value({key, column}); !held.is_null()) values[std::to_string(column)] = held;
+          if (const json held = value({key, column}); !held.is_null())
+            values[std::to_string(column)] = held;
     }
     return all;
   }
@@ -123,7 +126,8 @@ class RandomWork {
     for (const Record& record : page->records) {
       json& values = all[std::to_string(record.key)] = json::object();
       for (const Column& column : page->table.columns)
-        if (const auto value = record.values.find(column.id); value != record.values.end() && !value->second.is_null())
+        if (const auto value = record.values.find(column.id);
+            value != record.values.end() && !value->second.is_null())
           values[std::to_string(column.id)] = value->second;
     }
     return all;
@@ -217,7 +221,8 @@ class RandomWork {
     oracle_.flip(*edit, redo);
     const auto after = records();
     std::vector<std::int64_t> gone;
-    std::set_difference(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(gone));
+    std::set_difference(before.begin(), before.end(), after.begin(), after.end(),
+                        std::back_inserter(gone));
     EXPECT_EQ(plan->vanishing, gone);
     const auto change = store_->undo_table(table_, user, redo, plan->table_sequence);
     ASSERT_TRUE(change) << change.error().detail;

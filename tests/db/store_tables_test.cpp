@@ -33,15 +33,18 @@ class Tables : public ::testing::Test {
   }
   // One record; with a key it may be there or not.
   Result<TableChange> put(const Table& table, std::optional<std::int64_t> key,
-                          const std::map<std::string, json>& values, const std::string& user = "ana",
+                          const std::map<std::string, json>& values,
+                          const std::string& user = "ana",
                           std::optional<std::int64_t> version = {}) {
     RecordInput input{key, {}, version};
     const Table now = store_->table(std::to_string(table.id), Role::owner).value();
-    for (const auto& [slug, value] : values) input.values[find_column(now.columns, slug)->id] = value;
+    for (const auto& [slug, value] : values)
+      input.values[find_column(now.columns, slug)->id] = value;
     WriteRecords asked;
     asked.records = {input};
     auto change = store_->write_records(table.id, asked, user);
-    if (change && !change->problems.empty()) return tl::unexpected(change->problems.front().problem);
+    if (change && !change->problems.empty())
+      return tl::unexpected(change->problems.front().problem);
     return change;
   }
   Result<TableChange> undo(const Table& table, const std::string& user = "ana", bool redo = false) {
@@ -63,14 +66,17 @@ class Tables : public ::testing::Test {
       }
     return all;
   }
-  std::vector<std::int64_t> keys(const Table& table, std::vector<std::pair<std::string, bool>> order) {
+  std::vector<std::int64_t> keys(const Table& table,
+                                 std::vector<std::pair<std::string, bool>> order) {
     std::vector<std::int64_t> found;
     auto page = store_->records(table.id, Role::owner, {std::move(order), {}, {}, 1000, 0});
     EXPECT_TRUE(page) << page.error().detail;
     for (const Record& record : page->records) found.push_back(record.key);
     return found;
   }
-  Table now(const Table& table) { return store_->table(std::to_string(table.id), Role::owner).value(); }
+  Table now(const Table& table) {
+    return store_->table(std::to_string(table.id), Role::owner).value();
+  }
 
   const std::string dsn_ = test::fresh_database();
   std::unique_ptr<Store> store_ = test::open_store(dsn_);
@@ -173,7 +179,8 @@ TEST_F(Tables, required_and_unique_columns_hold_for_every_way_in) {
   EXPECT_EQ(twice.error().status, 409);
   EXPECT_NE(twice.error().detail.find("Record 1"), std::string::npos);
   EXPECT_EQ(put(table, 1, {{"code", nullptr}}).error().status, 422);
-  EXPECT_EQ(put(table, 2, {{"code", std::string(kLongestUniqueText + 1, 'x')}}).error().field, "values.code");
+  EXPECT_EQ(put(table, 2, {{"code", std::string(kLongestUniqueText + 1, 'x')}}).error().field,
+            "values.code");
   // Two in one call, and a swap, which is only right as a whole.
   ASSERT_TRUE(put(table, 2, {{"code", "B"}}));
   const auto code_id = table.columns[0].id;
@@ -259,7 +266,8 @@ TEST_F(Tables, the_past_is_read_with_the_columns_of_then) {
   EXPECT_EQ(content(table, 0), json::object());
   EXPECT_EQ(content(table, 1), (json{{"1", {{"name", "a"}}}}));
   EXPECT_EQ(content(table, 2), (json{{"1", {{"name", "a"}, {"depth", 1.0}}}}));
-  EXPECT_EQ(content(table, 3), (json{{"1", {{"name", "a"}, {"depth", 1.0}}}, {"2", {{"name", "b"}, {"depth", 3.0}}}}));
+  EXPECT_EQ(content(table, 3),
+            (json{{"1", {{"name", "a"}, {"depth", 1.0}}}, {"2", {{"name", "b"}, {"depth", 3.0}}}}));
   EXPECT_EQ(content(table, 4), (json{{"1", {{"depth", 1.0}}}, {"2", {{"depth", 3.0}}}}));
   EXPECT_EQ(content(table, 5), (json{{"2", {{"depth", 3.0}}}}));
   EXPECT_EQ(content(table, 6), content(table, 4));
@@ -305,9 +313,12 @@ TEST_F(Tables, retyping_keeps_what_can_be_kept_and_tells_what_cannot) {
   ASSERT_TRUE(change) << change.error().detail;
   EXPECT_EQ(change->record.at("converted"), 1);
   EXPECT_EQ(change->record.at("lost_keys"), json({2}));
-  EXPECT_EQ(content(table), (json{{"1", {{"depth", 1.5}}}, {"2", json::object()}, {"3", json::object()}}));
+  EXPECT_EQ(content(table),
+            (json{{"1", {{"depth", 1.5}}}, {"2", json::object()}, {"3", json::object()}}));
   EXPECT_NE(now(table).columns[0].id, table.columns[0].id);
-  EXPECT_EQ(store_->update_column(table.id, now(table).columns[0], table.version, "ana").error().status, 412);
+  EXPECT_EQ(
+      store_->update_column(table.id, now(table).columns[0], table.version, "ana").error().status,
+      412);
   ASSERT_TRUE(undo(table));
   EXPECT_EQ(content(table)["2"]["depth"], "deep");
   ASSERT_TRUE(undo(table, "ana", true));
@@ -372,12 +383,13 @@ TEST_F(Tables, many_records_go_in_together_or_not_at_all) {
   ASSERT_TRUE(undo(table));
   EXPECT_EQ(now(table).records, 0);
   many.records = {{1, {}}, {1, {}}};
-  EXPECT_EQ(store_->write_records(table.id, many, "ana")->problems.at(0).problem.title, "Key used before");
+  EXPECT_EQ(store_->write_records(table.id, many, "ana")->problems.at(0).problem.title,
+            "Key used before");
 }
 
 TEST_F(Tables, records_are_sorted_by_what_they_mean) {
-  const Table table =
-      make("Units", {column("Name"), column("Period", ColumnKind::period), column("Depth", ColumnKind::numeric)});
+  const Table table = make("Units", {column("Name"), column("Period", ColumnKind::period),
+                                     column("Depth", ColumnKind::numeric)});
   ASSERT_TRUE(put(table, 1, {{"name", "beta"}, {"period", "1560"}, {"depth", 10}}));
   ASSERT_TRUE(put(table, 2, {{"name", "Alpha"}, {"period", "-0043"}, {"depth", 9}}));
   ASSERT_TRUE(put(table, 3, {{"name", "alpha"}, {"period", "Y-17000~"}}));
@@ -387,13 +399,17 @@ TEST_F(Tables, records_are_sorted_by_what_they_mean) {
   EXPECT_EQ(keys(table, {{"depth", false}}), (std::vector<std::int64_t>{2, 1, 3}));
   EXPECT_EQ(keys(table, {{"depth", true}}), (std::vector<std::int64_t>{1, 2, 3}));
   EXPECT_EQ(keys(table, {{"key", true}}), (std::vector<std::int64_t>{3, 2, 1}));
-  EXPECT_EQ(store_->records(table.id, Role::owner, {{{"none", false}}, {}, {}, 10, 0}).error().field, "sortby");
-  const auto page = store_->records(table.id, Role::owner, {{{"depth", false}}, {}, {}, 1, 1}).value();
+  EXPECT_EQ(
+      store_->records(table.id, Role::owner, {{{"none", false}}, {}, {}, 10, 0}).error().field,
+      "sortby");
+  const auto page =
+      store_->records(table.id, Role::owner, {{{"depth", false}}, {}, {}, 1, 1}).value();
   EXPECT_EQ(page.total, 3);
   EXPECT_EQ(page.records.at(0).key, 1);
   // The past is sorted the same way.
   ASSERT_TRUE(store_->delete_record(table.id, 1, {}, "ana"));
-  const auto past = store_->records(table.id, Role::owner, {{{"name", false}}, {}, 3, 2, 1}).value();
+  const auto past =
+      store_->records(table.id, Role::owner, {{{"name", false}}, {}, 3, 2, 1}).value();
   EXPECT_EQ(past.total, 3);
   EXPECT_EQ(past.records.at(0).key, 2);
   EXPECT_EQ(past.records.at(1).key, 1);
@@ -493,7 +509,8 @@ TEST(TablesMigration, database_layers_get_tables_with_the_keys_that_they_hold) {
   EXPECT_EQ(page.records[2].key, 9);
   WriteRecords more;
   more.records = {{}};
-  EXPECT_EQ(store->write_records(tables[1].id, more, "ana")->created, std::vector<std::int64_t>{10});
+  EXPECT_EQ(store->write_records(tables[1].id, more, "ana")->created,
+            std::vector<std::int64_t>{10});
 }
 
 }  // namespace

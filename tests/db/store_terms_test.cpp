@@ -50,8 +50,8 @@ class Terms : public ::testing::Test {
     EXPECT_TRUE(page);
     std::vector<std::string> out;
     for (const ListedTerm& listed : list_terms(*term_columns(page->table), page->records))
-      out.push_back(std::to_string(listed.key) + " " + listed.term.parent + "/" + listed.term.code + " " +
-                    label_in(listed.term, "es"));
+      out.push_back(std::to_string(listed.key) + " " + listed.term.parent + "/" + listed.term.code +
+                    " " + label_in(listed.term, "es"));
     return out;
   }
   Result<TableChange> undo(const Table& table) {
@@ -65,7 +65,8 @@ class Terms : public ::testing::Test {
 };
 
 TEST_F(Terms, a_list_is_a_table_with_its_terms_as_one_entry) {
-  const Table table = make("code,parent,label,label-es\nworn,loss,Worn,Desgaste\nloss,,Loss,Pérdida\n");
+  const Table table =
+      make("code,parent,label,label-es\nworn,loss,Worn,Desgaste\nloss,,Loss,Pérdida\n");
   EXPECT_TRUE(term_columns(table));
   EXPECT_EQ(table.sequence, 1);
   EXPECT_THAT(content(table), ElementsAre("2 /loss Pérdida", "1 loss/worn Desgaste"));
@@ -74,8 +75,10 @@ TEST_F(Terms, a_list_is_a_table_with_its_terms_as_one_entry) {
 }
 
 TEST_F(Terms, an_import_keeps_the_keys_and_what_the_text_does_not_have) {
-  const Table table = make("code,parent,label,uri,color\na,,A,https://t.example/a,#112233\nb,a,B,,\n");
-  auto change = import(table, "code,label,uri,label-de\nb,Bee,,Biene\nalpha,Alpha,https://t.example/a,\nc,C,,\n");
+  const Table table =
+      make("code,parent,label,uri,color\na,,A,https://t.example/a,#112233\nb,a,B,,\n");
+  auto change = import(
+      table, "code,label,uri,label-de\nb,Bee,,Biene\nalpha,Alpha,https://t.example/a,\nc,C,,\n");
   ASSERT_TRUE(change) << change.error().detail;
   ASSERT_TRUE(change->problems.empty()) << change->problems.front().problem.detail;
   EXPECT_THAT(change->changed, ElementsAre(1, 2));
@@ -136,7 +139,8 @@ TEST_F(Terms, one_term_named_by_its_uri_and_by_its_code_is_refused) {
 
 TEST_F(Terms, values_that_no_column_takes_are_told_with_their_term) {
   const Table table = make("code,uri\na,\n");
-  auto change = import(table, "code,uri,definition\nb,javascript:alert(1),\nc,," + std::string(100'001, 'x') + "\n");
+  auto change = import(
+      table, "code,uri,definition\nb,javascript:alert(1),\nc,," + std::string(100'001, 'x') + "\n");
   ASSERT_TRUE(change);
   ASSERT_EQ(change->problems.size(), 2u);
   EXPECT_EQ(change->problems[0].problem.field, "uri");

@@ -81,9 +81,11 @@ TEST_F(Tools, bad_names_and_unknown_ids_are_refused) {
 }
 
 TEST_F(Tools, a_site_has_no_more_than_its_limit_however_many_ask_at_once) {
-  for (int i = 0; i < Store::kMostTools - 2; ++i) ASSERT_TRUE(store_->create_tool(named("n"), flag_));
+  for (int i = 0; i < Store::kMostTools - 2; ++i)
+    ASSERT_TRUE(store_->create_tool(named("n"), flag_));
   std::vector<std::thread> people;
-  for (int i = 0; i < 4; ++i) people.emplace_back([&] { (void)store_->create_tool(named("n"), flag_); });
+  for (int i = 0; i < 4; ++i)
+    people.emplace_back([&] { (void)store_->create_tool(named("n"), flag_); });
   for (auto& person : people) person.join();
   EXPECT_EQ(store_->tools()->size(), std::size_t{Store::kMostTools});
   EXPECT_EQ(store_->create_tool(named("n"), flag_).error().status, 409);

@@ -86,7 +86,8 @@ TEST_F(WriterFaults, killing_the_database_in_mid_load_loses_and_doubles_nothing)
     const auto snapshot = store_->load_tiles(layer_, promised);
     EXPECT_TRUE(snapshot) << snapshot.error().detail;
     if (snapshot) {
-      EXPECT_TRUE(test::content_of(*snapshot) == replay(layer_, kSeed, promised)) << "round " << round;
+      EXPECT_TRUE(test::content_of(*snapshot) == replay(layer_, kSeed, promised))
+          << "round " << round;
     }
   }
   stop = true;
@@ -95,14 +96,17 @@ TEST_F(WriterFaults, killing_the_database_in_mid_load_loses_and_doubles_nothing)
   EXPECT_EQ(saved, submitted);
   EXPECT_EQ(store_->last_sequence(model_.id).value(), submitted);
   EXPECT_EQ(store_->history(layer_.id, 1, 0)->total, submitted);
-  EXPECT_TRUE(test::content_of(store_->load_tiles(layer_).value()) == replay(layer_, kSeed, submitted));
+  EXPECT_TRUE(test::content_of(store_->load_tiles(layer_).value()) ==
+              replay(layer_, kSeed, submitted));
   // Whole or not at all: every edit has its tiles.
   auto connection = PgConnection::connect(cluster_->dsn());
-  EXPECT_EQ(connection
-                ->query("SELECT count(*) FROM edits e WHERE NOT EXISTS (SELECT 1 FROM tile_revisions r WHERE "
-                        "r.layer_id = e.layer_id AND r.sequence = e.sequence)")
-                ->integer(0, 0),
-            0);
+  EXPECT_EQ(
+      connection
+          ->query(
+              "SELECT count(*) FROM edits e WHERE NOT EXISTS (SELECT 1 FROM tile_revisions r WHERE "
+              "r.layer_id = e.layer_id AND r.sequence = e.sequence)")
+          ->integer(0, 0),
+      0);
   std::printf("[ figure   ] %lld edits over 6 kills, %d submissions refused meanwhile\n",
               static_cast<long long>(submitted), refused.load());
 }
@@ -113,7 +117,8 @@ TEST_F(WriterFaults, commits_that_keep_failing_answer_everyone_and_then_it_start
   ASSERT_TRUE(test::save(writer, painter.paint(1, 2, 4)));
   const auto kept = painter.content();
   {
-    test::Hang hang(*cluster_);  // what follows waits, and cannot be committed by a session that ends late
+    // what follows waits, and cannot be committed by a session that ends late
+    test::Hang hang(*cluster_);
     std::vector<std::int64_t> answered;
     for (int i = 2; i <= 30; ++i)
       ASSERT_TRUE(writer.submit(painter.paint(i, 2, 4), [&answered, i](Result<void> result) {
@@ -174,14 +179,17 @@ TEST_F(WriterFaults, a_database_that_hangs_fails_commits_and_reads_in_time_and_t
 }
 
 TEST_F(WriterFaults, a_caller_waits_for_a_busy_pool_only_so_long) {
-  const auto narrow = Store::open({.dsn = cluster_->dsn(), .connections = 1, .slot_for = std::chrono::milliseconds(50)},
-                                  STRATA_MIGRATIONS_DIR)
-                          .value();
+  const auto narrow =
+      Store::open(
+          {.dsn = cluster_->dsn(), .connections = 1, .slot_for = std::chrono::milliseconds(50)},
+          STRATA_MIGRATIONS_DIR)
+          .value();
   auto holder = PgConnection::connect(cluster_->dsn());
   ASSERT_TRUE(holder->script("BEGIN; SELECT 1 FROM layers FOR UPDATE"));
   auto waiting = std::async(std::launch::async, [&] { return narrow->update_layer(layer_); });
   auto watcher = PgConnection::connect(cluster_->dsn());
-  while (watcher->query("SELECT count(*) FROM pg_stat_activity WHERE wait_event_type = 'Lock'")->integer(0, 0) == 0)
+  while (watcher->query("SELECT count(*) FROM pg_stat_activity WHERE wait_event_type = 'Lock'")
+             ->integer(0, 0) == 0)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until it has the connection
   const auto refused = narrow->project("default");
   ASSERT_FALSE(refused);
@@ -194,7 +202,8 @@ TEST_F(WriterFaults, a_caller_waits_for_a_busy_pool_only_so_long) {
 }
 
 TEST_F(WriterFaults, a_commit_without_an_answer_is_said_to_be_of_unknown_outcome) {
-  auto connection = PgConnection::connect(cluster_->dsn(), {std::chrono::milliseconds(300), {}, {}});
+  auto connection =
+      PgConnection::connect(cluster_->dsn(), {std::chrono::milliseconds(300), {}, {}});
   auto transaction = Transaction::begin(*connection);
   ASSERT_TRUE(connection->query("UPDATE projects SET description = 'changed'"));
   const test::Hang hang(*cluster_);

@@ -26,7 +26,9 @@ class Writer : public ::testing::Test {
       last_problem_ = result ? Problem{} : result.error();
     }));
   }
-  std::int64_t count(const char* sql) { return PgConnection::connect(dsn_)->query(sql)->integer(0, 0); }
+  std::int64_t count(const char* sql) {
+    return PgConnection::connect(dsn_)->query(sql)->integer(0, 0);
+  }
 
   const std::string dsn_ = test::fresh_database();
   std::unique_ptr<Store> store_ = test::open_store(dsn_);
@@ -38,15 +40,19 @@ class Writer : public ::testing::Test {
   Problem last_problem_;
 };
 
-// Keeps the writer waiting at its next transaction on a model, so that what is submitted meanwhile is one group.
+// Keeps the writer waiting at its next transaction on a model, so that what is submitted meanwhile
+// is one group.
 class HeldModel {
  public:
-  HeldModel(const std::string& dsn, std::int64_t id) : connection_(std::move(PgConnection::connect(dsn).value())) {
-    EXPECT_TRUE(connection_.script("BEGIN; SELECT 1 FROM models WHERE id = " + std::to_string(id) + " FOR UPDATE"));
+  HeldModel(const std::string& dsn, std::int64_t id)
+      : connection_(std::move(PgConnection::connect(dsn).value())) {
+    EXPECT_TRUE(connection_.script("BEGIN; SELECT 1 FROM models WHERE id = " + std::to_string(id) +
+                                   " FOR UPDATE"));
   }
   void wait_until_someone_waits() {
     for (int i = 0; i < 6000; ++i) {
-      if (connection_.query("SELECT count(*) FROM pg_locks WHERE NOT granted")->integer(0, 0) > 0) return;
+      if (connection_.query("SELECT count(*) FROM pg_locks WHERE NOT granted")->integer(0, 0) > 0)
+        return;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     ADD_FAILURE() << "nobody waits";
@@ -212,7 +218,8 @@ TEST_F(Writer, a_very_large_edit_is_one_transaction) {
   auto import = painter_.entry(1, "import");
   for (std::uint16_t y = 0; y < 64; ++y)
     for (std::uint16_t x = 0; x < 64; ++x)
-      import.revisions.push_back({{x, y}, std::vector<std::uint8_t>(10'000, static_cast<std::uint8_t>(x ^ y)), {}});
+      import.revisions.push_back(
+          {{x, y}, std::vector<std::uint8_t>(10'000, static_cast<std::uint8_t>(x ^ y)), {}});
   JournalWriter writer(*store_, {});
   submit(writer, import);
   writer.drain();
@@ -237,7 +244,8 @@ TEST_F(Writer, durable_edits_per_second) {
   EXPECT_EQ(answers_, std::vector<int>(3000, 0));
   std::printf(
       "[ figure   ] single-tile edits: %.2f ms each, one after the other (%.0f/s); %.0f/s grouped; %.0f bytes each\n",
-      one_ms, 1000 / one_ms, grouped, static_cast<double>(store_->revision_bytes(model_.id).value()) / 3300);
+      one_ms, 1000 / one_ms, grouped,
+      static_cast<double>(store_->revision_bytes(model_.id).value()) / 3300);
 }
 
 }  // namespace

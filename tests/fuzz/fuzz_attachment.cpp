@@ -1,4 +1,5 @@
-// Files of records: what they are by their first bytes, whatever they are called, and small pictures of them.
+// Files of records: what they are by their first bytes, whatever they are called, and small
+// pictures of them.
 #include <cstdint>
 #include <cstdlib>
 #include <span>
@@ -32,6 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   demand(type == "image/jpeg" || type == "image/png");
   const auto info = strata::inspect_picture(*small);
-  demand(info && info->format == strata::PictureFormat::jpeg && info->width <= kSide && info->height <= kSide);
+  demand(info && info->format == strata::PictureFormat::jpeg && info->width <= kSide &&
+         info->height <= kSide);
   return 0;
 }

@@ -1,5 +1,5 @@
-// Feeds arbitrary bytes to everything that reads the wire: text messages, HTTP bodies and frame headers. Besides
-// crashes it finds values that are read but not written back the same.
+// Feeds arbitrary bytes to everything that reads the wire: text messages, HTTP bodies and frame
+// headers. Besides crashes it finds values that are read but not written back the same.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -52,13 +52,14 @@ void read_frame(std::span<const std::uint8_t> bytes) {
   demand(std::equal(written.begin(), written.end(), bytes.begin()));
 }
 
-// The fixtures of protocol/ are seeds as they lie there: {"schema": …, "json": the message} or {…, "text": the
-// message}.
+// The fixtures of protocol/ are seeds as they lie there: {"schema": …, "json": the message} or {…,
+// "text": the message}.
 std::string unwrap_fixture(std::string_view text) {
   const auto json = parse_json(text);
   if (!json || !json->is_object() || !json->contains("schema")) return std::string(text);
   if (auto body = json->find("json"); body != json->end()) return body->dump();
-  if (auto body = json->find("text"); body != json->end() && body->is_string()) return body->get<std::string>();
+  if (auto body = json->find("text"); body != json->end() && body->is_string())
+    return body->get<std::string>();
   return std::string(text);
 }
 
@@ -68,10 +69,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   read_frame({data, size});
   const std::string text = unwrap_fixture({reinterpret_cast<const char*>(data), size});
   read_client_message(text);
-  if (const auto fast = read_json_fast(text, JsonLimits{}.max_depth)) demand(*fast == nlohmann::json::parse(text));
+  if (const auto fast = read_json_fast(text, JsonLimits{}.max_depth))
+    demand(*fast == nlohmann::json::parse(text));
   if (const auto json = parse_json(text)) {
-    read_bodies<Edit, Empty, FrameRequest, LayerCreate, LayerPatch, Login, LookPatch, ModelPatch, PickRequest,
-                PositionsRequest, ProjectCreate, ProjectPatch, Restore, ToolPatch, Transfer>(*json);
+    read_bodies<Edit, Empty, FrameRequest, LayerCreate, LayerPatch, Login, LookPatch, ModelPatch,
+                PickRequest, PositionsRequest, ProjectCreate, ProjectPatch, Restore, ToolPatch,
+                Transfer>(*json);
     (void)parse_server_message(text);
   }
   return 0;

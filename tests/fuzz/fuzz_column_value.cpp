@@ -1,5 +1,6 @@
-// The value of a table's cell, first as text and then as JSON: what a column takes it takes again, unchanged, from JSON and from its
-// own text; and nothing that another kind makes of it is a surprise to that kind.
+// The value of a table's cell, first as text and then as JSON: what a column takes it takes again,
+// unchanged, from JSON and from its own text; and nothing that another kind makes of it is a
+// surprise to that kind.
 #include <cstdint>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -34,7 +35,8 @@ Column column_of(int kind, bool required) {
 
 void check(const Column& column, const Result<nlohmann::json>& value) {
   if (!value) {
-    demand(value.error().status == 422 && value.error().field == "field" && is_utf8(value.error().detail));
+    demand(value.error().status == 422 && value.error().field == "field" &&
+           is_utf8(value.error().detail));
     return;
   }
   demand(!value->is_null() || !column.required);

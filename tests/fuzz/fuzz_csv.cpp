@@ -30,11 +30,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const auto& row : csv->rows) {
     demand(row.line > line && !row.cells.empty() && row.cells.size() <= limits.columns);
     line = row.line;
-    for (const auto& cell : row.cells) demand(is_utf8(cell) && unguard_formula(guard_formula(cell)) == cell);
+    for (const auto& cell : row.cells)
+      demand(is_utf8(cell) && unguard_formula(guard_formula(cell)) == cell);
     written += csv_line(row.cells, csv->separator);
   }
   const auto again = parse_csv(written, limits);
   demand(again.has_value() && again->rows.size() == csv->rows.size());
-  for (std::size_t i = 0; i < csv->rows.size(); ++i) demand(again->rows[i].cells == csv->rows[i].cells);
+  for (std::size_t i = 0; i < csv->rows.size(); ++i)
+    demand(again->rows[i].cells == csv->rows[i].cells);
   return 0;
 }

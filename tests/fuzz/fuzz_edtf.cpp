@@ -27,7 +27,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   demand(period->first_day || period->last_day);
   if (period->first_day && period->last_day) demand(*period->first_day <= *period->last_day);
   const bool marked = text.find_last_of("?~%") == text.size() - 1;
-  if (marked || text.ends_with('/') || text.ends_with("..") || text.size() == kLongestPeriod) return 0;
+  if (marked || text.ends_with('/') || text.ends_with("..") || text.size() == kLongestPeriod)
+    return 0;
   const auto unsure = parse_edtf(text + "%");
   demand(unsure && unsure->approximate && unsure->uncertain);
   demand(unsure->first_day == period->first_day && unsure->last_day == period->last_day);

@@ -1,4 +1,5 @@
-// A formula over layers: what is read comes back from a text made of it, and a condition selects surface only.
+// A formula over layers: what is read comes back from a text made of it, and a condition selects
+// surface only.
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -22,7 +23,8 @@ std::string text_of(const Expression& expression);
 
 std::string call(const char* function, const Expression& expression) {
   std::string text = std::string(function) + "(";
-  for (const auto& part : expression.parts) text += (&part == expression.parts.data() ? "" : ", ") + text_of(part);
+  for (const auto& part : expression.parts)
+    text += (&part == expression.parts.data() ? "" : ", ") + text_of(part);
   return text + ")";
 }
 
@@ -124,7 +126,8 @@ std::string text_of(const Expression& expression) {
 
 // The text made of an expression has more brackets than that which it was read from.
 bool is_beyond_limits(const strata::Problem& problem) {
-  return problem.title == "Expression too long" || problem.detail.find("nested too deeply") != std::string::npos ||
+  return problem.title == "Expression too long" ||
+         problem.detail.find("nested too deeply") != std::string::npos ||
          problem.detail.find("too much at once") != std::string::npos;
 }
 
@@ -133,7 +136,8 @@ strata::mesh::SurfaceMap one_block() {
   strata::mesh::SurfaceMap map;
   map.resolution = strata::kTileSize;
   map.blocks_per_side = strata::kTileSize / strata::kBlockSize;
-  map.slot_of_block.assign(static_cast<std::size_t>(map.blocks_per_side * map.blocks_per_side), strata::mesh::kNoSlot);
+  map.slot_of_block.assign(static_cast<std::size_t>(map.blocks_per_side * map.blocks_per_side),
+                           strata::mesh::kNoSlot);
   map.slot_of_block[0] = 0;
   map.block_of_slot = {0};
   map.surface_mask = {~std::uint64_t{1}};
@@ -147,7 +151,8 @@ strata::query::LayerView layer(const std::string& slug) {
   view.layer.type = strata::ValueType::i8;
   view.layer.resolution = strata::kTileSize;
   auto tile = std::make_shared<strata::TileData>(view.layer.type);
-  for (int i = 0; i < strata::kTexelsPerTile; i += 3) tile->write(i, static_cast<std::uint8_t>(i % 16 - 8));
+  for (int i = 0; i < strata::kTexelsPerTile; i += 3)
+    tile->write(i, static_cast<std::uint8_t>(i % 16 - 8));
   view.snapshot.tiles[{0, 0}] = tile;
   return view;
 }
@@ -158,7 +163,8 @@ void evaluate(const Expression& condition) {
   if (!split) return;
   strata::query::BoundExpression bound{split->expression, {}};
   for (std::size_t part = 0; part < split->parts.size(); ++part)
-    bound.records.emplace_back(std::vector<strata::KeyNumber>{{1, 0}, {3, static_cast<double>(part)}, {1u << 20, 1}});
+    bound.records.emplace_back(
+        std::vector<strata::KeyNumber>{{1, 0}, {3, static_cast<double>(part)}, {1u << 20, 1}});
   std::vector<strata::query::LayerView> layers;
   for (const auto& slug : strata::layers_of(bound.expression)) layers.push_back(layer(slug));
   const auto selection = strata::query::select_where(bound, layers, map, "where", 1);
@@ -181,7 +187,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto as_condition = [&](const std::string& read) {
       return strata::query::parse_condition(read, "where", names);
     };
-    const auto as_number = [&](const std::string& read) { return strata::query::parse_number(read, "value", names); };
+    const auto as_number = [&](const std::string& read) {
+      return strata::query::parse_number(read, "value", names);
+    };
     if (const auto condition = as_condition(text)) {
       demand(condition->is_condition());
       read_again(*condition, as_condition);

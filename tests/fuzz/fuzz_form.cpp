@@ -17,7 +17,8 @@ void demand(bool holds) {
 }
 
 void check_filename(std::string_view name) {
-  demand(strata::is_utf8(name) && !name.starts_with('/') && name.find('\\') == std::string_view::npos);
+  demand(strata::is_utf8(name) && !name.starts_with('/') &&
+         name.find('\\') == std::string_view::npos);
   for (std::size_t begin = 0; begin < name.size();) {
     const auto end = std::min(name.find('/', begin), name.size());
     const auto part = name.substr(begin, end - begin);
@@ -31,15 +32,16 @@ void check_again(const std::vector<FormFile>& files) {
   static constexpr std::string_view kBoundary = "--a boundary that no content holds";
   std::string body;
   for (const auto& file : files) {
-    const bool can_be_sent = !file.filename.empty() && file.filename.find('"') == std::string::npos &&
+    const bool can_be_sent = !file.filename.empty() &&
+                             file.filename.find('"') == std::string::npos &&
                              file.content.find(kBoundary) == std::string_view::npos;
     if (!can_be_sent) return;
     body.append(kBoundary).append("\r\nContent-Disposition: form-data; name=\"f\"; filename=\"");
     body.append(file.filename).append("\"\r\n\r\n").append(file.content).append("\r\n");
   }
   body.append(kBoundary).append("--\r\n");
-  const auto again =
-      strata::net::files_of_form("multipart/form-data; boundary=\"" + std::string(kBoundary.substr(2)) + "\"", body);
+  const auto again = strata::net::files_of_form(
+      "multipart/form-data; boundary=\"" + std::string(kBoundary.substr(2)) + "\"", body);
   demand(again.has_value() && again->size() == files.size());
   for (std::size_t i = 0; i < files.size(); ++i)
     demand((*again)[i].filename == files[i].filename && (*again)[i].content == files[i].content);
@@ -50,7 +52,8 @@ void check_again(const std::vector<FormFile>& files) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto line_end = std::min(text.find('\n'), text.size());
-  const std::string_view type = text.substr(0, line_end), body = text.substr(std::min(line_end + 1, size));
+  const std::string_view type = text.substr(0, line_end),
+                         body = text.substr(std::min(line_end + 1, size));
   const auto files = strata::net::files_of_form(type, body);
   if (!files) {
     demand(files.error().status >= 400 && files.error().status < 500);

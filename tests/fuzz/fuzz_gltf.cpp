@@ -8,6 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   entries.push_back({"a.bin", {data, size}, std::nullopt});
   auto files = strata::mesh::InputFiles::of(std::move(entries), "/tmp", progress);
   if (!files) std::abort();
-  if (const auto loaded = strata::mesh::load_mesh(std::move(*files), progress)) strata::test::check_loaded(*loaded);
+  if (const auto loaded = strata::mesh::load_mesh(std::move(*files), progress))
+    strata::test::check_loaded(*loaded);
   return 0;
 }

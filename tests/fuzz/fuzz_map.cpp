@@ -1,4 +1,5 @@
-// Flat maps: a TIFF; a .shp with its .dbf right behind it (its header says how long it is); or a GeoJSON text.
+// Flat maps: a TIFF; a .shp with its .dbf right behind it (its header says how long it is); or a
+// GeoJSON text.
 #include <cmath>
 #include <cstdlib>
 
@@ -35,9 +36,12 @@ void check_map(const FeatureMap& map) {
 void read_tiff(std::span<const std::uint8_t> bytes) {
   const auto info = strata::query::inspect_tiff(bytes, kLargestSide);
   if (!info) return;
-  const auto pixels = static_cast<std::size_t>(info->width) * static_cast<std::size_t>(info->height);
-  if (const auto band = strata::query::decode_tiff_band(bytes, *info, info->bands)) check(band->bits.size() == pixels);
-  if (const auto picture = strata::query::decode_tiff_picture(bytes, *info)) check(picture->rgba.size() == 4 * pixels);
+  const auto pixels =
+      static_cast<std::size_t>(info->width) * static_cast<std::size_t>(info->height);
+  if (const auto band = strata::query::decode_tiff_band(bytes, *info, info->bands))
+    check(band->bits.size() == pixels);
+  if (const auto picture = strata::query::decode_tiff_picture(bytes, *info))
+    check(picture->rgba.size() == 4 * pixels);
 }
 
 }  // namespace
@@ -47,13 +51,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (strata::query::is_tiff(bytes)) {
     read_tiff(bytes);
   } else if (strata::query::is_shapefile(bytes) && size >= 28) {
-    const std::size_t words =
-        std::size_t{data[24]} << 24 | std::size_t{data[25]} << 16 | std::size_t{data[26]} << 8 | data[27];
+    const std::size_t words = std::size_t{data[24]} << 24 | std::size_t{data[25]} << 16 |
+                              std::size_t{data[26]} << 8 | data[27];
     const std::size_t shp = std::min(size, 2 * words);
-    if (const auto map = strata::query::parse_shapefile({bytes.first(shp), bytes.subspan(shp), "", ""}))
+    if (const auto map =
+            strata::query::parse_shapefile({bytes.first(shp), bytes.subspan(shp), "", ""}))
       check_map(*map);
   } else {
-    if (const auto map = strata::query::parse_geojson({reinterpret_cast<const char*>(data), size})) check_map(*map);
+    if (const auto map = strata::query::parse_geojson({reinterpret_cast<const char*>(data), size}))
+      check_map(*map);
   }
   return 0;
 }

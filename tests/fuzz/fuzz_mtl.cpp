@@ -10,8 +10,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       "3/3 2/2 4/1\n";
   strata::Progress progress;
   std::vector<strata::mesh::InputFiles::Entry> entries;
-  entries.push_back({"a.obj", {reinterpret_cast<const std::uint8_t*>(kObj.data()), kObj.size()}, std::nullopt});
-  for (const char* name : {"a.mtl", "a.png", "skin.1001.jpg"}) entries.push_back({name, {data, size}, std::nullopt});
+  entries.push_back(
+      {"a.obj", {reinterpret_cast<const std::uint8_t*>(kObj.data()), kObj.size()}, std::nullopt});
+  for (const char* name : {"a.mtl", "a.png", "skin.1001.jpg"})
+    entries.push_back({name, {data, size}, std::nullopt});
   auto files = strata::mesh::InputFiles::of(std::move(entries), "/tmp", progress);
   if (!files) std::abort();
   const auto loaded = strata::mesh::load_mesh(std::move(*files), progress);

@@ -1,5 +1,5 @@
-// Pictures of looks, orthophotos and tool shapes: what is read has the size that its header says, and a shape is the same after
-// it was sent as the picture that the page shows.
+// Pictures of looks, orthophotos and tool shapes: what is read has the size that its header says,
+// and a shape is the same after it was sent as the picture that the page shows.
 #include <cstdint>
 #include <cstdlib>
 #include <span>
@@ -16,7 +16,8 @@ void demand(bool holds) {
 }
 
 void check_shape(const strata::Picture& picture) {
-  for (const auto part : {strata::ShapePart::opaque, strata::ShapePart::light, strata::ShapePart::dark}) {
+  for (const auto part :
+       {strata::ShapePart::opaque, strata::ShapePart::light, strata::ShapePart::dark}) {
     const auto bits = strata::shape_of(picture, part);
     if (!bits) continue;
     const strata::ShapeTexture texture(*bits);

@@ -1,5 +1,5 @@
-// Texels of a layer of 128², as TIFF, PNG or NumPy; the first byte is the layer's type. What is read is written and read again
-// the same in every form that can hold it.
+// Texels of a layer of 128², as TIFF, PNG or NumPy; the first byte is the layer's type. What is
+// read is written and read again the same in every form that can hold it.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -20,8 +20,9 @@ void demand(bool holds) {
 std::vector<std::uint8_t> with_all_texels(std::span<const std::uint8_t> bytes, const Layer& layer) {
   std::vector<std::uint8_t> whole(bytes.begin(), bytes.end());
   const std::size_t header = bytes.size() < 10 ? 0 : std::size_t{10} + bytes[8] + 256u * bytes[9];
-  whole.resize(std::max(
-      whole.size(), header + std::size_t{kTexelsPerTile} * static_cast<std::size_t>(bytes_per_texel(layer.type) + 1)));
+  whole.resize(std::max(whole.size(),
+                        header + std::size_t{kTexelsPerTile} *
+                                     static_cast<std::size_t>(bytes_per_texel(layer.type) + 1)));
   return whole;
 }
 
@@ -61,6 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::span<const std::uint8_t> bytes(data + 1, size - 1);
   if (const auto tiles = query::decode_tiff(layer, bytes)) check(layer, *tiles);
   if (const auto tiles = query::decode_png(layer, bytes)) check(layer, *tiles);
-  if (const auto tiles = query::decode_npy(layer, with_all_texels(bytes, layer))) check(layer, *tiles);
+  if (const auto tiles = query::decode_npy(layer, with_all_texels(bytes, layer)))
+    check(layer, *tiles);
   return 0;
 }

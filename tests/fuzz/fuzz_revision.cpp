@@ -1,5 +1,6 @@
-// Tiles and revisions as they are stored: they come back from a database that others can write to. The first byte is the layer's
-// type. What follows is tried as it is, and as the content of a frame that is whole: a fuzzer hardly makes one of the right size.
+// Tiles and revisions as they are stored: they come back from a database that others can write to.
+// The first byte is the layer's type. What follows is tried as it is, and as the content of a frame
+// that is whole: a fuzzer hardly makes one of the right size.
 #include <zstd.h>
 
 #include <cstdint>
@@ -33,12 +34,14 @@ void decode(ValueType type, std::span<const std::uint8_t> bytes) {
   }
 }
 
-void decode_framed(ValueType type, std::uint8_t version, std::size_t planes, std::span<const std::uint8_t> bytes) {
+void decode_framed(ValueType type, std::uint8_t version, std::size_t planes,
+                   std::span<const std::uint8_t> bytes) {
   std::vector<std::uint8_t> raw(planes * sizeof(TileMask::words) + TileData(type).values.size());
   for (std::size_t i = 0; i < raw.size() && !bytes.empty(); ++i) raw[i] = bytes[i % bytes.size()];
   std::vector<std::uint8_t> framed{version, static_cast<std::uint8_t>(bytes_per_texel(type))};
   framed.resize(2 + ZSTD_compressBound(raw.size()));
-  const std::size_t frame = ZSTD_compress(framed.data() + 2, framed.size() - 2, raw.data(), raw.size(), 1);
+  const std::size_t frame =
+      ZSTD_compress(framed.data() + 2, framed.size() - 2, raw.data(), raw.size(), 1);
   demand(!ZSTD_isError(frame));
   framed.resize(2 + frame);
   decode(type, framed);

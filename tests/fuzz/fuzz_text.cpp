@@ -1,5 +1,5 @@
-// The short texts of requests, each to every reader of one: targets and their queries, cookies, origins, points, ids, world
-// files, tables of readings, keys of colours.
+// The short texts of requests, each to every reader of one: targets and their queries, cookies,
+// origins, points, ids, world files, tables of readings, keys of colours.
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -24,7 +24,9 @@ void demand(bool holds) {
   if (!holds) std::abort();
 }
 
-bool is_text(std::string_view text) { return is_utf8(text) && text.find('\0') == std::string_view::npos; }
+bool is_text(std::string_view text) {
+  return is_utf8(text) && text.find('\0') == std::string_view::npos;
+}
 
 std::string exact(double number) {
   char text[40];
@@ -39,7 +41,8 @@ void read_target(std::string_view text) {
   for (const auto& segment : request.segments) demand(is_text(segment));
   for (const auto& [key, value] : request.query) {
     demand(is_text(key) && is_text(value));
-    target += (target.size() == 1 ? "?" : "&") + net::percent_encode(key) + "=" + net::percent_encode(value);
+    target += (target.size() == 1 ? "?" : "&") + net::percent_encode(key) + "=" +
+              net::percent_encode(value);
   }
   net::Request again;
   demand(net::parse_target(target, again).has_value());
@@ -55,26 +58,29 @@ void read_target(std::string_view text) {
 void read_headers(std::string_view text) {
   demand(net::cookie_value(text, "strata_session").size() <= text.size());
   const auto half = text.size() / 2;
-  (void)net::is_own_origin(text.substr(0, half), text.substr(half), {"https://site.example/"}, text.size() % 2 == 0);
+  (void)net::is_own_origin(text.substr(0, half), text.substr(half), {"https://site.example/"},
+                           text.size() % 2 == 0);
 }
 
 void read_numbers(std::string_view text) {
   if (const auto point = net::parse_point(text)) {
-    const auto again =
-        net::parse_point("POINT Z(" + exact(point->x) + " " + exact(point->y) + " " + exact(point->z) + ")");
+    const auto again = net::parse_point("POINT Z(" + exact(point->x) + " " + exact(point->y) + " " +
+                                        exact(point->z) + ")");
     demand(again.has_value() && *again == *point);
   }
-  if (const auto length = net::parse_length(text, "cell")) demand(*length >= 1e-6 && *length <= 1e6);
+  if (const auto length = net::parse_length(text, "cell"))
+    demand(*length >= 1e-6 && *length <= 1e6);
   if (const auto world = query::parse_world_file(text, "world")) {
     std::string lines;
-    for (const double number :
-         {world->x_per_column, world->y_per_column, world->x_per_row, world->y_per_row, world->x, world->y})
+    for (const double number : {world->x_per_column, world->y_per_column, world->x_per_row,
+                                world->y_per_row, world->x, world->y})
       lines += exact(number) + "\n";
     const auto again = query::parse_world_file(lines, "world");
     demand(again.has_value() && again->x_per_column == world->x_per_column && again->y == world->y);
   }
   if (const auto id = parse_uuid(text)) demand(parse_uuid(to_string(*id)) == id);
-  if (const auto number = net::parse_integer(text, -1000, 1000, "field")) demand(*number >= -1000 && *number <= 1000);
+  if (const auto number = net::parse_integer(text, -1000, 1000, "field"))
+    demand(*number >= -1000 && *number <= 1000);
 }
 
 void read_tables(std::string_view text) {

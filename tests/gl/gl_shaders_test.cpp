@@ -82,14 +82,18 @@ class ShaderSource : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(directory_ / "shared"); }
   void TearDown() override { fs::remove_all(directory_); }
-  void write(const std::string& name, const std::string& text) { std::ofstream(directory_ / name) << text; }
-  const fs::path directory_ = fs::temp_directory_path() / ("strata-shaders-" + std::to_string(::getpid()));
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(directory_ / name) << text;
+  }
+  const fs::path directory_ =
+      fs::temp_directory_path() / ("strata-shaders-" + std::to_string(::getpid()));
 };
 
 TEST_F(ShaderSource, an_include_is_put_in_once_and_defines_follow_the_version) {
   write("shared/a.h", "#pragma once\nconst int a = 1;\n");
   write("shared/b.h", "#include \"shared/a.h\"\nconst int b = a;\n");
-  write("x.comp", "#version 450 core\n#include \"shared/a.h\"\n#include \"shared/b.h\"\nvoid main() {}\n");
+  write("x.comp",
+        "#version 450 core\n#include \"shared/a.h\"\n#include \"shared/b.h\"\nvoid main() {}\n");
   const auto text = load_shader(directory_, "x.comp", {"N 3"});
   ASSERT_TRUE(text) << text.error().detail;
   EXPECT_TRUE(text->starts_with("#version 450 core\n#define N 3\n"));
@@ -108,7 +112,8 @@ TEST_F(ShaderSource, a_missing_file_and_an_include_outside_the_folder_are_told) 
 TEST_F(ShaderSource, a_shader_that_does_not_compile_is_told_with_its_file) {
   auto context = EglContext::create({});
   ASSERT_TRUE(context);
-  write("bad.comp", "#version 450 core\nlayout(local_size_x = 1) in;\nvoid main() { undeclared = 1; }\n");
+  write("bad.comp",
+        "#version 450 core\nlayout(local_size_x = 1) in;\nvoid main() { undeclared = 1; }\n");
   const auto program = Program::load(directory_, {"bad.comp"});
   ASSERT_FALSE(program);
   EXPECT_NE(program.error().detail.find("bad.comp"), std::string::npos);

@@ -35,13 +35,15 @@ class GlWrapper : public testing::Test {
   EglContext context_;
 };
 
-// Constructed, moved, assigned over another, moved-from is empty, and the name lives as long as its last owner.
+// Constructed, moved, assigned over another, moved-from is empty, and the name lives as long as its
+// last owner.
 template <class T, class IsName>
 void expect_moves(T first, T second, IsName is_name) {
   const GLuint name = first.id(), other = second.id();
   ASSERT_NE(name, 0u);
   T moved = std::move(first);
-  EXPECT_FALSE(static_cast<bool>(first));  // NOLINT(bugprone-use-after-move): the empty state is the contract
+  EXPECT_FALSE(static_cast<bool>(
+      first));  // NOLINT(bugprone-use-after-move): the empty state is the contract
   EXPECT_EQ(moved.id(), name);
   second = std::move(moved);
   EXPECT_EQ(second.id(), name);
@@ -87,7 +89,9 @@ TEST_F(GlWrapper, a_gl_error_is_counted) {
 }
 
 TEST_F(GlWrapper, a_buffer_moves) {
-  const auto make = [] { return std::move(*Buffer::create(256, Buffer::Use::fixed, "test buffer")); };
+  const auto make = [] {
+    return std::move(*Buffer::create(256, Buffer::Use::fixed, "test buffer"));
+  };
   expect_moves(make(), make(), glIsBuffer);
 }
 
@@ -114,7 +118,9 @@ TEST_F(GlWrapper, a_texture_array_knows_its_size) {
 TEST_F(GlWrapper, a_framebuffer_moves_and_is_complete) {
   auto color = Texture::create_2d(GL_R32UI, 4, 4, "color");
   auto depth = Texture::create_2d(GL_DEPTH_COMPONENT32F, 4, 4, "depth");
-  const auto make = [&] { return std::move(*Framebuffer::create({&*color}, &*depth, "test framebuffer")); };
+  const auto make = [&] {
+    return std::move(*Framebuffer::create({&*color}, &*depth, "test framebuffer"));
+  };
   EXPECT_TRUE(Framebuffer::create({}, &*depth, "depth only"));
   expect_moves(make(), make(), glIsFramebuffer);
   auto small = Texture::create_array(GL_R32UI, 4, 4, 2, "layered");
@@ -127,12 +133,16 @@ TEST_F(GlWrapper, a_vertex_array_moves) {
   auto vertices = Buffer::create(64, Buffer::Use::fixed, "vertices");
   auto indices = Buffer::create(64, Buffer::Use::fixed, "indices");
   const std::array<VertexAttribute, 1> attributes{{{0, 3, GL_FLOAT, false, 0}}};
-  const auto make = [&] { return VertexArray(*vertices, 16, attributes, *indices, "test vertex array"); };
+  const auto make = [&] {
+    return VertexArray(*vertices, 16, attributes, *indices, "test vertex array");
+  };
   expect_moves(make(), make(), glIsVertexArray);
 }
 
 TEST_F(GlWrapper, a_program_moves) {
-  const auto make = [] { return std::move(*Program::load(test::shader_dir(), {"depth_gather_pass.comp"})); };
+  const auto make = [] {
+    return std::move(*Program::load(test::shader_dir(), {"depth_gather_pass.comp"}));
+  };
   expect_moves(make(), make(), glIsProgram);
 }
 

@@ -21,7 +21,8 @@ constexpr int kResolution = 2048;
 // Both cullers over one scene, in the GL context of a renderer.
 class Cullers {
  public:
-  explicit Cullers(const Scene& scene) : scene_(scene), mesh_(*render::MeshBuffers::create(scene.geometry, memory_)) {
+  explicit Cullers(const Scene& scene)
+      : scene_(scene), mesh_(*render::MeshBuffers::create(scene.geometry, memory_)) {
     while (!mesh_->upload_slice()) {
     }
     map_ = *render::SurfaceMapTextures::create(scene.map, memory_);
@@ -37,41 +38,49 @@ class Cullers {
   Found on_gpu(const StrokeBatch& stroke, const render::ToolPath& path) {
     auto depth = draw_depth(depths_, *mesh_, stroke.camera);
     EXPECT_TRUE(depths_.make_grid(*depth));
-    auto read = culler_.dispatch(stroke, scene_.geometry->origin, path, bias_of(stroke), *map_, &depth->grid, *layer_);
+    auto read = culler_.dispatch(stroke, scene_.geometry->origin, path, bias_of(stroke), *map_,
+                                 &depth->grid, *layer_);
     EXPECT_TRUE(read) << read.error().detail;
     while (!read->ready()) {
     }
     const auto touched = render::EditCuller::touched(*read, kResolution);
     std::vector<shader::TouchedPart> listed(touched.parts);
-    glGetNamedBufferSubData(map_->touched_parts().id(), 0, static_cast<GLsizeiptr>(listed.size() * sizeof(listed[0])),
+    glGetNamedBufferSubData(map_->touched_parts().id(), 0,
+                            static_cast<GLsizeiptr>(listed.size() * sizeof(listed[0])),
                             listed.data());
     Found found;
-    for (const auto& part : listed) EXPECT_TRUE(found.parts.emplace(part.part, part.segments).second) << "listed twice";
-    for (const auto tile : touched.tiles) EXPECT_TRUE(found.tiles.insert(tile).second) << "listed twice";
+    for (const auto& part : listed)
+      EXPECT_TRUE(found.parts.emplace(part.part, part.segments).second) << "listed twice";
+    for (const auto tile : touched.tiles)
+      EXPECT_TRUE(found.tiles.insert(tile).second) << "listed twice";
     return found;
   }
   render::TouchedParts on_cpu(const StrokeBatch& stroke, const render::ToolPath& path) {
     auto depth = draw_depth(depths_, *mesh_, stroke.camera);
     render::DepthBuffers::copy_to_memory(*depth, 1);
     const auto& copy = *depth->copy;
-    return render::BlockCuller(*scene_.map, clip_from_model(stroke), stroke.camera.width, stroke.camera.height, path,
-                               bias_of(stroke),
-                               {copy.grid.data(), render::depth_cells(copy.width), render::depth_cells(copy.height)})
+    return render::BlockCuller(*scene_.map, clip_from_model(stroke), stroke.camera.width,
+                               stroke.camera.height, path, bias_of(stroke),
+                               {copy.grid.data(), render::depth_cells(copy.width),
+                                render::depth_cells(copy.height)})
         .find(1);
   }
 
  private:
   glm::dmat4 clip_from_model(const StrokeBatch& stroke) const {
-    return stroke.camera.projection * stroke.camera.view * glm::translate(glm::dmat4(1), scene_.geometry->origin);
+    return stroke.camera.projection * stroke.camera.view *
+           glm::translate(glm::dmat4(1), scene_.geometry->origin);
   }
   render::DepthBias bias_of(const StrokeBatch& stroke) const {
-    return render::depth_bias_of(stroke, glm::length(glm::dvec3(scene_.geometry->box_max - scene_.geometry->box_min)));
+    return render::depth_bias_of(
+        stroke, glm::length(glm::dvec3(scene_.geometry->box_max - scene_.geometry->box_min)));
   }
 
   const Scene& scene_;
   render::GpuMemory memory_{std::uint64_t{1} << 30};
   gl::ReadbackPool readback_;
-  render::DepthBuffers depths_ = *render::DepthBuffers::create(shader_dir(), 1u << 20, memory_, readback_);
+  render::DepthBuffers depths_ =
+      *render::DepthBuffers::create(shader_dir(), 1u << 20, memory_, readback_);
   render::EditCuller culler_ = *render::EditCuller::create(shader_dir(), readback_);
   render::PageTables tables_{memory_};
   render::PagePool pool_{1, memory_};
@@ -81,10 +90,13 @@ class Cullers {
 };
 
 StrokeBatch random_stroke(std::mt19937& random) {
-  const auto in = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const auto in = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
   const glm::dvec3 eye(in(-2.5, 2.5), in(-2.5, 2.5), in(1.2, 2.6));
-  auto stroke = random() % 3 == 0 ? dab(orthographic_camera(eye, {0, 0, 0}, 800, 600, in(0.4, 1.4)), 0, 0, 0)
-                                  : dab(perspective_camera(eye, {0, 0, 0}, 800, 600), 0, 0, 0);
+  auto stroke = random() % 3 == 0
+                    ? dab(orthographic_camera(eye, {0, 0, 0}, 800, 600, in(0.4, 1.4)), 0, 0, 0)
+                    : dab(perspective_camera(eye, {0, 0, 0}, 800, 600), 0, 0, 0);
   stroke.path.clear();
   const int most = random() % 4 == 0 ? 100 : 4;
   for (int i = 0, count = std::uniform_int_distribution(1, most)(random); i < count; ++i)
@@ -105,7 +117,8 @@ TEST(EditCuller, lists_the_parts_that_the_cpu_lists_and_few_others) {
     std::size_t on_cpu = 0, on_gpu = 0;
     for (int i = 0; i < 40; ++i) {
       const auto stroke = random_stroke(random);
-      const auto path = render::make_tool_path(stroke, std::vector<double>(stroke.path.size(), stroke.radius_px));
+      const auto path =
+          render::make_tool_path(stroke, std::vector<double>(stroke.path.size(), stroke.radius_px));
       const auto found = cullers.on_gpu(stroke, path);
       const auto expected = cullers.on_cpu(stroke, path);
       const std::size_t per_bit = (path.segments.size() + 31) / 32;
@@ -141,7 +154,8 @@ TEST(EditCuller, lists_nothing_for_a_tool_beside_the_model) {
   renderer->run_on_gpu_thread_for_test([&] {
     Cullers cullers(scene);
     const auto stroke = dab(perspective_camera({0, 0, 5}, {0, 0, 0}, 800, 600), 20, 20, 10);
-    const auto found = cullers.on_gpu(stroke, render::make_tool_path(stroke, std::vector<double>{10}));
+    const auto found =
+        cullers.on_gpu(stroke, render::make_tool_path(stroke, std::vector<double>{10}));
     EXPECT_TRUE(found.parts.empty());
     EXPECT_TRUE(found.tiles.empty());
   });

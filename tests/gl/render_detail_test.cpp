@@ -13,13 +13,15 @@
 namespace strata::test {
 namespace {
 
-// A sphere with more triangles than a moving camera has time for on a CPU, whatever the machine does meanwhile.
+// A sphere with more triangles than a moving camera has time for on a CPU, whatever the machine
+// does meanwhile.
 class Detail : public testing::Test {
  protected:
   Detail() : scene_(make_scene(bumpy_sphere(300), 512)) {
     Progress progress;
     auto levels = mesh::make_detail_levels(*scene_.geometry, progress);
-    for (auto& level : *levels) scene_.coarser.push_back(std::make_shared<const mesh::Geometry>(std::move(level)));
+    for (auto& level : *levels)
+      scene_.coarser.push_back(std::make_shared<const mesh::Geometry>(std::move(level)));
     model_ = renderer_.add(scene_);
     request_.view = renderer_.add_view(model_);
     request_.camera = perspective_camera({0, -3.5, 0.8}, {0, 0, 0}, 320, 240);
@@ -28,7 +30,8 @@ class Detail : public testing::Test {
   }
   static double mean_difference(const render::Frame& a, const render::Frame& b) {
     double sum = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i) sum += std::abs(int(a.pixels[i]) - int(b.pixels[i]));
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+      sum += std::abs(int(a.pixels[i]) - int(b.pixels[i]));
     return sum / static_cast<double>(a.pixels.size());
   }
 
@@ -85,10 +88,11 @@ TEST_F(Detail, does_not_matter_for_clusters_outside_the_window) {
   all.geometry = unculled;
   auto request_all = request_;
   request_all.view = renderer_.add_view(renderer_.add(all));
-  const std::array<Camera, 4> cameras{perspective_camera({0.2, -1.25, 0.1}, {0.4, 0, 0.2}, 320, 240),
-                                      perspective_camera({0, 0, 0}, {1, 0.3, 0}, 320, 240, 70),
-                                      orthographic_camera({0, -3, 0}, {0.5, 0, 0.3}, 320, 240, 0.2),
-                                      perspective_camera({0.97, -0.1, 0}, {0.97, 1, 0}, 320, 240, 90)};
+  const std::array<Camera, 4> cameras{
+      perspective_camera({0.2, -1.25, 0.1}, {0.4, 0, 0.2}, 320, 240),
+      perspective_camera({0, 0, 0}, {1, 0.3, 0}, 320, 240, 70),
+      orthographic_camera({0, -3, 0}, {0.5, 0, 0.3}, 320, 240, 0.2),
+      perspective_camera({0.97, -0.1, 0}, {0.97, 1, 0}, 320, 240, 90)};
   for (const Camera& camera : cameras) {
     request_.camera = request_all.camera = camera;
     EXPECT_EQ(mean_difference(renderer_.draw(request_), renderer_.draw(request_all)), 0);
@@ -99,19 +103,22 @@ TEST_F(Detail, does_not_matter_for_clusters_outside_the_window) {
 class Hidden : public testing::Test {
  protected:
   // Commands that lost their draw.
-  static std::size_t draw(render::MeshPass& pass, const render::MeshBuffers& mesh, const Camera& camera,
-                          render::DepthBuffer& buffer) {
+  static std::size_t draw(render::MeshPass& pass, const render::MeshBuffers& mesh,
+                          const Camera& camera, render::DepthBuffer& buffer) {
     render::MeshProgress progress;
     const auto view = render::mesh_view(camera, mesh.geometry().origin);
     while (true) {
-      const auto complete = pass.draw_slice(mesh, view, {buffer.framebuffer, buffer.texture}, progress);
+      const auto complete =
+          pass.draw_slice(mesh, view, {buffer.framebuffer, buffer.texture}, progress);
       EXPECT_TRUE(complete) << complete.error().detail;
       if (!complete || *complete) break;
     }
     std::vector<shader::DrawCommand> commands(progress.clusters);
     glGetNamedBufferSubData(progress.commands.id(), 0,
-                            static_cast<GLsizeiptr>(commands.size() * sizeof(shader::DrawCommand)), commands.data());
-    return static_cast<std::size_t>(std::ranges::count(commands, 0u, &shader::DrawCommand::instance_count));
+                            static_cast<GLsizeiptr>(commands.size() * sizeof(shader::DrawCommand)),
+                            commands.data());
+    return static_cast<std::size_t>(
+        std::ranges::count(commands, 0u, &shader::DrawCommand::instance_count));
   }
 
   TestRenderer renderer_;
@@ -123,13 +130,15 @@ TEST_F(Hidden, clusters_are_left_out_and_the_picture_stays) {
   auto unculled = std::make_shared<mesh::Geometry>(*scene_.geometry);
   for (auto& box : unculled->clusters) box = {unculled->box_min, unculled->box_max};
   const Scene all{unculled, scene_.map, {}};
-  std::vector<Camera> cameras{
-      perspective_camera({0, -3.5, 0.8}, {0, 0, 0}, 640, 480), perspective_camera({1.1, 0.2, 0.1}, {0, 0, 0}, 333, 217),
-      perspective_camera({0.3, 0, 0}, {1, 0.5, 0}, 320, 240), orthographic_camera({2, 2, 1}, {0, 0, 0}, 500, 400, 1.3)};
+  std::vector<Camera> cameras{perspective_camera({0, -3.5, 0.8}, {0, 0, 0}, 640, 480),
+                              perspective_camera({1.1, 0.2, 0.1}, {0, 0, 0}, 333, 217),
+                              perspective_camera({0.3, 0, 0}, {1, 0.5, 0}, 320, 240),
+                              orthographic_camera({2, 2, 1}, {0, 0, 0}, 500, 400, 1.3)};
   cameras.push_back(cameras.front());
   cameras.back().section = {{0, 1, 0, 0.2}};
   for (std::size_t i = 0; i < cameras.size(); ++i) {
-    EXPECT_EQ(renderer_.depth(scene_, cameras[i]), renderer_.depth(all, cameras[i])) << "camera " << i;
+    EXPECT_EQ(renderer_.depth(scene_, cameras[i]), renderer_.depth(all, cameras[i]))
+        << "camera " << i;
   }
 }
 
@@ -138,7 +147,8 @@ TEST_F(Hidden, clusters_of_the_far_side_are_most_of_it) {
   renderer_->run_on_gpu_thread_for_test([&] {
     render::GpuMemory memory(std::uint64_t{1} << 32);
     gl::ReadbackPool readback;
-    auto depths = render::DepthBuffers::create(shader_dir(), std::size_t{1} << 16, memory, readback);
+    auto depths =
+        render::DepthBuffers::create(shader_dir(), std::size_t{1} << 16, memory, readback);
     auto buffer = depths->start(render::depth_key(1, camera, camera.width, camera.height));
     auto mesh = render::MeshBuffers::create(scene_.geometry, memory);
     while (!(*mesh)->upload_slice()) {

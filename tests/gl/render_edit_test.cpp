@@ -15,13 +15,15 @@ constexpr int kResolution = 1024;
 TEST(Edit, a_dab_writes_the_texels_that_the_oracle_says) {
   TestRenderer renderer;
   const auto camera = perspective_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 1280, 720);
-  expect_as_oracle(renderer, make_scene(bumpy_sphere(60), kResolution), dab(camera, 600, 350, 40), {.at_least = 500});
+  expect_as_oracle(renderer, make_scene(bumpy_sphere(60), kResolution), dab(camera, 600, 350, 40),
+                   {.at_least = 500});
 }
 
 TEST(Edit, a_dab_with_an_orthographic_camera_writes_the_texels_that_the_oracle_says) {
   TestRenderer renderer;
   const auto camera = orthographic_camera({1.2, 1.0, 2.4}, {0, 0, 0}, 1280, 720, 1.3);
-  expect_as_oracle(renderer, make_scene(bumpy_sphere(60), kResolution), dab(camera, 600, 350, 70), {.at_least = 1000});
+  expect_as_oracle(renderer, make_scene(bumpy_sphere(60), kResolution), dab(camera, 600, 350, 70),
+                   {.at_least = 1000});
 }
 
 TEST(Edit, a_square_tool_writes_the_texels_that_the_oracle_says) {
@@ -69,8 +71,8 @@ TEST(Edit, a_path_of_4096_points_writes_the_texels_that_the_oracle_says) {
   const auto scene = make_scene(flat_square(), 256);
   const auto model = renderer.add(scene);
   const auto outcome = renderer.paint(renderer.add_layer(model, ValueType::u8, 256), stroke);
-  const auto expected =
-      oracle_edit(scene, stroke, std::vector<double>(4096, 6.0), renderer.depth(scene, stroke.camera));
+  const auto expected = oracle_edit(scene, stroke, std::vector<double>(4096, 6.0),
+                                    renderer.depth(scene, stroke.camera));
   EXPECT_EQ(compare(expected, outcome).surface, 0);
   EXPECT_GT(expected.count, 5000);
 }
@@ -95,7 +97,8 @@ TEST(Edit, a_fixed_depth_bias_reaches_what_lies_so_much_behind) {
     auto stroke = dab(camera, 200, 200, 100);
     stroke.fixed_depth_bias = bias;
     int count = 0;
-    for (const auto& tile : renderer.paint(renderer.add_layer(model, ValueType::u8, 512), stroke).tiles)
+    for (const auto& tile :
+         renderer.paint(renderer.add_layer(model, ValueType::u8, 512), stroke).tiles)
       count += tile.address.x >= 2 ? tile.written.count() : 0;
     return count;
   };
@@ -125,7 +128,9 @@ TEST(Edit, an_occluded_texel_is_not_painted) {
   EXPECT_GT(front, 5000);
   // From behind, the other sheet is the one that is seen.
   for (const auto& tile :
-       renderer.paint(layer, dab(perspective_camera({0, 0, -2}, {0, 0, 0}, 800, 600), 400, 300, 100)).tiles) {
+       renderer
+           .paint(layer, dab(perspective_camera({0, 0, -2}, {0, 0, 0}, 800, 600), 400, 300, 100))
+           .tiles) {
     EXPECT_GE(tile.address.x, 2);
   }
 }
@@ -156,9 +161,9 @@ TEST(Edit, a_radius_in_model_units_covers_that_area_at_any_distance) {
   const auto model = renderer.add(scene);
   constexpr double kRadius = 0.2;
   const double expected = 3.14159265358979 * kRadius * kRadius;
-  for (const auto& camera :
-       {perspective_camera({0, 0, 2}, {0, 0, 0}, 800, 600), perspective_camera({0, 0, 5}, {0, 0, 0}, 800, 600),
-        orthographic_camera({0, 0, 2}, {0, 0, 0}, 800, 600, 0.6)}) {
+  for (const auto& camera : {perspective_camera({0, 0, 2}, {0, 0, 0}, 800, 600),
+                             perspective_camera({0, 0, 5}, {0, 0, 0}, 800, 600),
+                             orthographic_camera({0, 0, 2}, {0, 0, 0}, 800, 600, 0.6)}) {
     auto stroke = dab(camera, 400, 300, 0);
     stroke.radius_world = kRadius;
     const auto outcome = renderer.paint(renderer.add_layer(model, ValueType::u8, 1024), stroke);
@@ -220,13 +225,15 @@ TEST(Edit, a_radius_far_beyond_the_window_paints_all_that_is_seen) {
   EXPECT_EQ(written_by(1e300, 0), all);
 }
 
-// While one lives on the GPU thread, the driver refuses to map the buffer after the next `granted` ones.
+// While one lives on the GPU thread, the driver refuses to map the buffer after the next `granted`
+// ones.
 class MapRefusal {
  public:
   explicit MapRefusal(int granted) : real_(epoxy_glMapNamedBufferRange) {
     granted_left_ = granted;
     next_call_ = real_;
-    epoxy_glMapNamedBufferRange = [](GLuint buffer, GLintptr offset, GLsizeiptr length, GLbitfield access) -> void* {
+    epoxy_glMapNamedBufferRange = [](GLuint buffer, GLintptr offset, GLsizeiptr length,
+                                     GLbitfield access) -> void* {
       return granted_left_-- == 0 ? nullptr : next_call_(buffer, offset, length, access);
     };
   }
@@ -241,7 +248,8 @@ class MapRefusal {
 TEST(Edit, a_stroke_that_is_refused_for_want_of_memory_has_painted_nothing) {
   const auto scene = make_scene(flat_square(), 256);
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 200, 200, 0.5);
-  if (TestRenderer()->info().edit_path == render::EditPath::kernel) GTEST_SKIP() << "the kernel maps no buffer";
+  if (TestRenderer()->info().edit_path == render::EditPath::kernel)
+    GTEST_SKIP() << "the kernel maps no buffer";
   int refusals = 0;
   for (bool painted = false; !painted; ++refusals) {
     TestRenderer renderer;  // a new one has no buffer that would serve again
@@ -298,15 +306,17 @@ TEST(Edit, gutter_texels_follow_their_owner) {
   TestRenderer renderer;
   const auto scene = make_scene(bumpy_sphere(40), kResolution);
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, kResolution);
-  const auto outcome =
-      renderer.paint(layer, dab(perspective_camera({2.0, 2.0, 2.0}, {0, 0, 0}, 1280, 720), 640, 360, 120));
+  const auto outcome = renderer.paint(
+      layer, dab(perspective_camera({2.0, 2.0, 2.0}, {0, 0, 0}, 1280, 720), 640, 360, 120));
   const auto& map = *scene.map;
   std::vector<std::uint8_t> written(static_cast<std::size_t>(kResolution) * kResolution);
-  const auto at = [](int x, int y) { return static_cast<std::size_t>(y) * kResolution + static_cast<std::size_t>(x); };
+  const auto at = [](int x, int y) {
+    return static_cast<std::size_t>(y) * kResolution + static_cast<std::size_t>(x);
+  };
   for (const auto& tile : outcome.tiles) {
     for (int i = 0; i < kTexelsPerTile; ++i) {
-      written[at(tile.address.x * kTileSize + i % kTileSize, tile.address.y * kTileSize + i / kTileSize)] =
-          tile.written.test(i);
+      written[at(tile.address.x * kTileSize + i % kTileSize,
+                 tile.address.y * kTileSize + i / kTileSize)] = tile.written.test(i);
     }
   }
   struct Texel {
@@ -315,9 +325,11 @@ TEST(Edit, gutter_texels_follow_their_owner) {
   };
   const auto texel = [&](int x, int y) -> Texel {
     if (x < 0 || y < 0 || x >= kResolution || y >= kResolution) return {false, false, {}};
-    const auto slot = map.slot_of_block[static_cast<std::size_t>(y / 8 * map.blocks_per_side + x / 8)];
+    const auto slot =
+        map.slot_of_block[static_cast<std::size_t>(y / 8 * map.blocks_per_side + x / 8)];
     const int i = y % 8 * 8 + x % 8;
-    if (slot == mesh::kNoSlot || map.packed_position[slot * 64 + static_cast<std::uint32_t>(i)] == mesh::kNoPosition)
+    if (slot == mesh::kNoSlot ||
+        map.packed_position[slot * 64 + static_cast<std::uint32_t>(i)] == mesh::kNoPosition)
       return {false, false, {}};
     return {true, (map.surface_mask[slot] >> i & 1) != 0, map.position(slot, i)};
   };
@@ -350,8 +362,8 @@ TEST(Edit, the_written_box_holds_the_painted_surface_and_little_more) {
   TestRenderer renderer;
   const auto scene = make_scene(flat_square(16), 1024);
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 1024);
-  const auto outcome =
-      renderer.paint(layer, dab(orthographic_camera({0, 0, 2}, {0, 0, 0}, 1000, 1000, 0.5), 500, 500, 100));
+  const auto outcome = renderer.paint(
+      layer, dab(orthographic_camera({0, 0, 2}, {0, 0, 0}, 1000, 1000, 0.5), 500, 500, 100));
   EXPECT_NEAR(outcome.written_min.x, -0.1, 0.015);
   EXPECT_NEAR(outcome.written_max.y, 0.1, 0.015);
 }
@@ -363,8 +375,8 @@ TEST(Edit, strokes_that_cannot_be_painted_are_refused_with_a_reason) {
   const auto layer = renderer.add_layer(model, ValueType::u8, 256);
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 100, 100, 0.5);
   const auto refused = [&](render::LayerHandle target, const StrokeBatch& stroke, int status) {
-    const auto result =
-        await<render::StrokeOutcome>([&](auto done) { renderer->paint(target, stroke, std::move(done)); });
+    const auto result = await<render::StrokeOutcome>(
+        [&](auto done) { renderer->paint(target, stroke, std::move(done)); });
     ASSERT_FALSE(result.has_value());
     EXPECT_EQ(result.error().status, status);
     EXPECT_FALSE(result.error().detail.empty());

@@ -23,13 +23,18 @@ std::map<TileAddress, TileMask> written_by(const render::StrokeOutcome& outcome)
 }
 
 StrokeBatch random_stroke(std::mt19937& random) {
-  const auto in = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const auto in = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
   const glm::dvec3 eye(in(-2.5, 2.5), in(-2.5, 2.5), in(1.6, 2.6));
-  auto stroke = random() % 3 == 0 ? dab(orthographic_camera(eye, {0, 0, 0}, 800, 600, in(0.4, 1.4)), 0, 0, 0)
-                                  : dab(perspective_camera(eye, {0, 0, 0}, 800, 600), 0, 0, 0);
+  auto stroke = random() % 3 == 0
+                    ? dab(orthographic_camera(eye, {0, 0, 0}, 800, 600, in(0.4, 1.4)), 0, 0, 0)
+                    : dab(perspective_camera(eye, {0, 0, 0}, 800, 600), 0, 0, 0);
   stroke.path.clear();
-  for (std::size_t i = 0; i < 1 + random() % 4; ++i) stroke.path.emplace_back(in(150, 650), in(100, 500));
-  (random() % 2 ? stroke.radius_px : stroke.radius_world) = random() % 2 ? in(0.02, 0.2) : in(0.2, 0.6);
+  for (std::size_t i = 0; i < 1 + random() % 4; ++i)
+    stroke.path.emplace_back(in(150, 650), in(100, 500));
+  (random() % 2 ? stroke.radius_px : stroke.radius_world) =
+      random() % 2 ? in(0.02, 0.2) : in(0.2, 0.6);
   if (stroke.radius_px > 0) stroke.radius_px *= 300;
   if (random() % 3 == 0)
     for (std::size_t i = 0; i < stroke.path.size(); ++i) stroke.widths.push_back(in(0.05, 1));
@@ -38,12 +43,14 @@ StrokeBatch random_stroke(std::mt19937& random) {
   stroke.through = random() % 5 == 0;
   if (!stroke.through && random() % 3 == 0) stroke.max_angle_deg = in(20, 90);
   if (random() % 4 == 0) stroke.fixed_depth_bias = in(0, 0.01);
-  if (random() % 3 == 0) stroke.camera.section = {{in(-1, 1), in(-1, 1), -1, in(0, 0.5)}, {in(-1, 1), 1, 0, 0.5}};
+  if (random() % 3 == 0)
+    stroke.camera.section = {{in(-1, 1), in(-1, 1), -1, in(0, 0.5)}, {in(-1, 1), 1, 0, 0.5}};
   return stroke;
 }
 
 TEST(Kernel, writes_the_texels_that_the_compute_pass_writes) {
-  auto kernel = renderer_on(render::EditPath::kernel), compute = renderer_on(render::EditPath::compute);
+  auto kernel = renderer_on(render::EditPath::kernel),
+       compute = renderer_on(render::EditPath::compute);
   EXPECT_EQ(kernel->info().edit_path, render::EditPath::kernel);
   EXPECT_EQ(compute->info().edit_path, render::EditPath::compute);
   const auto scene = make_scene(bumpy_sphere(60), 1024);
@@ -65,7 +72,8 @@ TEST(Kernel, writes_the_texels_that_the_compute_pass_writes) {
   }
   std::printf("kernel and compute: %ld texels written, %ld differ\n", written, differ);
   EXPECT_GT(written, 400'000);
-  EXPECT_LE(differ * 20'000, written) << "each within rounding of a threshold; the oracle's tests hold either to that";
+  EXPECT_LE(differ * 20'000, written)
+      << "each within rounding of a threshold; the oracle's tests hold either to that";
 }
 
 TEST(Kernel, a_stroke_for_whose_tiles_there_is_no_memory_has_painted_nothing) {
@@ -79,7 +87,8 @@ TEST(Kernel, a_stroke_for_whose_tiles_there_is_no_memory_has_painted_nothing) {
   std::vector<render::TileUpload> tiles;
   const auto tile = std::make_shared<TileData>(ValueType::u32);
   tile->write(0, 1);
-  for (std::uint16_t i = 0; i < 250; ++i) tiles.push_back({{std::uint16_t(i % 16), std::uint16_t(i / 16)}, tile});
+  for (std::uint16_t i = 0; i < 250; ++i)
+    tiles.push_back({{std::uint16_t(i % 16), std::uint16_t(i / 16)}, tile});
   renderer.write(full, tiles);
 
   const auto layer = renderer.add_layer(model, ValueType::u32, 1024);
@@ -102,7 +111,8 @@ TEST(Kernel, needs_no_surface_map_on_the_gpu) {
   const auto map = std::exchange(scene.map, nullptr);
   const auto model = kernel.add(scene);
   const auto before = kernel->gpu_bytes_used();
-  ASSERT_TRUE(await<void>([&](auto done) { kernel->add_surface_map(model, map, std::move(done)); }));
+  ASSERT_TRUE(
+      await<void>([&](auto done) { kernel->add_surface_map(model, map, std::move(done)); }));
   EXPECT_EQ(kernel->gpu_bytes_used(), before);
 }
 

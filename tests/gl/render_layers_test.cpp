@@ -28,7 +28,8 @@ TEST_P(EveryType, tiles_come_back_as_they_were_written_and_paint_keeps_bits) {
   const int bytes = bytes_per_texel(GetParam());
   std::vector<render::TileUpload> uploads;
   for (std::uint16_t y = 0; y < 4; ++y)
-    for (std::uint16_t x = 0; x < 4; ++x) uploads.push_back({{x, y}, random_tile(GetParam(), x * 31u + y)});
+    for (std::uint16_t x = 0; x < 4; ++x)
+      uploads.push_back({{x, y}, random_tile(GetParam(), x * 31u + y)});
   renderer.write(layer, uploads);
 
   const std::uint32_t value = bytes == 4 ? 0xfedcba98u : bytes == 2 ? 0xfedcu : 0xfeu;
@@ -45,8 +46,9 @@ TEST_P(EveryType, tiles_come_back_as_they_were_written_and_paint_keeps_bits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Layers, EveryType,
-                         testing::Values(ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i8, ValueType::i16,
-                                         ValueType::i32, ValueType::f16, ValueType::f32),
+                         testing::Values(ValueType::u8, ValueType::u16, ValueType::u32,
+                                         ValueType::i8, ValueType::i16, ValueType::i32,
+                                         ValueType::f16, ValueType::f32),
                          [](const auto& type) { return std::string(name(type.param)); });
 
 TEST(Layers, an_empty_layer_of_8192_costs_less_than_a_mebibyte) {
@@ -77,15 +79,18 @@ TEST(Layers, memory_grows_with_what_is_painted_and_is_freed_when_erased) {
   const auto again = renderer.paint(layer, dab(camera, 700, 700, 60, 9));
   EXPECT_EQ(renderer->gpu_bytes_used(), pool);
   for (const auto& tile : again.tiles) {
-    for (int i = 0; i < kTexelsPerTile; ++i) ASSERT_EQ(tile.after.valid.test(i), tile.written.test(i));
+    for (int i = 0; i < kTexelsPerTile; ++i)
+      ASSERT_EQ(tile.after.valid.test(i), tile.written.test(i));
   }
 }
 
 TEST(Layers, an_empty_tile_frees_its_page) {
   TestRenderer renderer;
-  const auto layer = renderer.add_layer(renderer.add(make_scene(flat_square(), 512)), ValueType::u8, 512);
+  const auto layer =
+      renderer.add_layer(renderer.add(make_scene(flat_square(), 512)), ValueType::u8, 512);
   const auto empty = renderer->layer_bytes_used(layer);
-  renderer.write(layer, {{{1, 1}, random_tile(ValueType::u8, 1)}, {{2, 1}, random_tile(ValueType::u8, 2)}});
+  renderer.write(
+      layer, {{{1, 1}, random_tile(ValueType::u8, 1)}, {{2, 1}, random_tile(ValueType::u8, 2)}});
   EXPECT_EQ(renderer->layer_bytes_used(layer), empty + 2u * kTexelsPerTile * 2);
   renderer.write(layer, {{{1, 1}, nullptr}, {{2, 1}, std::make_shared<TileData>(ValueType::u8)}});
   EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
@@ -106,15 +111,16 @@ TEST(Layers, removing_a_layer_or_a_model_gives_its_memory_back) {
   renderer->run_on_gpu_thread_for_test([] {});
   EXPECT_LT(renderer->gpu_bytes_used(), with_pool);
   EXPECT_GE(renderer->gpu_bytes_used(), start);
-  const auto gone =
-      await<render::LayerHandle>([&](auto done) { renderer->add_layer(model, ValueType::u8, 512, std::move(done)); });
+  const auto gone = await<render::LayerHandle>(
+      [&](auto done) { renderer->add_layer(model, ValueType::u8, 512, std::move(done)); });
   ASSERT_FALSE(gone);
   EXPECT_EQ(gone.error().status, 404);
 }
 
 TEST(Layers, memory_of_removed_layers_serves_layers_of_other_widths) {
   render::RendererOptions options;
-  options.gpu_memory_bytes = 24u << 20;  // one slice of four-byte pages takes 20 MiB, of one-byte pages 8 MiB
+  // one slice of four-byte pages takes 20 MiB, of one-byte pages 8 MiB
+  options.gpu_memory_bytes = 24u << 20;
   TestRenderer renderer(options);
   const auto model = renderer.add(make_scene(flat_square(), 256));
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 200, 200, 0.5);
@@ -137,7 +143,8 @@ TEST(Layers, memory_of_removed_layers_serves_layers_of_other_widths) {
     request.width = request.height = 200;
     request.layers = {{narrow, std::make_shared<Palette>(default_palette(ValueType::u8, true)), 1}};
     const auto picture = renderer.draw(request);
-    EXPECT_NE(picture.pixels[4 * (100 * 200 + 100)], picture.pixels[4 * (100 * 200 + 10)]) << "the paint is seen";
+    EXPECT_NE(picture.pixels[4 * (100 * 200 + 100)], picture.pixels[4 * (100 * 200 + 10)])
+        << "the paint is seen";
     renderer->remove_layer(narrow);
   }
 }
@@ -171,8 +178,8 @@ class Leaving : public testing::Test {
     for (std::uint16_t y = 0; y < kTilesPerSide; ++y)
       for (std::uint16_t x = 0; x < kTilesPerSide; ++x) tiles[{x, y}] = tile;
     layer.mirror->put(tiles, 1);
-    layer.handle =
-        *await<render::LayerHandle>([&](auto done) { renderer_->add_layer(model_, layer.mirror, std::move(done)); });
+    layer.handle = *await<render::LayerHandle>(
+        [&](auto done) { renderer_->add_layer(model_, layer.mirror, std::move(done)); });
     return layer;
   }
   Result<render::SharedFrame> draw(std::initializer_list<Mirrored> layers) {
@@ -182,14 +189,17 @@ class Leaving : public testing::Test {
     request.width = request.height = 200;
     auto palette = std::make_shared<Palette>(default_palette(ValueType::u32, true));
     for (const Mirrored& layer : layers) request.layers.push_back({layer.handle, palette, 1});
-    return await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+    return await<render::SharedFrame>(
+        [&](auto done) { renderer_->draw(request, std::move(done)); });
   }
   static std::array<int, 3> middle(const Result<render::SharedFrame>& frame) {
     if (!frame) return {-1, -1, -1};
     const auto* pixel = (*frame)->pixels.data() + 4 * (100 * 200 + 100);
     return {pixel[0], pixel[1], pixel[2]};
   }
-  bool is_here(const Mirrored& layer) { return renderer_->layer_bytes_used(layer.handle) > (1u << 20); }
+  bool is_here(const Mirrored& layer) {
+    return renderer_->layer_bytes_used(layer.handle) > (1u << 20);
+  }
 
   TestRenderer renderer_{options()};
   render::ModelHandle model_ = renderer_.add(make_scene(flat_square(), kResolution));
@@ -274,13 +284,16 @@ TEST(Layers, tiles_that_do_not_all_fit_leave_the_layer_as_it_was) {
   render::RendererOptions options;
   options.gpu_memory_bytes = 24u << 20;  // 256 four-byte pages
   TestRenderer renderer(options);
-  const auto layer = renderer.add_layer(renderer.add(make_scene(flat_square(), 256)), ValueType::u32, 4096);
+  const auto layer =
+      renderer.add_layer(renderer.add(make_scene(flat_square(), 256)), ValueType::u32, 4096);
   const auto empty = renderer->layer_bytes_used(layer);
   std::vector<render::TileUpload> tiles;
   const auto tile = random_tile(ValueType::u32, 1);
   for (std::uint16_t i = 0; i < 300; ++i)
-    tiles.push_back({{static_cast<std::uint16_t>(i % 32), static_cast<std::uint16_t>(i / 32)}, tile});
-  const auto refused = await<void>([&](auto done) { renderer->write_tiles(layer, tiles, std::move(done)); });
+    tiles.push_back(
+        {{static_cast<std::uint16_t>(i % 32), static_cast<std::uint16_t>(i / 32)}, tile});
+  const auto refused =
+      await<void>([&](auto done) { renderer->write_tiles(layer, tiles, std::move(done)); });
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 503);
   EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
@@ -300,7 +313,8 @@ TEST(Layers, painting_beyond_the_memory_budget_is_refused_and_changes_nothing) {
       [&](auto done) { renderer->paint(layer, dab(camera, 100, 100, 40), std::move(done)); });
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 503);
-  EXPECT_NE(refused.error().detail.find("budget of 12 MiB of GPU memory is used up"), std::string::npos)
+  EXPECT_NE(refused.error().detail.find("budget of 12 MiB of GPU memory is used up"),
+            std::string::npos)
       << refused.error().detail;
   EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
   const auto tile = await<void>([&](auto done) {
@@ -311,10 +325,13 @@ TEST(Layers, painting_beyond_the_memory_budget_is_refused_and_changes_nothing) {
 
 TEST(Layers, tiles_of_another_type_or_place_are_refused) {
   TestRenderer renderer;
-  const auto layer = renderer.add_layer(renderer.add(make_scene(flat_square(), 256)), ValueType::u16, 256);
-  for (const render::TileUpload& wrong : {render::TileUpload{{2, 0}, random_tile(ValueType::u16, 1)},
-                                          render::TileUpload{{0, 0}, random_tile(ValueType::u8, 1)}}) {
-    const auto result = await<void>([&](auto done) { renderer->write_tiles(layer, {wrong}, std::move(done)); });
+  const auto layer =
+      renderer.add_layer(renderer.add(make_scene(flat_square(), 256)), ValueType::u16, 256);
+  for (const render::TileUpload& wrong :
+       {render::TileUpload{{2, 0}, random_tile(ValueType::u16, 1)},
+        render::TileUpload{{0, 0}, random_tile(ValueType::u8, 1)}}) {
+    const auto result =
+        await<void>([&](auto done) { renderer->write_tiles(layer, {wrong}, std::move(done)); });
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().status, 422);
   }
@@ -327,7 +344,8 @@ TEST(Layers, pages_that_fill_several_chunks_keep_their_content) {
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 4096);
   std::vector<render::TileUpload> uploads;
   for (std::uint16_t y = 0; y < 32; ++y)
-    for (std::uint16_t x = 0; x < 32; ++x) uploads.push_back({{x, y}, random_tile(ValueType::u8, y * 32u + x)});
+    for (std::uint16_t x = 0; x < 32; ++x)
+      uploads.push_back({{x, y}, random_tile(ValueType::u8, y * 32u + x)});
   renderer.write(layer, uploads);
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 512, 512, 0.5);
   auto stroke = dab(camera, 0, 0, 3, 200);

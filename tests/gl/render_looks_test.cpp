@@ -20,13 +20,15 @@ std::shared_ptr<const render::LookImage> image_of(int width, int height, At at) 
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       for (const int channel : at(x, y)) rgba.push_back(static_cast<std::uint8_t>(channel));
-  return std::make_shared<const render::LookImage>(render::make_look_image(std::move(rgba), width, height, 8192));
+  return std::make_shared<const render::LookImage>(
+      render::make_look_image(std::move(rgba), width, height, 8192));
 }
 std::shared_ptr<const render::LookImage> plain(std::array<int, 4> color) {
   return image_of(8, 8, [&](int, int) { return color; });
 }
 
-// A square that fills the picture, its texture coordinates 0.05 … 0.95, seen from the front without light.
+// A square that fills the picture, its texture coordinates 0.05 … 0.95, seen from the front without
+// light.
 class Looks : public testing::Test {
  protected:
   Looks() : model_(renderer_.add(make_scene(flat_square(), 256))) {
@@ -36,7 +38,8 @@ class Looks : public testing::Test {
     request_.light.mode = LightMode::unlit;
   }
   render::LookHandle add(std::shared_ptr<const render::LookImage> image) {
-    auto look = await<render::LookHandle>([&](auto done) { renderer_->add_look(model_, image, std::move(done)); });
+    auto look = await<render::LookHandle>(
+        [&](auto done) { renderer_->add_look(model_, image, std::move(done)); });
     EXPECT_TRUE(look) << look.error().detail;
     return look.value_or(0);
   }
@@ -49,7 +52,8 @@ class Looks : public testing::Test {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], wanted[i], within) << "channel " << i;
   }
   Problem refusal(const render::FrameRequest& request) {
-    auto frame = await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+    auto frame =
+        await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
     EXPECT_FALSE(frame);
     return frame ? Problem{} : frame.error();
   }
@@ -90,7 +94,9 @@ TEST_F(Looks, a_layer_lies_over_them) {
   const auto layer = renderer_.add_layer(model_, ValueType::u8, 256);
   renderer_.paint(layer, dab(request_.camera, 128, 128, 30, 1));
   request_.layers = {
-      {layer, std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, {0, 255, 0, 255}, {}}}, {}}), 1}};
+      {layer,
+       std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, {0, 255, 0, 255}, {}}}, {}}),
+       1}};
   expect_near(pixel(128, 128), {0, 255, 0});
   expect_near(pixel(20, 20), {255, 0, 0});
 }
@@ -114,7 +120,9 @@ TEST_F(Looks, what_a_view_cannot_show_is_refused) {
 
 TEST_F(Looks, their_memory_is_counted_and_given_back) {
   const auto before = renderer_->gpu_bytes_used();
-  const auto image = image_of(512, 256, [](int x, int y) { return std::array{x % 256, y, 0, 255}; });
+  const auto image = image_of(512, 256, [](int x, int y) {
+    return std::array{x % 256, y, 0, 255};
+  });
   const auto look = add(image);
   EXPECT_EQ(renderer_->gpu_bytes_used(), before + image->bytes());
   renderer_->remove_look(look);
@@ -124,17 +132,19 @@ TEST_F(Looks, their_memory_is_counted_and_given_back) {
     renderer_->add_look(model_ + 1000, plain({0, 0, 0, 0}), std::move(done));
   });
   EXPECT_EQ(missing.error().status, 404);
-  const auto empty = await<render::LookHandle>(
-      [&](auto done) { renderer_->add_look(model_, std::make_shared<const render::LookImage>(), std::move(done)); });
+  const auto empty = await<render::LookHandle>([&](auto done) {
+    renderer_->add_look(model_, std::make_shared<const render::LookImage>(), std::move(done));
+  });
   EXPECT_EQ(empty.error().status, 422);
 }
 
 TEST_F(Looks, a_picture_of_many_megabytes_arrives_whole) {
-  request_.looks = {{add(image_of(3000, 2000,
-                                  [](int x, int y) {
-                                    return std::array{x * 255 / 2999, (1999 - y) * 255 / 1999, 0, 255};
-                                  })),
-                     1}};
+  request_.looks = {
+      {add(image_of(3000, 2000,
+                    [](int x, int y) {
+                      return std::array{x * 255 / 2999, (1999 - y) * 255 / 1999, 0, 255};
+                    })),
+       1}};
   for (const int at : {10, 128, 250}) {
     const double u = 0.05 + 0.9 * (at + 0.5) / kSize;
     const int shade = static_cast<int>(u * 255);
@@ -143,11 +153,13 @@ TEST_F(Looks, a_picture_of_many_megabytes_arrives_whole) {
 }
 
 TEST_F(Looks, fine_detail_seen_from_afar_keeps_its_light) {
-  request_.looks = {{add(image_of(1024, 1024,
-                                  [](int x, int y) {
-                                    return (x + y) % 2 ? std::array{255, 255, 255, 255} : std::array{0, 0, 0, 255};
-                                  })),
-                     1}};
+  request_.looks = {
+      {add(image_of(
+           1024, 1024,
+           [](int x, int y) {
+             return (x + y) % 2 ? std::array{255, 255, 255, 255} : std::array{0, 0, 0, 255};
+           })),
+       1}};
   // Half of the light is 188 of 255 in sRGB, not 127.
   expect_near(pixel(128, 128), {188, 188, 188}, 2);
 }
@@ -161,7 +173,8 @@ TEST_F(Looks, raking_light_shows_what_leans_towards_it) {
     const auto frame = renderer_.draw(request_);
     double sum = 0;
     for (int y = 98; y < 158; ++y)
-      for (int x = center - 15; x < center + 15; ++x) sum += frame.pixels[4 * static_cast<std::size_t>(y * kSize + x)];
+      for (int x = center - 15; x < center + 15; ++x)
+        sum += frame.pixels[4 * static_cast<std::size_t>(y * kSize + x)];
     return sum / (60 * 30);
   };
   constexpr int kLeft = 65, kMiddle = 128, kRight = 191;
@@ -182,7 +195,9 @@ TEST_F(Looks, raking_light_shows_what_leans_towards_it) {
 
 // The usual light on a plane of this normal, whose axes are the eye's.
 double museum_light(const glm::dvec3& normal) {
-  const auto from = [&](const glm::dvec3& direction) { return glm::dot(normal, glm::normalize(direction)); };
+  const auto from = [&](const glm::dvec3& direction) {
+    return glm::dot(normal, glm::normalize(direction));
+  };
   const double wrapped = std::max(0.0, 0.8 * from({-0.45, 0.60, 0.75}) + 0.2);
   return std::min(1.0, 0.22 + 0.18 * (0.5 + 0.5 * from({0, 1, 0.15})) + 0.56 * wrapped * wrapped +
                            0.16 * std::max(0.0, from({0.80, 0.05, 0.45})));
@@ -192,15 +207,18 @@ TEST_F(Looks, museum_light_is_the_same_in_each_pixel_as_at_the_vertices_of_small
   // Two triangles are lit in each pixel, 80,000 of less than two pixels at their vertices.
   for (const int quads : {1, 200}) {
     request_.view = renderer_.add_view(renderer_.add(make_scene(flat_square(quads), 256)));
-    for (const glm::dvec3 eye : {glm::dvec3{0, 0, 2}, {-1, 1, 1}, {1.5, -1, 1}, {-1, -0.5, -1}, {0.2, 0.3, -2}}) {
+    for (const glm::dvec3 eye :
+         {glm::dvec3{0, 0, 2}, {-1, 1, 1}, {1.5, -1, 1}, {-1, -0.5, -1}, {0.2, 0.3, -2}}) {
       request_.camera = orthographic_camera(eye, {0, 0, 0}, kSize, kSize, 0.5);
       const glm::dvec3 up = glm::dmat3(request_.camera.view) * glm::dvec3(0, 0, 1);
       request_.light.mode = LightMode::unlit;
       Color wanted = pixel(kSize / 2, kSize / 2);
+      // as bright from behind
       for (int& channel : wanted)
-        channel = static_cast<int>(std::lround(channel * museum_light(eye.z > 0 ? up : -up)));  // as bright from behind
+        channel = static_cast<int>(std::lround(channel * museum_light(eye.z > 0 ? up : -up)));
       request_.light.mode = LightMode::museum;
-      SCOPED_TRACE(std::to_string(quads) + " quads, eye at " + std::to_string(eye.x) + " " + std::to_string(eye.z));
+      SCOPED_TRACE(std::to_string(quads) + " quads, eye at " + std::to_string(eye.x) + " " +
+                   std::to_string(eye.z));
       expect_near(pixel(kSize / 2, kSize / 2), wanted, 2);
     }
   }
@@ -216,7 +234,8 @@ TEST_F(Looks, a_view_is_drawn_anew_when_only_its_light_changes) {
 }
 
 TEST(LookImage, levels_halve_down_to_one_texel_and_those_too_large_are_left_out) {
-  const auto image = render::make_look_image(std::vector<std::uint8_t>(4 * 100 * 7, 50), 100, 7, 30);
+  const auto image =
+      render::make_look_image(std::vector<std::uint8_t>(4 * 100 * 7, 50), 100, 7, 30);
   ASSERT_EQ(image.levels.size(), 5u);
   EXPECT_EQ(image.levels[0].width, 25);
   EXPECT_EQ(image.levels[0].height, 1);
@@ -226,8 +245,8 @@ TEST(LookImage, levels_halve_down_to_one_texel_and_those_too_large_are_left_out)
 }
 
 TEST(LookImage, clear_texels_do_not_darken_their_neighbours) {
-  const auto image =
-      render::make_look_image({200, 100, 50, 255, 0, 0, 0, 0, 0, 0, 0, 0, 200, 100, 50, 255}, 2, 2, 8192);
+  const auto image = render::make_look_image(
+      {200, 100, 50, 255, 0, 0, 0, 0, 0, 0, 0, 0, 200, 100, 50, 255}, 2, 2, 8192);
   ASSERT_EQ(image.levels.size(), 2u);
   EXPECT_EQ(image.levels[1].rgba, (std::vector<std::uint8_t>{200, 100, 50, 128}));
 }

@@ -128,7 +128,9 @@ TEST_F(FrameTurns, only_a_rectangle_whose_turn_it_is_goes_before_a_picture_that_
   push(queue, whole(1));
   const auto drawn = queue.take();
   push(queue, whole(2));
-  const auto half_done = [&](double ms) { return std::vector{FrameTask::Turn{false, drawn->turn.ms + ms}}; };
+  const auto half_done = [&](double ms) {
+    return std::vector{FrameTask::Turn{false, drawn->turn.ms + ms}};
+  };
   EXPECT_FALSE(queue.take_part(half_done(100))) << "a whole picture waits";
   push(queue, part(3));
   EXPECT_FALSE(queue.take_part(half_done(0))) << "no one was served more";
@@ -143,7 +145,9 @@ TEST_F(FrameTurns, any_smaller_picture_whose_turn_it_is_goes_before_a_band_of_a_
   const auto band = queue.take();
   ASSERT_TRUE(band);
   EXPECT_TRUE(band->turn.large);
-  const auto half_done = [&](double ms) { return std::vector{FrameTask::Turn{false, band->turn.ms + ms, true}}; };
+  const auto half_done = [&](double ms) {
+    return std::vector{FrameTask::Turn{false, band->turn.ms + ms, true}};
+  };
   push(queue, large(whole(2)));
   EXPECT_FALSE(queue.take_part(half_done(5))) << "of large ones each is done when it has begun";
   push(queue, whole(3));
@@ -153,7 +157,8 @@ TEST_F(FrameTurns, any_smaller_picture_whose_turn_it_is_goes_before_a_band_of_a_
   EXPECT_EQ(small->request.view, 3u);
   // Beside a picture that is not large they wait as ever.
   push(queue, whole(4));
-  EXPECT_FALSE(queue.take_part(std::vector{FrameTask::Turn{false, 100, false}, FrameTask::Turn{false, 100, true}}));
+  EXPECT_FALSE(queue.take_part(
+      std::vector{FrameTask::Turn{false, 100, false}, FrameTask::Turn{false, 100, true}}));
 }
 
 TEST_F(FrameTurns, bands_of_large_pictures_take_turns_with_live_views_and_leave_them_room) {
@@ -247,7 +252,8 @@ TEST_F(FrameTurns, rectangles_do_not_use_up_the_time_of_whole_pictures_of_those_
       under_way.push_back({*queue.take()});
     } else if (under_way.size() < 4) {
       std::vector<FrameTask::Turn> turns;
-      for (const auto& [task, busy_ms] : under_way) turns.push_back({task.turn.acting, task.turn.ms + busy_ms});
+      for (const auto& [task, busy_ms] : under_way)
+        turns.push_back({task.turn.acting, task.turn.ms + busy_ms});
       if (auto before = queue.take_part(turns)) under_way.push_front({std::move(*before)});
     }
     Drawing& drawing = under_way.front();

@@ -26,11 +26,14 @@ TEST(ScreenRect, every_point_of_a_box_lies_in_its_rectangle) {
       const render::FrameRequest::Box box{glm::min(a, b), glm::max(a, b)};
       const auto rect = screen_rect(box, clip_of(camera), 640, 480, i % 2 == 0);
       for (int k = 0; k < 50; ++k) {
-        const glm::vec3 t((uniform(random) + 1) / 2, (uniform(random) + 1) / 2, (uniform(random) + 1) / 2);
+        const glm::vec3 t((uniform(random) + 1) / 2, (uniform(random) + 1) / 2,
+                          (uniform(random) + 1) / 2);
         const glm::dvec4 clip = clip_of(camera) * glm::dvec4(glm::mix(box.min, box.max, t), 1);
-        const double x = (clip.x / clip.w * 0.5 + 0.5) * 640, y = (0.5 - clip.y / clip.w * 0.5) * 480;
+        const double x = (clip.x / clip.w * 0.5 + 0.5) * 640,
+                     y = (0.5 - clip.y / clip.w * 0.5) * 480;
         if (x < 0 || y < 0 || x >= 640 || y >= 480) continue;
-        EXPECT_TRUE(x >= rect.x && x < rect.x + rect.width && y >= rect.y && y < rect.y + rect.height);
+        EXPECT_TRUE(x >= rect.x && x < rect.x + rect.width && y >= rect.y &&
+                    y < rect.y + rect.height);
       }
     }
   }
@@ -57,7 +60,9 @@ TEST(ScreenRect, it_grows_to_multiples_of_16_but_not_out_of_the_picture) {
 
 TEST(ScreenRect, boxes_far_apart_have_rectangles_of_their_own_and_near_ones_share_one) {
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 1280, 720, 1);
-  const auto box = [](float x, float y) { return render::FrameRequest::Box{{x, y, 0}, {x + 0.05f, y + 0.05f, 0}}; };
+  const auto box = [](float x, float y) {
+    return render::FrameRequest::Box{{x, y, 0}, {x + 0.05f, y + 0.05f, 0}};
+  };
   const auto rects = [&](std::vector<render::FrameRequest::Box> boxes) {
     return render::screen_rects(boxes, clip_of(camera), 1280, 720, true);
   };
@@ -86,7 +91,8 @@ TEST(ScreenRect, the_rectangles_of_many_boxes_cover_each_of_them_and_are_few) {
     ASSERT_LE(rects.size(), render::kMaxScreenRects);
     for (const auto& one : boxes) {
       const auto rect = screen_rect(one, clip_of(camera), 1920, 1080, false);
-      EXPECT_TRUE(rect.width == 0 || std::any_of(rects.begin(), rects.end(), [&](const PixelRect& other) {
+      EXPECT_TRUE(rect.width == 0 ||
+                  std::any_of(rects.begin(), rects.end(), [&](const PixelRect& other) {
                     return render::intersection(rect, other) == rect;
                   }));
     }
@@ -114,7 +120,8 @@ TEST(ScreenRect, boxes_beyond_the_limit_grow_around_what_is_near) {
   for (const float x : {0.0f, 100.0f, 0.0f, 200.0f}) render::add_box(boxes, at(x), 3);
   ASSERT_EQ(boxes, (std::vector{at(0), at(100), at(200)})) << "one is there already";
   render::add_box(boxes, at(104), 3);
-  EXPECT_EQ(boxes, (std::vector<render::FrameRequest::Box>{at(0), {{100, 0, 0}, {105, 1, 1}}, at(200)}));
+  EXPECT_EQ(boxes,
+            (std::vector<render::FrameRequest::Box>{at(0), {{100, 0, 0}, {105, 1, 1}}, at(200)}));
 }
 
 TEST(ScreenRect, rectangles_that_do_not_meet_have_no_intersection) {

@@ -14,7 +14,8 @@ constexpr int kResolution = 1024, kSize = 400;
 constexpr int kUndecidedOneIn = 5'000;              // the planes are a further threshold
 constexpr std::array<int, 3> kInside{120, 92, 79};  // gbuffer_pass.frag
 
-// A ball of radius 1 with a hollow of radius 0.7: the outer surface lies in the left half of the atlas.
+// A ball of radius 1 with a hollow of radius 0.7: the outer surface lies in the left half of the
+// atlas.
 mesh::TriangleMesh hollow_ball() {
   auto ball = bumpy_sphere(40);
   const auto outer = ball;
@@ -79,7 +80,8 @@ TEST_F(Section, a_cut_ball_shows_its_hollow_and_a_closed_wall) {
 }
 
 TEST_F(Section, the_wall_is_closed_for_perspective_and_mirrored_cameras) {
-  Camera camera = perspective_camera({4, 0, 0}, {0, 0, 0}, kSize, kSize, 2 * 57.29578 * std::atan(1.25 / 4));
+  Camera camera =
+      perspective_camera({4, 0, 0}, {0, 0, 0}, kSize, kSize, 2 * 57.29578 * std::atan(1.25 / 4));
   camera.section = camera_.section;
   EXPECT_EQ(pixel(camera, at_radius(0.85), kSize / 2), kInside);
   Camera mirrored = camera_;
@@ -96,10 +98,13 @@ TEST_F(Section, from_the_side_that_is_kept_nothing_is_closed) {
 }
 
 TEST_F(Section, a_box_of_six_planes_keeps_what_is_inside) {
-  camera_.section = {{1, 0, 0, 2}, {-1, 0, 0, 0.5}, {0, 1, 0, 0.5}, {0, -1, 0, 0.5}, {0, 0, 1, 2}, {0, 0, -1, 2}};
+  camera_.section = {{1, 0, 0, 2},    {-1, 0, 0, 0.5}, {0, 1, 0, 0.5},
+                     {0, -1, 0, 0.5}, {0, 0, 1, 2},    {0, 0, -1, 2}};
   const int middle = kSize / 2;
-  EXPECT_EQ(pixel(camera_, middle + 2, at_radius(0.6)), pixel(camera_, 2, at_radius(0.6))) << "above the box";
-  EXPECT_EQ(pixel(camera_, at_radius(0.7), middle), kInside) << "the wall at the near side of the box";
+  EXPECT_EQ(pixel(camera_, middle + 2, at_radius(0.6)), pixel(camera_, 2, at_radius(0.6)))
+      << "above the box";
+  EXPECT_EQ(pixel(camera_, at_radius(0.7), middle), kInside)
+      << "the wall at the near side of the box";
 }
 
 TEST_F(Section, a_dab_through_the_opening_paints_the_inside_as_the_oracle_says) {
@@ -129,7 +134,8 @@ TEST_F(Section, painting_through_stops_at_the_planes) {
     for (const auto& tile : outcome.tiles) {
       if (tile.address.x != x / 16 || tile.address.y != y / 16) continue;
       for (int i = 0; i < 64; ++i) {
-        const bool written = tile.written.test((y % 16 * 8 + i / 8) * kTileSize + x % 16 * 8 + i % 8);
+        const bool written =
+            tile.written.test((y % 16 * 8 + i / 8) * kTileSize + x % 16 * 8 + i % 8);
         EXPECT_TRUE(!written || scene_.map->position(slot, i).x <= 1e-5f);
       }
     }
@@ -141,7 +147,8 @@ TEST_F(Section, an_edit_does_not_use_the_depth_of_another_section) {
   StrokeBatch uncut = dab(camera_, kSize / 2, kSize / 2, 20);
   uncut.camera.section.clear();
   expect_as_oracle(renderer_, scene_, uncut, {100, kUndecidedOneIn}, model_);
-  expect_as_oracle(renderer_, scene_, dab(camera_, kSize / 2, kSize / 2, 20), {100, kUndecidedOneIn}, model_);
+  expect_as_oracle(renderer_, scene_, dab(camera_, kSize / 2, kSize / 2, 20),
+                   {100, kUndecidedOneIn}, model_);
 }
 
 TEST_F(Section, a_view_is_drawn_anew_when_only_its_section_changes) {

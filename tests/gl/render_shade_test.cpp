@@ -12,11 +12,15 @@ namespace {
 
 constexpr int kSize = 256;
 
-// A flat square that fills the picture: pixel (x, y) shows texel 0.05 … 0.95 of the atlas. One renderer with layers that are
-// filled everywhere with one value make every pixel a sample of the palette.
+// A flat square that fills the picture: pixel (x, y) shows texel 0.05 … 0.95 of the atlas. One
+// renderer with layers that are filled everywhere with one value make every pixel a sample of the
+// palette.
 class Shade : public testing::Test {
  protected:
-  Shade() : scene_(make_scene(flat_square(), 256)), model_(renderer_.add(scene_)), view_(renderer_.add_view(model_)) {
+  Shade()
+      : scene_(make_scene(flat_square(), 256)),
+        model_(renderer_.add(scene_)),
+        view_(renderer_.add_view(model_)) {
     request_.view = view_;
     request_.camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, kSize, kSize, 0.5);
     request_.width = request_.height = kSize;
@@ -37,11 +41,13 @@ class Shade : public testing::Test {
   }
   // Light on the square, from a layer that is plain white.
   double light() {
-    auto white = std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, {255, 255, 255, 255}, {}}}, {}});
+    auto white = std::make_shared<Palette>(
+        Palette{PaletteMode::step, 0, 1, {{0, {255, 255, 255, 255}, {}}}, {}});
     request_.layers = {{filled_layer(ValueType::u8, 1), white, 1}};
     return pixel(renderer_.draw(request_), 128, 128)[0] / 255;
   }
-  void expect_color(const std::vector<render::LayerStyle>& layers, const std::array<double, 3>& unlit, double lit) {
+  void expect_color(const std::vector<render::LayerStyle>& layers,
+                    const std::array<double, 3>& unlit, double lit) {
     request_.layers = layers;
     const auto got = pixel(renderer_.draw(request_), 100, 90);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], unlit[i] * lit, 2.0) << "channel " << i;
@@ -75,17 +81,18 @@ std::array<double, 3> rgb(const Rgba& c) { return {double(c[0]), double(c[1]), d
 TEST_F(Shade, every_type_is_coloured_as_the_palette_says) {
   const double lit = light();
   EXPECT_GT(lit, 0.5);
-  const Palette linear{PaletteMode::linear,
-                       -100,
-                       100,
-                       {{-100, {255, 0, 0, 255}, {}}, {0, {0, 255, 0, 255}, {}}, {100, {0, 0, 255, 255}, {}}},
-                       {}};
+  const Palette linear{
+      PaletteMode::linear,
+      -100,
+      100,
+      {{-100, {255, 0, 0, 255}, {}}, {0, {0, 255, 0, 255}, {}}, {100, {0, 0, 255, 255}, {}}},
+      {}};
   Palette step = linear;
   step.mode = PaletteMode::step;
   Palette keys = linear;
   keys.mode = PaletteMode::categorical;
-  for (const auto type : {ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i8, ValueType::i16, ValueType::i32,
-                          ValueType::f16, ValueType::f32}) {
+  for (const auto type : {ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i8,
+                          ValueType::i16, ValueType::i32, ValueType::f16, ValueType::f32}) {
     for (const double value : {-120.0, -100.0, -30.0, 0.0, 30.0, 99.0, 100.0, 120.0}) {
       const auto bits = encode_value(type, value);
       if (!bits) continue;
@@ -93,7 +100,8 @@ TEST_F(Shade, every_type_is_coloured_as_the_palette_says) {
       for (const Palette& palette : {linear, step, keys}) {
         SCOPED_TRACE(std::string(name(type)) + " " + std::to_string(value) + " mode " +
                      std::to_string(int(palette.mode)));
-        expect_color({{layer, std::make_shared<Palette>(palette), 1}}, rgb(color_of(palette, value)), lit);
+        expect_color({{layer, std::make_shared<Palette>(palette), 1}},
+                     rgb(color_of(palette, value)), lit);
       }
       renderer_->remove_layer(layer);
     }
@@ -102,15 +110,16 @@ TEST_F(Shade, every_type_is_coloured_as_the_palette_says) {
 
 TEST_F(Shade, a_step_changes_colour_exactly_at_its_point) {
   const double lit = light();
-  const Palette step{PaletteMode::step,
-                     0,
-                     255,
-                     {{0, {250, 0, 0, 255}, {}}, {3, {0, 250, 0, 255}, {}}, {255, {0, 0, 250, 255}, {}}},
-                     {}};
+  const Palette step{
+      PaletteMode::step,
+      0,
+      255,
+      {{0, {250, 0, 0, 255}, {}}, {3, {0, 250, 0, 255}, {}}, {255, {0, 0, 250, 255}, {}}},
+      {}};
   for (const std::uint32_t value : {0u, 2u, 3u, 4u, 254u, 255u}) {
     SCOPED_TRACE(value);
-    expect_color({{filled_layer(ValueType::u8, value), std::make_shared<Palette>(step), 1}}, rgb(color_of(step, value)),
-                 lit);
+    expect_color({{filled_layer(ValueType::u8, value), std::make_shared<Palette>(step), 1}},
+                 rgb(color_of(step, value)), lit);
   }
 }
 
@@ -119,8 +128,8 @@ TEST_F(Shade, keys_that_are_not_listed_get_the_generated_colour) {
   const Palette keys{PaletteMode::categorical, 0, 1, {{70000, {10, 200, 30, 255}, {}}}, {}};
   for (const std::uint32_t key : {1u, 2u, 69999u, 70000u, 4000000000u}) {
     SCOPED_TRACE(key);
-    expect_color({{filled_layer(ValueType::u32, key), std::make_shared<Palette>(keys), 1}}, rgb(color_of(keys, key)),
-                 lit);
+    expect_color({{filled_layer(ValueType::u32, key), std::make_shared<Palette>(keys), 1}},
+                 rgb(color_of(keys, key)), lit);
   }
 }
 
@@ -130,8 +139,8 @@ TEST_F(Shade, keys_that_are_not_listed_get_the_colour_of_the_others_where_there_
   keys.others = Rgba{120, 130, 140, 255};
   for (const std::uint32_t key : {2u, 3u, 70000u}) {
     SCOPED_TRACE(key);
-    expect_color({{filled_layer(ValueType::u32, key), std::make_shared<Palette>(keys), 1}}, rgb(color_of(keys, key)),
-                 lit);
+    expect_color({{filled_layer(ValueType::u32, key), std::make_shared<Palette>(keys), 1}},
+                 rgb(color_of(keys, key)), lit);
   }
 }
 
@@ -140,7 +149,8 @@ TEST_F(Shade, a_palette_lists_as_many_keys_as_a_table_has_records) {
   Palette keys{PaletteMode::categorical, 0, 1, {}, {}};
   for (int key = 0; key < 300'000; ++key) {
     keys.points.push_back(
-        {double(key), {static_cast<std::uint8_t>(key / 2000), static_cast<std::uint8_t>(key % 251), 90, 255}});
+        {double(key),
+         {static_cast<std::uint8_t>(key / 2000), static_cast<std::uint8_t>(key % 251), 90, 255}});
   }
   const auto palette = std::make_shared<Palette>(keys);
   for (const std::uint32_t key : {0u, 4095u, 4096u, 70'000u, 299'999u}) {
@@ -149,15 +159,16 @@ TEST_F(Shade, a_palette_lists_as_many_keys_as_a_table_has_records) {
   }
 }
 
-// What shaders/shade_pass.frag says of hatch and dots, in plain C++: the share of a pixel (origin bottom left) that is covered. Between
-// them lies a tint, unless they are bare.
-double pattern_cover(Pattern pattern, double angle_deg, double spacing_px, glm::dvec2 from, bool bare) {
+// What shaders/shade_pass.frag says of hatch and dots, in plain C++: the share of a pixel (origin
+// bottom left) that is covered. Between them lies a tint, unless they are bare.
+double pattern_cover(Pattern pattern, double angle_deg, double spacing_px, glm::dvec2 from,
+                     bool bare) {
   const double angle = angle_deg / 180 * 3.14159265358979;
   const glm::dvec2 along(std::cos(angle), std::sin(angle)), across(-along.y, along.x);
   const glm::dvec2 place(glm::dot(from, along) / spacing_px, glm::dot(from, across) / spacing_px);
   const glm::dvec2 middle = (place - glm::floor(place) - 0.5) * spacing_px;
-  const double inside =
-      pattern == Pattern::dots ? 0.32 * spacing_px - glm::length(middle) : 0.4 / 2 * spacing_px - std::abs(middle.y);
+  const double inside = pattern == Pattern::dots ? 0.32 * spacing_px - glm::length(middle)
+                                                 : 0.4 / 2 * spacing_px - std::abs(middle.y);
   const double ground = bare ? 0 : 0.3;
   return ground + (1 - ground) * std::clamp(inside + 0.5, 0.0, 1.0);
 }
@@ -165,8 +176,10 @@ double pattern_cover(Pattern pattern, double angle_deg, double spacing_px, glm::
 TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
   const double lit = light();
   const auto lower = filled_layer(ValueType::u8, 1), upper = filled_layer(ValueType::u16, 7);
-  const auto red = std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, {255, 0, 0, 255}}}, {}});
-  // The square is 1 m wide in 256 px of 1000 / 256 mm; its middle is pixel 128, and the camera looks there.
+  const auto red =
+      std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, {255, 0, 0, 255}}}, {}});
+  // The square is 1 m wide in 256 px of 1000 / 256 mm; its middle is pixel 128, and the camera
+  // looks there.
   const double mm_per_pixel = 1000.0 / kSize;
   struct Case {
     Pattern pattern;
@@ -175,10 +188,12 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
   };
   for (const Case& c :
        {Case{Pattern::hatch, 0, 0, 7}, Case{Pattern::hatch, 135, 0, 7, true},
-        Case{Pattern::hatch, 45, 40, 40 / mm_per_pixel}, Case{Pattern::hatch, 90, 10, 4 * 10 / mm_per_pixel},
-        Case{Pattern::dots, 30, 0, 7}, Case{Pattern::dots, 120, 60, 60 / mm_per_pixel}}) {
+        Case{Pattern::hatch, 45, 40, 40 / mm_per_pixel},
+        Case{Pattern::hatch, 90, 10, 4 * 10 / mm_per_pixel}, Case{Pattern::dots, 30, 0, 7},
+        Case{Pattern::dots, 120, 60, 60 / mm_per_pixel}}) {
     for (const PaletteMode mode : {PaletteMode::step, PaletteMode::categorical}) {
-      SCOPED_TRACE(std::to_string(int(c.pattern)) + " " + std::to_string(c.angle) + " " + std::to_string(c.spacing_mm));
+      SCOPED_TRACE(std::to_string(int(c.pattern)) + " " + std::to_string(c.angle) + " " +
+                   std::to_string(c.spacing_mm));
       Palette::Point point{7, {0, 0, 255, 255}};
       point.pattern = c.pattern, point.angle = c.angle, point.spacing_mm = c.spacing_mm;
       auto inked = std::make_shared<Palette>(Palette{mode, 0, 10, {point}, {}});
@@ -191,7 +206,8 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
           const glm::dvec2 from(x + 0.5 - kSize / 2.0, kSize - y - 0.5 - kSize / 2.0);
           const double cover = pattern_cover(c.pattern, c.angle, c.spacing_px, from, c.bare);
           const auto got = pixel(frame, x, y);
-          worst = std::max({worst, std::abs(got[0] - 255 * lit * (1 - cover)), std::abs(got[2] - 255 * lit * cover)});
+          worst = std::max({worst, std::abs(got[0] - 255 * lit * (1 - cover)),
+                            std::abs(got[2] - 255 * lit * cover)});
           covered += cover > 0.5;
         }
       }
@@ -203,8 +219,8 @@ TEST_F(Shade, patterns_let_what_is_below_be_seen_between_their_lines_and_dots) {
 }
 
 TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
-  // A tile of the four holds the value: a quarter of the square, which is seen from so far away that it has few pixels, and so near that
-  // lines of 40 mm are far from each other.
+  // A tile of the four holds the value: a quarter of the square, which is seen from so far away
+  // that it has few pixels, and so near that lines of 40 mm are far from each other.
   const auto layer = renderer_.add_layer(model_, ValueType::u8, 256);
   auto tile = std::make_shared<TileData>(ValueType::u8);
   for (int i = 0; i < kTexelsPerTile; ++i) tile->write(i, 7u);
@@ -212,15 +228,19 @@ TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
   for (const double spacing_mm : {0.0, 40.0, 500.0})
     for (const double half_height : {8.0, 2.0, 0.5, 0.05})
       for (const int scale : {1, 3}) {
-        SCOPED_TRACE(std::to_string(spacing_mm) + " " + std::to_string(half_height) + " " + std::to_string(scale));
+        SCOPED_TRACE(std::to_string(spacing_mm) + " " + std::to_string(half_height) + " " +
+                     std::to_string(scale));
         Palette::Point point{7, {0, 0, 255, 255}};
         point.pattern = Pattern::hatch, point.spacing_mm = spacing_mm;
         render::FrameRequest request = request_;
-        request.camera = orthographic_camera({-0.25, -0.25, 2}, {-0.25, -0.25, 0}, kSize, kSize, half_height);
+        request.camera =
+            orthographic_camera({-0.25, -0.25, 2}, {-0.25, -0.25, 0}, kSize, kSize, half_height);
         request.width = request.height = scale * kSize;
         request.layers = {};
         const auto bare = renderer_.draw(request);
-        request.layers = {{layer, std::make_shared<Palette>(Palette{PaletteMode::categorical, 0, 10, {point}, {}}), 1}};
+        request.layers = {
+            {layer,
+             std::make_shared<Palette>(Palette{PaletteMode::categorical, 0, 10, {point}, {}}), 1}};
         const auto frame = renderer_.draw(request);
         // Blue over what is there: the tint everywhere, and more of it along the border.
         std::size_t tinted = 0, full = 0;
@@ -235,7 +255,8 @@ TEST_F(Shade, hatched_paint_is_seen_at_every_zoom_by_its_tint_and_its_border) {
         const double side_px = std::min(1.0 * kSize, 0.5 / half_height / 2 * kSize) * scale;
         EXPECT_GT(static_cast<double>(tinted + full), 0.7 * side_px * side_px);
         if (half_height > 1) {
-          EXPECT_GT(static_cast<double>(full), 0.3 * side_px * side_px) << "the border of a small one";
+          EXPECT_GT(static_cast<double>(full), 0.3 * side_px * side_px)
+              << "the border of a small one";
         } else if (spacing_mm < 100) {
           EXPECT_GT(tinted, full / 2);
         }
@@ -254,8 +275,8 @@ TEST_F(Shade, an_outline_is_drawn_where_the_value_ends_and_not_inside) {
   renderer_.write(layer, tiles);
   Palette::Point outlined{7, {0, 0, 255, 255}};
   outlined.pattern = Pattern::outline;
-  const auto palette =
-      std::make_shared<Palette>(Palette{PaletteMode::categorical, 0, 10, {outlined, {8, {0, 255, 0, 255}}}, {}});
+  const auto palette = std::make_shared<Palette>(
+      Palette{PaletteMode::categorical, 0, 10, {outlined, {8, {0, 255, 0, 255}}}, {}});
   request_.layers = {{layer, palette, 1}};
   const auto frame = renderer_.draw(request_);
   request_.layers = {};
@@ -266,7 +287,8 @@ TEST_F(Shade, an_outline_is_drawn_where_the_value_ends_and_not_inside) {
       const auto got = pixel(frame, x, y);
       if (got[2] > got[0] + 60 && got[2] > got[1] + 60) {
         ++outline;
-        // Along the edge to the other value (x = 128) or to what is not painted (y = 128, a row of tiles is half the square).
+        // Along the edge to the other value (x = 128) or to what is not painted (y = 128, a row of
+        // tiles is half the square).
         EXPECT_TRUE(std::abs(x + 0.5 - 128) < 3 || std::abs(y + 0.5 - 128) < 3) << x << " " << y;
       } else if (got == pixel(bare, x, y)) {
         ++inside;
@@ -295,11 +317,14 @@ TEST_F(Shade, many_layers_of_every_width_are_drawn_in_their_order) {
   std::array<double, 3> expected{0, 0, 0};
   for (int i = 0; i < 24; ++i) {
     const auto type = static_cast<ValueType>(i % 8);
-    const Rgba color{static_cast<std::uint8_t>(40 * (i % 6)), static_cast<std::uint8_t>(60 * (i % 4)),
+    const Rgba color{static_cast<std::uint8_t>(40 * (i % 6)),
+                     static_cast<std::uint8_t>(60 * (i % 4)),
                      static_cast<std::uint8_t>(255 - 10 * i), 255};
-    auto palette = std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, color, {}}}, {}});
+    auto palette =
+        std::make_shared<Palette>(Palette{PaletteMode::step, 0, 1, {{0, color, {}}}, {}});
     layers.push_back({filled_layer(type, 1), palette, i == 0 ? 1.0f : 0.3f});
-    for (std::size_t c = 0; c < 3; ++c) expected[c] = i == 0 ? color[c] : expected[c] * 0.7 + color[c] * 0.3;
+    for (std::size_t c = 0; c < 3; ++c)
+      expected[c] = i == 0 ? color[c] : expected[c] * 0.7 + color[c] * 0.3;
   }
   expect_color(layers, expected, lit);
 }
@@ -330,10 +355,12 @@ TEST_F(Shade, a_large_picture_is_shaded_in_bands_without_a_seam) {
     ASSERT_GT(part.rects.at(0).height, 50);
     ASSERT_LT(part.rects.at(0).width * part.rects.at(0).height * 4, 1 << 22);
     for (int row = 0; row < part.rects.at(0).height; ++row) {
-      const auto* whole = &picture.pixels[4 * (static_cast<std::size_t>(part.rects.at(0).y + row) * 2048 +
-                                               static_cast<std::size_t>(part.rects.at(0).x))];
-      ASSERT_TRUE(std::equal(whole, whole + 4 * part.rects.at(0).width,
-                             &part.pixels[static_cast<std::size_t>(4 * row * part.rects.at(0).width)]));
+      const auto* whole =
+          &picture.pixels[4 * (static_cast<std::size_t>(part.rects.at(0).y + row) * 2048 +
+                               static_cast<std::size_t>(part.rects.at(0).x))];
+      ASSERT_TRUE(
+          std::equal(whole, whole + 4 * part.rects.at(0).width,
+                     &part.pixels[static_cast<std::size_t>(4 * row * part.rects.at(0).width)]));
     }
   }
 }
@@ -348,8 +375,8 @@ TEST_F(Shade, the_background_is_a_gradient_from_top_to_bottom) {
 }
 
 TEST_F(Shade, the_top_row_of_the_picture_is_the_top_of_the_view) {
-  request_.camera =
-      orthographic_camera({0, 0.5, 2}, {0, 0.5, 0}, kSize, kSize, 0.5);  // the square fills the lower half
+  // the square fills the lower half
+  request_.camera = orthographic_camera({0, 0.5, 2}, {0, 0.5, 0}, kSize, kSize, 0.5);
   const auto frame = renderer_.draw(request_);
   EXPECT_EQ(pixel(frame, 128, 20), pixel(frame, 10, 20));
   EXPECT_NE(pixel(frame, 128, 240)[0], pixel(frame, 128, 20)[0]);
@@ -361,8 +388,8 @@ TEST_F(Shade, a_reshaded_rectangle_equals_a_full_redraw) {
   auto picture = renderer_.draw(request);
   ASSERT_EQ(picture.rects.at(0), (render::PixelRect{0, 0, 640, 480}));
   for (int i = 0; i < 5; ++i) {
-    const auto outcome =
-        renderer_.paint(layer, dab(request.camera, 250 + 40 * i, 200 + 30 * i, 20, 20u * static_cast<unsigned>(i)));
+    const auto outcome = renderer_.paint(
+        layer, dab(request.camera, 250 + 40 * i, 200 + 30 * i, 20, 20u * static_cast<unsigned>(i)));
     auto partial_request = request;
     partial_request.changed = {{outcome.written_min, outcome.written_max}};
     const auto part = renderer_.draw(partial_request);
@@ -370,8 +397,10 @@ TEST_F(Shade, a_reshaded_rectangle_equals_a_full_redraw) {
     EXPECT_EQ(part.rects.at(0).x % 16, 0);
     EXPECT_EQ(part.rects.at(0).width % 16, 0);
     for (int y = 0; y < part.rects.at(0).height; ++y) {
-      std::copy_n(&part.pixels[static_cast<std::size_t>(4 * y * part.rects.at(0).width)], 4 * part.rects.at(0).width,
-                  &picture.pixels[static_cast<std::size_t>(4 * ((part.rects.at(0).y + y) * 640 + part.rects.at(0).x))]);
+      std::copy_n(&part.pixels[static_cast<std::size_t>(4 * y * part.rects.at(0).width)],
+                  4 * part.rects.at(0).width,
+                  &picture.pixels[static_cast<std::size_t>(
+                      4 * ((part.rects.at(0).y + y) * 640 + part.rects.at(0).x))]);
     }
   }
   EXPECT_EQ(picture.pixels, renderer_.draw(request).pixels);
@@ -399,7 +428,8 @@ TEST_F(Shade, rectangles_far_apart_equal_a_full_redraw_and_nothing_between_is_sh
   for (const auto& rect : part.rects) {
     EXPECT_LT(rect.width * rect.height, 640 * 480 / 20);
     for (int y = 0; y < rect.height; ++y, from += 4 * rect.width)
-      std::copy_n(from, 4 * rect.width, &picture.pixels[static_cast<std::size_t>(4 * ((rect.y + y) * 640 + rect.x))]);
+      std::copy_n(from, 4 * rect.width,
+                  &picture.pixels[static_cast<std::size_t>(4 * ((rect.y + y) * 640 + rect.x))]);
   }
   EXPECT_EQ(from, part.pixels.data() + part.pixels.size());
   EXPECT_EQ(picture.pixels, renderer_.draw(request).pixels);
@@ -431,7 +461,8 @@ TEST_F(Shade, views_give_their_buffers_up_when_memory_runs_out_and_draw_again) {
 
 TEST_F(Shade, requests_that_cannot_be_drawn_are_refused_with_a_reason) {
   const auto refused = [&](const render::FrameRequest& request, int status) {
-    const auto result = await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
+    const auto result =
+        await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
     ASSERT_FALSE(result.has_value());
     EXPECT_EQ(result.error().status, status) << result.error().detail;
   };
@@ -442,11 +473,13 @@ TEST_F(Shade, requests_that_cannot_be_drawn_are_refused_with_a_reason) {
   request.width = 0;
   refused(request, 422);
   request = request_;
-  request.layers = {{view_ + 1000, std::make_shared<Palette>(default_palette(ValueType::u8, true)), 1}};
+  request.layers = {
+      {view_ + 1000, std::make_shared<Palette>(default_palette(ValueType::u8, true)), 1}};
   refused(request, 404);
   request.layers = {{filled_layer(ValueType::u8, 1), nullptr, 1}};
   refused(request, 422);
-  EXPECT_EQ(renderer_.draw(request_).rects.at(0).width, kSize) << "a refused request leaves the view usable";
+  EXPECT_EQ(renderer_.draw(request_).rects.at(0).width, kSize)
+      << "a refused request leaves the view usable";
 }
 
 }  // namespace

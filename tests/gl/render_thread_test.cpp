@@ -16,7 +16,8 @@ using render::Job;
 using render::Lane;
 using render::Step;
 
-// Keeps the thread's first step until released, so that a test can fill the lanes before anything runs.
+// Keeps the thread's first step until released, so that a test can fill the lanes before anything
+// runs.
 struct Gate {
   std::promise<void> open;
   std::shared_future<void> opened{open.get_future()};
@@ -105,8 +106,8 @@ TEST_F(Lanes, edits_go_before_frames_and_frames_before_background) {
   thread_->post(Lane::ordered, noted("first edit"));
   thread_->post(Lane::ordered, noted("second edit", 2));
   gate.open.set_value();
-  EXPECT_EQ(finish(), (std::vector<std::string>{"first edit", "second edit", "second edit", "frame", "background",
-                                                "background"}));
+  EXPECT_EQ(finish(), (std::vector<std::string>{"first edit", "second edit", "second edit", "frame",
+                                                "background", "background"}));
 }
 
 TEST_F(Lanes, an_edit_runs_between_the_slices_of_a_long_background_job) {
@@ -167,7 +168,8 @@ TEST_F(Lanes, an_edit_that_yields_shares_the_gpu_with_frames_and_uploads_but_not
   }
   gate.open.set_value();
   // One step takes the frame from the queue, the next does it.
-  EXPECT_EQ(finish(), (std::vector<std::string>{"slice", "slice", "frame", "slice", "upload", "slice", "next edit"}));
+  EXPECT_EQ(finish(), (std::vector<std::string>{"slice", "slice", "frame", "slice", "upload",
+                                                "slice", "next edit"}));
 }
 
 TEST_F(Lanes, a_small_frame_whose_turn_it_is_goes_between_the_slices_of_a_long_one) {
@@ -188,13 +190,15 @@ TEST_F(Lanes, a_small_frame_whose_turn_it_is_goes_between_the_slices_of_a_long_o
                        [](const Problem&) {}});
   }
   gate.open.set_value();
-  EXPECT_EQ(finish(), (std::vector<std::string>{"slice", "part", "part", "slice", "slice", "next frame"}));
+  EXPECT_EQ(finish(),
+            (std::vector<std::string>{"slice", "part", "part", "slice", "slice", "next frame"}));
 }
 
 TEST_F(Lanes, a_flood_of_edits_lets_frames_through) {
   start();
   auto frame_ran = std::make_shared<bool>(false);
-  thread_->post(Lane::ordered, {[frame_ran] { return *frame_ran ? Step::done : Step::more; }, [](const Problem&) {}});
+  thread_->post(Lane::ordered, {[frame_ran] { return *frame_ran ? Step::done : Step::more; },
+                                [](const Problem&) {}});
   {
     std::lock_guard lock(mutex_);
     frames_.push_back({[frame_ran] {
@@ -237,7 +241,8 @@ TEST_F(Lanes, a_lost_context_answers_all_that_waits_and_goes_on) {
   while (!was_noted("recovered")) std::this_thread::yield();
   thread_->post(Lane::ordered, noted("after"));
   const auto log = finish();
-  EXPECT_EQ(log, (std::vector<std::string>{"edit 503 GPU lost", "upload 503 GPU lost", "recovered", "after"}));
+  EXPECT_EQ(log, (std::vector<std::string>{"edit 503 GPU lost", "upload 503 GPU lost", "recovered",
+                                           "after"}));
 }
 
 TEST_F(Lanes, the_thread_is_not_ready_while_a_lost_context_cannot_be_replaced) {
@@ -311,9 +316,11 @@ TEST(LostContext, pending_work_is_answered_and_the_renderer_works_again_with_new
     renderer->run_on_gpu_thread_for_test([&] {
       renderer->lose_context_for_test();
       for (int i = 0; i < kStrokes; ++i) {
-        renderer->paint(layer, dab(camera, 100, 100, 20), [&](Result<render::StrokeOutcome> outcome) {
-          if (!outcome && outcome.error().status == 503 && outcome.error().title == "GPU lost") ++lost;
-        });
+        renderer->paint(
+            layer, dab(camera, 100, 100, 20), [&](Result<render::StrokeOutcome> outcome) {
+              if (!outcome && outcome.error().status == 503 && outcome.error().title == "GPU lost")
+                ++lost;
+            });
       }
     });
   });
@@ -329,7 +336,8 @@ TEST(LostContext, pending_work_is_answered_and_the_renderer_works_again_with_new
   request.view = view;
   request.camera = camera;
   request.width = request.height = 200;
-  EXPECT_FALSE(await<render::SharedFrame>([&](auto done) { renderer->draw(request, std::move(done)); }));
+  EXPECT_FALSE(
+      await<render::SharedFrame>([&](auto done) { renderer->draw(request, std::move(done)); }));
   EXPECT_EQ(renderer->layer_bytes_used(layer), 0u);
 
   const auto new_model = renderer.add(scene);
@@ -342,22 +350,24 @@ TEST(LostContext, pending_work_is_answered_and_the_renderer_works_again_with_new
 
 TEST(Order, strokes_are_answered_in_the_order_they_were_given) {
   TestRenderer renderer;
-  const auto layer = renderer.add_layer(renderer.add(make_scene(flat_square(), 256)), ValueType::u8, 256);
+  const auto layer =
+      renderer.add_layer(renderer.add(make_scene(flat_square(), 256)), ValueType::u8, 256);
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 200, 200, 0.5);
   std::vector<std::uint32_t> order;
   std::promise<void> all;
   for (std::uint32_t i = 0; i < 40; ++i) {
-    renderer->paint(layer, dab(camera, 100, 100, 30, i), [&, i](Result<render::StrokeOutcome> outcome) {
-      ASSERT_TRUE(outcome);
-      order.push_back(i);
-      // `after` is what this stroke left, whatever came behind it.
-      for (const auto& tile : outcome->tiles) {
-        for (int t = 0; t < kTexelsPerTile; ++t) {
-          ASSERT_TRUE(!tile.written.test(t) || tile.after.bits(t) == i);
-        }
-      }
-      if (i == 39) all.set_value();
-    });
+    renderer->paint(layer, dab(camera, 100, 100, 30, i),
+                    [&, i](Result<render::StrokeOutcome> outcome) {
+                      ASSERT_TRUE(outcome);
+                      order.push_back(i);
+                      // `after` is what this stroke left, whatever came behind it.
+                      for (const auto& tile : outcome->tiles) {
+                        for (int t = 0; t < kTexelsPerTile; ++t) {
+                          ASSERT_TRUE(!tile.written.test(t) || tile.after.bits(t) == i);
+                        }
+                      }
+                      if (i == 39) all.set_value();
+                    });
   }
   all.get_future().wait();
   for (std::uint32_t i = 0; i < 40; ++i) EXPECT_EQ(order[i], i);

@@ -64,11 +64,13 @@ TEST(ToolTexture, a_path_of_4096_points_writes_the_texels_that_the_oracle_says) 
 TEST(ToolTexture, a_swept_shape_has_no_gap_however_thin_it_is) {
   TestRenderer renderer;
   const auto scene = make_scene(flat_square(), 512);
-  auto stroke = shaped(dab(orthographic_camera({0, 0, 2}, {0, 0, 0}, 1000, 1000, 0.5), 0, 0, 40), in_bar);
+  auto stroke =
+      shaped(dab(orthographic_camera({0, 0, 2}, {0, 0, 0}, 1000, 1000, 0.5), 0, 0, 40), in_bar);
   stroke.path = {{500, 100}, {500, 350}, {500, 640}, {500, 900}};
   std::set<int> rows;
   int written = 0;
-  for (const auto& tile : renderer.paint(renderer.add_layer(renderer.add(scene), ValueType::u8, 512), stroke).tiles) {
+  for (const auto& tile :
+       renderer.paint(renderer.add_layer(renderer.add(scene), ValueType::u8, 512), stroke).tiles) {
     for (int i = 0; i < kTexelsPerTile; ++i) {
       if (!tile.written.test(i)) continue;
       rows.insert(tile.address.y * kTileSize + i / kTileSize);
@@ -87,7 +89,8 @@ TEST(ToolTexture, the_top_of_the_picture_is_the_top_of_the_tool) {
   const auto scene = make_scene(flat_square(), 512);
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 400, 400, 0.5);
   const auto stroke = shaped(dab(camera, 200, 200, 100), [](double, double y) { return y > 0.5; });
-  const auto outcome = renderer.paint(renderer.add_layer(renderer.add(scene), ValueType::u8, 512), stroke);
+  const auto outcome =
+      renderer.paint(renderer.add_layer(renderer.add(scene), ValueType::u8, 512), stroke);
   ASSERT_FALSE(outcome.tiles.empty());
   EXPECT_GT(outcome.written_max.y, 0.2);
   EXPECT_GT(outcome.written_min.y, 0.1);
@@ -135,7 +138,8 @@ TEST(AngleLimit, a_plane_is_painted_up_to_its_angle_and_not_beyond) {
   const auto model = renderer.add(scene);
   for (const double turned : {10.0, 45.0, 80.0}) {
     const double a = glm::radians(turned);
-    const auto camera = orthographic_camera({2 * std::sin(a), 0, 2 * std::cos(a)}, {0, 0, 0}, 400, 400, 0.6);
+    const auto camera =
+        orthographic_camera({2 * std::sin(a), 0, 2 * std::cos(a)}, {0, 0, 0}, 400, 400, 0.6);
     const auto painted = [&](std::optional<double> limit) {
       auto stroke = dab(camera, 200, 200, 30);
       stroke.max_angle_deg = limit;
@@ -157,7 +161,8 @@ TEST(AngleLimit, under_perspective_the_direction_to_the_eye_decides_not_the_came
   auto stroke = dab(perspective_camera({0, 0, 0.6}, {0, 0, 0}, 900, 900, 90), 450, 450, 600);
   stroke.max_angle_deg = 30;
   const double texels = written_texels(renderer.paint(layer, stroke));
-  const double radius = 0.6 * std::tan(glm::radians(30.0)) * 0.9 * 512;  // the square's side takes 0.9 of the atlas
+  // the square's side takes 0.9 of the atlas
+  const double radius = 0.6 * std::tan(glm::radians(30.0)) * 0.9 * 512;
   EXPECT_NEAR(texels, 3.14159265 * radius * radius, 0.02 * texels);
 }
 
@@ -167,9 +172,11 @@ TEST(AngleLimit, strokes_whose_shape_or_angle_makes_no_sense_are_refused) {
   const auto layer = renderer.add_layer(renderer.add(scene), ValueType::u8, 256);
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 100, 100, 0.5);
   const auto field_of = [&](const StrokeBatch& stroke) {
-    const auto result =
-        await<render::StrokeOutcome>([&](auto done) { renderer->paint(layer, stroke, std::move(done)); });
-    return result ? "painted" : result.error().status == 422 ? result.error().field : result.error().detail;
+    const auto result = await<render::StrokeOutcome>(
+        [&](auto done) { renderer->paint(layer, stroke, std::move(done)); });
+    return result                         ? "painted"
+           : result.error().status == 422 ? result.error().field
+                                          : result.error().detail;
   };
   for (const double angle : {0.0, -5.0, 90.1, std::nan("")}) {
     auto stroke = dab(camera, 50, 50, 10);

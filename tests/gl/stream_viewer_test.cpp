@@ -24,9 +24,13 @@ constexpr auto kPatience = std::chrono::seconds(120);
 
 std::vector<std::uint8_t> decode_jpeg(std::span<const std::uint8_t> jpeg, int& width, int& height) {
   tjhandle handle = tjInitDecompress();
-  EXPECT_EQ(tjDecompressHeader(handle, const_cast<unsigned char*>(jpeg.data()), jpeg.size(), &width, &height), 0);
+  EXPECT_EQ(tjDecompressHeader(handle, const_cast<unsigned char*>(jpeg.data()), jpeg.size(), &width,
+                               &height),
+            0);
   std::vector<std::uint8_t> rgba(std::size_t(width) * height * 4);
-  EXPECT_EQ(tjDecompress2(handle, jpeg.data(), jpeg.size(), rgba.data(), width, 0, height, TJPF_RGBA, 0), 0);
+  EXPECT_EQ(
+      tjDecompress2(handle, jpeg.data(), jpeg.size(), rgba.data(), width, 0, height, TJPF_RGBA, 0),
+      0);
   tjDestroy(handle);
   return rgba;
 }
@@ -93,7 +97,8 @@ class Client {
     ASSERT_EQ(std::uint32_t(height), header.height);
     const std::size_t row_bytes = std::size_t(header.full_width) * 4;
     if (header.keyframe) picture_.assign(row_bytes * header.full_height, 0);
-    ASSERT_EQ(picture_.size(), row_bytes * header.full_height) << "the first frame is the whole picture";
+    ASSERT_EQ(picture_.size(), row_bytes * header.full_height)
+        << "the first frame is the whole picture";
     for (int y = 0; y < height; ++y)
       std::copy_n(rgba.begin() + std::ptrdiff_t(y) * width * 4, width * 4,
                   picture_.begin() + std::ptrdiff_t((header.y + y) * row_bytes + header.x * 4));
@@ -117,10 +122,13 @@ class StreamViewer : public ::testing::Test {
     layer_ = renderer_.add_layer(model_, ValueType::u8, kResolution);
   }
   std::vector<render::LayerStyle> styles(float opacity = 1) const {
-    return {{layer_, std::make_shared<const Palette>(default_palette(ValueType::u8, true)), opacity}};
+    return {
+        {layer_, std::make_shared<const Palette>(default_palette(ValueType::u8, true)), opacity}};
   }
   Client& new_client() { return clients_.emplace_back(); }
-  static Camera camera(double x) { return test::perspective_camera({x, 0.5, 3}, {0, 0, 0}, kWidth, kHeight); }
+  static Camera camera(double x) {
+    return test::perspective_camera({x, 0.5, 3}, {0, 0, 0}, kWidth, kHeight);
+  }
   std::shared_ptr<Viewer> viewer(Client& client, Viewer::Options options = {}, bool acks = true) {
     auto made = Viewer::create({&renderer_.get(), &encoder_}, model_, options, client.send());
     made->set_style({styles(), {}, {}, {}});
@@ -146,17 +154,20 @@ class StreamViewer : public ::testing::Test {
     renderer_->remove_view(request.view);
     return pixels;
   }
-  static double mean_difference(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+  static double mean_difference(const std::vector<std::uint8_t>& a,
+                                const std::vector<std::uint8_t>& b) {
     if (a.size() != b.size() || a.empty()) return 1e9;
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i)
       if (i % 4 != 3) sum += std::abs(int(a[i]) - int(b[i]));
     return sum / (double(a.size()) * 3 / 4);
   }
-  static std::vector<std::uint8_t> part_of(const std::vector<std::uint8_t>& picture, const FrameHeader& rectangle) {
+  static std::vector<std::uint8_t> part_of(const std::vector<std::uint8_t>& picture,
+                                           const FrameHeader& rectangle) {
     std::vector<std::uint8_t> part;
     for (std::size_t y = rectangle.y; y < rectangle.y + rectangle.height; ++y) {
-      const auto row = picture.begin() + std::ptrdiff_t(4 * (y * rectangle.full_width + rectangle.x));
+      const auto row =
+          picture.begin() + std::ptrdiff_t(4 * (y * rectangle.full_width + rectangle.x));
       part.insert(part.end(), row, row + 4 * rectangle.width);
     }
     return part;
@@ -181,11 +192,12 @@ TEST_F(StreamViewer, what_cannot_be_drawn_is_told_once_and_tried_again_when_some
   std::mutex mutex;
   std::condition_variable changed;
   std::vector<Problem> told;
-  auto view = Viewer::create({&renderer_.get(), &encoder_}, model_, {}, client.send(), [&](const Problem& why) {
-    std::lock_guard lock(mutex);
-    told.push_back(why);
-    changed.notify_all();
-  });
+  auto view = Viewer::create({&renderer_.get(), &encoder_}, model_, {}, client.send(),
+                             [&](const Problem& why) {
+                               std::lock_guard lock(mutex);
+                               told.push_back(why);
+                               changed.notify_all();
+                             });
   client.attach(view, true);
   viewers_.push_back(view);
   auto without_colors = styles();
@@ -211,7 +223,8 @@ TEST_F(StreamViewer, a_still_camera_gives_one_whole_picture_of_full_quality) {
   options.sequence = 17;
   auto view = viewer(client, options);
   view->set_camera(5, camera(0), false);
-  const FrameHeader frame = client.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 5; });
+  const FrameHeader frame =
+      client.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 5; });
   EXPECT_TRUE(frame.keyframe);
   EXPECT_TRUE(frame.last);
   EXPECT_EQ(frame.view_id, 3u);
@@ -239,7 +252,8 @@ TEST_F(StreamViewer, after_moving_frames_a_picture_of_full_quality_comes_by_itse
   Client& client = new_client();
   auto view = viewer(client);
   for (int i = 1; i <= 8; ++i) view->set_camera(i, camera(0.1 * i), true);
-  const FrameHeader still = client.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 8; });
+  const FrameHeader still =
+      client.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 8; });
   EXPECT_TRUE(still.keyframe);
   EXPECT_LT(mean_difference(client.picture(), fresh_picture(camera(0.8))), 1.5);
 }
@@ -251,7 +265,8 @@ TEST_F(StreamViewer, an_edit_sends_only_its_rectangle_and_the_picture_is_whole_a
   const auto first = client.wait_for([](const FrameHeader& h) { return h.still; });
   // A change of layers may have given a second whole picture: parts are told by their sequence.
   paint(*view, 41, 150, 110);
-  const FrameHeader part = client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 41; }, first.frame);
+  const FrameHeader part =
+      client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 41; }, first.frame);
   EXPECT_FALSE(part.keyframe);
   EXPECT_TRUE(part.still);
   EXPECT_LT(part.width * part.height, std::uint32_t(kWidth * kHeight / 2));
@@ -267,13 +282,17 @@ TEST_F(StreamViewer, edits_far_apart_are_one_frame_of_small_rectangles) {
   view->set_camera(1, large, false);
   const auto first = client.wait_for([](const FrameHeader& h) { return h.still; });
   std::vector<render::StrokeOutcome> outcomes;
-  for (const double x : {315.0, 645.0}) outcomes.push_back(renderer_.paint(layer_, test::dab(large, x, 360, 12, 2)));
-  // While the GPU is busy with something else: the first is asked for at once, the others together after it.
+  for (const double x : {315.0, 645.0})
+    outcomes.push_back(renderer_.paint(layer_, test::dab(large, x, 360, 12, 2)));
+  // While the GPU is busy with something else: the first is asked for at once, the others together
+  // after it.
   renderer_->run_on_gpu_thread_for_test([&] {
     view->changed({outcomes[0].written_min, outcomes[0].written_max}, 41);
-    for (const auto& outcome : outcomes) view->changed({outcome.written_min, outcome.written_max}, 42);
+    for (const auto& outcome : outcomes)
+      view->changed({outcome.written_min, outcome.written_max}, 42);
   });
-  const auto last = client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 42; }, first.frame);
+  const auto last =
+      client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 42; }, first.frame);
   const auto rectangles = client.rectangles_of(last.frame);
   ASSERT_EQ(rectangles.size(), 2u);
   const auto picture = client.picture(), fresh = fresh_picture(large);
@@ -284,7 +303,9 @@ TEST_F(StreamViewer, edits_far_apart_are_one_frame_of_small_rectangles) {
   }
 }
 
-TEST_F(StreamViewer, a_client_that_does_not_acknowledge_gets_no_more_than_its_window_and_misses_nothing_in_the_end) {
+TEST_F(
+    StreamViewer,
+    a_client_that_does_not_acknowledge_gets_no_more_than_its_window_and_misses_nothing_in_the_end) {
   Client &silent = new_client(), &lively = new_client();
   Viewer::Options options;
   options.window = 2;
@@ -299,11 +320,13 @@ TEST_F(StreamViewer, a_client_that_does_not_acknowledge_gets_no_more_than_its_wi
     paint(*slow, i, 60 + 15 * i, 120);
     quick->changed_everywhere(i);
   }
-  lively.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 13 && h.scene_sequence == 12; });
+  lively.wait_for(
+      [](const FrameHeader& h) { return h.still && h.camera_seq == 13 && h.scene_sequence == 12; });
   EXPECT_LE(silent.frames().size(), 2u);
   EXPECT_GT(slow->stats().dropped, 0u);
   silent.attach(slow, true);
-  silent.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 13 && h.scene_sequence == 12; });
+  silent.wait_for(
+      [](const FrameHeader& h) { return h.still && h.camera_seq == 13 && h.scene_sequence == 12; });
   EXPECT_LT(mean_difference(silent.picture(), fresh_picture(camera(0.6))), 1.5);
 }
 
@@ -320,7 +343,8 @@ TEST_F(StreamViewer, who_sees_the_same_is_sent_one_drawing_and_one_encoding) {
     all.back()->set_style(style);
     all.back()->set_camera(100 + i, camera(0), false);
   }
-  for (auto* client : clients) first.push_back(client->wait_for([](const FrameHeader& h) { return h.still; }));
+  for (auto* client : clients)
+    first.push_back(client->wait_for([](const FrameHeader& h) { return h.still; }));
   const auto outcome = renderer_.paint(layer_, test::dab(camera(0), 150, 110, 12, 2));
   const auto before = encoder_.encoded();
   // While the GPU is busy with something else, all are told.
@@ -328,7 +352,8 @@ TEST_F(StreamViewer, who_sees_the_same_is_sent_one_drawing_and_one_encoding) {
     for (auto& one : all) one->changed({outcome.written_min, outcome.written_max}, 8);
   });
   for (std::size_t i = 0; i < clients.size(); ++i) {
-    const auto part = clients[i]->wait_for([](const FrameHeader& h) { return h.scene_sequence == 8; }, first[i].frame);
+    const auto part = clients[i]->wait_for(
+        [](const FrameHeader& h) { return h.scene_sequence == 8; }, first[i].frame);
     EXPECT_EQ(part.camera_seq, 100 + i) << "numbers are each one's own";
     EXPECT_FALSE(part.keyframe);
     EXPECT_LT(mean_difference(clients[i]->picture(), fresh_picture(camera(0))), 1.5);
@@ -336,7 +361,8 @@ TEST_F(StreamViewer, who_sees_the_same_is_sent_one_drawing_and_one_encoding) {
   EXPECT_EQ(encoder_.encoded(), before + 1);
 }
 
-TEST_F(StreamViewer, over_a_slow_link_a_moving_camera_has_smaller_pictures_and_a_still_one_has_not) {
+TEST_F(StreamViewer,
+       over_a_slow_link_a_moving_camera_has_smaller_pictures_and_a_still_one_has_not) {
   Client& client = new_client();
   auto view = viewer(client);
   view->set_camera(1, camera(0), false);
@@ -347,7 +373,8 @@ TEST_F(StreamViewer, over_a_slow_link_a_moving_camera_has_smaller_pictures_and_a
   for (int i = 0; i < 200 && last.full_width == std::uint32_t(kWidth); ++i) {
     ++number;
     view->set_camera(number, camera(0.02 * double(number)), true);
-    last = client.wait_for([&](const FrameHeader& h) { return h.camera_seq == number; }, last.frame);
+    last =
+        client.wait_for([&](const FrameHeader& h) { return h.camera_seq == number; }, last.frame);
     std::this_thread::sleep_for(1.5 * LinkPace::kLongestWait);
     view->ack(client.frames().back().frame);
   }
@@ -366,7 +393,8 @@ TEST_F(StreamViewer, frames_are_numbered_without_gaps_in_the_order_they_are_sent
     view->set_camera(i, camera(0.02 * i), i % 3 != 0);
     paint(*view, i, 80 + 5 * i, 100, 1 + i % 5);
   }
-  client.wait_for([](const FrameHeader& h) { return h.still && h.camera_seq == 30 && h.scene_sequence == 30; });
+  client.wait_for(
+      [](const FrameHeader& h) { return h.still && h.camera_seq == 30 && h.scene_sequence == 30; });
   const auto frames = client.frames();
   EXPECT_EQ(frames.front().frame, 1u);
   for (std::size_t i = 1; i < frames.size(); ++i) {
@@ -389,7 +417,8 @@ TEST_F(StreamViewer, after_a_lost_context_everything_comes_again) {
   ASSERT_EQ(lost.get_future().wait_for(kPatience), std::future_status::ready);
   load();
   view->reset_model(model_, {styles(), {}, {}, {}});
-  client.wait_for([](const FrameHeader& h) { return h.still && h.keyframe && h.camera_seq == 2; }, before.frame);
+  client.wait_for([](const FrameHeader& h) { return h.still && h.keyframe && h.camera_seq == 2; },
+                  before.frame);
   paint(*view, 9, 160, 120);
   client.wait_for([](const FrameHeader& h) { return h.scene_sequence == 9; }, before.frame);
   EXPECT_LT(mean_difference(client.picture(), fresh_picture(camera(0.3))), 1.5);
@@ -404,7 +433,8 @@ TEST_F(StreamViewer, after_close_nothing_is_sent) {
   const auto count = client.frames().size();
   view->set_camera(2, camera(1), false);
   view->changed_everywhere(5);
-  Client& other = new_client();  // by the time another viewer has its picture, the first one's would be there, too
+  // by the time another viewer has its picture, the first one's would be there, too
+  Client& other = new_client();
   viewer(other)->set_camera(1, camera(0), false);
   other.wait_for([](const FrameHeader& h) { return h.still; });
   EXPECT_EQ(client.frames().size(), count);

@@ -1,5 +1,5 @@
-// Linked into every test that needs GL. LeakSanitizer looks at the end: driver libraries that were unloaded by then look
-// like leaks without a name, so they are loaded here and never unloaded.
+// Linked into every test that needs GL. LeakSanitizer looks at the end: driver libraries that were
+// unloaded by then look like leaks without a name, so they are loaded here and never unloaded.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
@@ -12,13 +12,14 @@ class KeepDriverLoaded : public testing::Environment {
   void SetUp() override {
     for (const char* name : {"libEGL_mesa.so.0", "libglapi.so.0", "libLLVM-15.so.1"})
       dlopen(name, RTLD_NOW | RTLD_NODELETE);
-    for (const char* driver :
-         {"/usr/lib/x86_64-linux-gnu/dri/swrast_dri.so", "/usr/lib/aarch64-linux-gnu/dri/swrast_dri.so"}) {
+    for (const char* driver : {"/usr/lib/x86_64-linux-gnu/dri/swrast_dri.so",
+                               "/usr/lib/aarch64-linux-gnu/dri/swrast_dri.so"}) {
       if (std::filesystem::exists(driver)) dlopen(driver, RTLD_NOW | RTLD_NODELETE);
     }
   }
 };
 
-[[maybe_unused]] const auto* const kEnvironment = testing::AddGlobalTestEnvironment(new KeepDriverLoaded);
+[[maybe_unused]] const auto* const kEnvironment =
+    testing::AddGlobalTestEnvironment(new KeepDriverLoaded);
 
 }  // namespace

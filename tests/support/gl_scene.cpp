@@ -22,7 +22,8 @@ void expect(Result<void> result) {
   if (!result) throw std::runtime_error(result.error().title + ": " + result.error().detail);
 }
 
-// A grid of quads as one chart: `place` gives positions for u, v in [0, 1], `uv` the texture coordinates.
+// A grid of quads as one chart: `place` gives positions for u, v in [0, 1], `uv` the texture
+// coordinates.
 template <class Place, class Uv>
 void add_chart(mesh::TriangleMesh& mesh, int quads, Place place, Uv uv) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -47,20 +48,23 @@ mesh::TriangleMesh bumpy_sphere(int quads_per_edge) {
   mesh::TriangleMesh mesh;
   for (int face = 0; face < 6; ++face) {
     const auto place = [&](double u, double v) {
-      const double a = std::tan((2 * u - 1) * 0.7853981633974483), b = std::tan((2 * v - 1) * 0.7853981633974483);
-      const glm::dvec3 directions[] = {{1, b, -a}, {-1, b, a}, {a, 1, -b}, {a, -1, b}, {a, b, 1}, {-a, b, -1}};
+      const double a = std::tan((2 * u - 1) * 0.7853981633974483),
+                   b = std::tan((2 * v - 1) * 0.7853981633974483);
+      const glm::dvec3 directions[] = {{1, b, -a}, {-1, b, a}, {a, 1, -b},
+                                       {a, -1, b}, {a, b, 1},  {-a, b, -1}};
       const glm::dvec3 d = glm::normalize(directions[face]);
       const double bump = 0.05 * std::sin(7 * d.x) * std::sin(6 * d.y + 1) * std::sin(8 * d.z + 2) +
                           0.004 * std::sin(61 * d.x) * std::sin(53 * d.y) * std::sin(67 * d.z);
       return d * (1 + bump);
     };
     // Charts stand turned in their cells, so that texel rows and triangle edges do not line up.
-    const glm::vec2 center((0.5f + static_cast<float>(face % 3)) / 3, (0.5f + static_cast<float>(face / 3)) / 2);
+    const glm::vec2 center((0.5f + static_cast<float>(face % 3)) / 3,
+                           (0.5f + static_cast<float>(face / 3)) / 2);
     const float turn = 0.1f + 0.2f * static_cast<float>(face), size = 0.21f;
     const auto uv = [&](double u, double v) {
       const glm::vec2 p(static_cast<float>(u) - 0.5f, static_cast<float>(v) - 0.5f);
-      return center +
-             size * glm::vec2(std::cos(turn) * p.x - std::sin(turn) * p.y, std::sin(turn) * p.x + std::cos(turn) * p.y);
+      return center + size * glm::vec2(std::cos(turn) * p.x - std::sin(turn) * p.y,
+                                       std::sin(turn) * p.x + std::cos(turn) * p.y);
     };
     add_chart(mesh, quads_per_edge, place, uv);
   }
@@ -72,7 +76,9 @@ mesh::TriangleMesh folded_sheets(double gap) {
   for (int sheet = 0; sheet < 2; ++sheet) {
     add_chart(
         mesh, 4, [&](double u, double v) { return glm::dvec3(u - 0.5, v - 0.5, -gap * sheet); },
-        [&](double u, double v) { return glm::vec2(0.05 + 0.5 * sheet + 0.4 * u, 0.05 + 0.4 * v); });
+        [&](double u, double v) {
+          return glm::vec2(0.05 + 0.5 * sheet + 0.4 * u, 0.05 + 0.4 * v);
+        });
   }
   return mesh;
 }
@@ -81,21 +87,27 @@ mesh::TriangleMesh flat_square(int quads_per_edge) {
   return relief_square(quads_per_edge, [](double, double) { return 0.0; });
 }
 
-mesh::TriangleMesh relief_square(int quads_per_edge, const std::function<double(double, double)>& height) {
+mesh::TriangleMesh relief_square(int quads_per_edge,
+                                 const std::function<double(double, double)>& height) {
   mesh::TriangleMesh mesh;
   add_chart(
-      mesh, quads_per_edge, [&](double u, double v) { return glm::dvec3(u - 0.5, v - 0.5, height(u - 0.5, v - 0.5)); },
+      mesh, quads_per_edge,
+      [&](double u, double v) { return glm::dvec3(u - 0.5, v - 0.5, height(u - 0.5, v - 0.5)); },
       [](double u, double v) { return glm::vec2(0.05 + 0.9 * u, 0.05 + 0.9 * v); });
   return mesh;
 }
 
-Camera perspective_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height, double fov_degrees) {
-  const glm::dvec3 up = std::abs(glm::normalize(target - eye).y) > 0.95 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
-  return {glm::lookAt(eye, target, up), glm::perspective(glm::radians(fov_degrees), double(width) / height, 0.1, 20.0),
-          width, height};
+Camera perspective_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height,
+                          double fov_degrees) {
+  const glm::dvec3 up =
+      std::abs(glm::normalize(target - eye).y) > 0.95 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+  return {glm::lookAt(eye, target, up),
+          glm::perspective(glm::radians(fov_degrees), double(width) / height, 0.1, 20.0), width,
+          height};
 }
 
-Camera orthographic_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height, double half_height) {
+Camera orthographic_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height,
+                           double half_height) {
   const double half_width = half_height * width / height;
   return {glm::lookAt(eye, target, glm::dvec3(0, 1, 0)),
           glm::ortho(-half_width, half_width, -half_height, half_height, 0.1, 20.0), width, height};
@@ -107,14 +119,16 @@ Scene make_scene(const mesh::TriangleMesh& mesh, int resolution) {
   Scene scene;
   scene.geometry = std::make_shared<const mesh::Geometry>(mesh::build_geometry(mesh, atlas));
   Progress progress;
-  scene.map =
-      std::make_shared<const mesh::SurfaceMap>(expect(mesh::bake_surface_map(*scene.geometry, resolution, progress)));
+  scene.map = std::make_shared<const mesh::SurfaceMap>(
+      expect(mesh::bake_surface_map(*scene.geometry, resolution, progress)));
   return scene;
 }
 
 TestRenderer::TestRenderer(render::RendererOptions options) {
-  if (const char* path = std::getenv("STRATA_TEST_EDIT_PATH"); path && options.edit_path == render::EditPath::automatic)
-    options.edit_path = std::string_view(path) == "kernel" ? render::EditPath::kernel : render::EditPath::compute;
+  if (const char* path = std::getenv("STRATA_TEST_EDIT_PATH");
+      path && options.edit_path == render::EditPath::automatic)
+    options.edit_path =
+        std::string_view(path) == "kernel" ? render::EditPath::kernel : render::EditPath::compute;
   options.shader_dir = shader_dir().string();
   options.debug = true;
   renderer_ = expect(render::Renderer::start(options));
@@ -130,32 +144,40 @@ render::ModelHandle TestRenderer::add(const Scene& scene) {
   const auto model = expect(await<render::ModelHandle>([&](auto done) {
     renderer_->add_model({scene.geometry, scene.coarser}, std::move(done));
   }));
-  if (scene.map) expect(await<void>([&](auto done) { renderer_->add_surface_map(model, scene.map, std::move(done)); }));
+  if (scene.map)
+    expect(await<void>(
+        [&](auto done) { renderer_->add_surface_map(model, scene.map, std::move(done)); }));
   return model;
 }
 
-render::LayerHandle TestRenderer::add_layer(render::ModelHandle model, ValueType type, int resolution) {
-  return expect(
-      await<render::LayerHandle>([&](auto done) { renderer_->add_layer(model, type, resolution, std::move(done)); }));
+render::LayerHandle TestRenderer::add_layer(render::ModelHandle model, ValueType type,
+                                            int resolution) {
+  return expect(await<render::LayerHandle>(
+      [&](auto done) { renderer_->add_layer(model, type, resolution, std::move(done)); }));
 }
 
 render::ViewHandle TestRenderer::add_view(render::ModelHandle model) {
-  return expect(await<render::ViewHandle>([&](auto done) { renderer_->add_view(model, std::move(done)); }));
+  return expect(
+      await<render::ViewHandle>([&](auto done) { renderer_->add_view(model, std::move(done)); }));
 }
 
 render::StrokeOutcome TestRenderer::paint(render::LayerHandle layer, const StrokeBatch& stroke) {
-  return expect(await<render::StrokeOutcome>([&](auto done) { renderer_->paint(layer, stroke, std::move(done)); }));
+  return expect(await<render::StrokeOutcome>(
+      [&](auto done) { renderer_->paint(layer, stroke, std::move(done)); }));
 }
 
 render::Frame TestRenderer::draw(const render::FrameRequest& request) {
-  return *expect(await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); }));
+  return *expect(
+      await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); }));
 }
 
 void TestRenderer::write(render::LayerHandle layer, std::vector<render::TileUpload> tiles) {
-  expect(await<void>([&](auto done) { renderer_->write_tiles(layer, std::move(tiles), std::move(done)); }));
+  expect(await<void>(
+      [&](auto done) { renderer_->write_tiles(layer, std::move(tiles), std::move(done)); }));
 }
 
-std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths, const render::MeshBuffers& mesh,
+std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths,
+                                                const render::MeshBuffers& mesh,
                                                 const Camera& camera) {
   auto buffer = expect(depths.start(render::depth_key(1, camera, camera.width, camera.height)));
   render::MeshProgress progress;
@@ -165,11 +187,13 @@ std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths, co
 }
 
 std::vector<float> TestRenderer::depth(const Scene& scene, const Camera& camera) {
-  std::vector<float> pixels(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
+  std::vector<float> pixels(static_cast<std::size_t>(camera.width) *
+                            static_cast<std::size_t>(camera.height));
   renderer_->run_on_gpu_thread_for_test([&] {
     render::GpuMemory memory(std::uint64_t{1} << 32);
     gl::ReadbackPool readback;
-    auto depths = expect(render::DepthBuffers::create(shader_dir(), std::size_t{1} << 16, memory, readback));
+    auto depths =
+        expect(render::DepthBuffers::create(shader_dir(), std::size_t{1} << 16, memory, readback));
     auto mesh = expect(render::MeshBuffers::create(scene.geometry, memory));
     while (!mesh->upload_slice()) {
     }
@@ -180,7 +204,8 @@ std::vector<float> TestRenderer::depth(const Scene& scene, const Camera& camera)
   return pixels;
 }
 
-StrokeBatch dab(const Camera& camera, double x, double y, double radius_px, std::uint32_t value_bits) {
+StrokeBatch dab(const Camera& camera, double x, double y, double radius_px,
+                std::uint32_t value_bits) {
   StrokeBatch stroke;
   stroke.camera = camera;
   stroke.path = {{x, y}};

@@ -13,15 +13,18 @@
 namespace strata::test {
 
 // Meshes with charts of their own for GL tests.
-mesh::TriangleMesh bumpy_sphere(int quads_per_edge);     // radius ≈ 1; 6 charts; 12 · n² triangles
-mesh::TriangleMesh folded_sheets(double gap);            // two unit squares at z = 0 and z = -gap; 2 charts
+mesh::TriangleMesh bumpy_sphere(int quads_per_edge);  // radius ≈ 1; 6 charts; 12 · n² triangles
+// two unit squares at z = 0 and z = -gap; 2 charts
+mesh::TriangleMesh folded_sheets(double gap);
 mesh::TriangleMesh flat_square(int quads_per_edge = 1);  // unit square at z = 0, uv 0.05 … 0.95
 // The same with heights: of x and y, -0.5 … 0.5.
-mesh::TriangleMesh relief_square(int quads_per_edge, const std::function<double(double, double)>& height);
+mesh::TriangleMesh relief_square(int quads_per_edge,
+                                 const std::function<double(double, double)>& height);
 
 Camera perspective_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height,
                           double fov_degrees = 45);
-Camera orthographic_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height, double half_height);
+Camera orthographic_camera(const glm::dvec3& eye, const glm::dvec3& target, int width, int height,
+                           double half_height);
 
 struct Scene {
   std::shared_ptr<const mesh::Geometry> geometry;
@@ -39,8 +42,9 @@ Result<T> await(Call call) {
   return future.get();
 }
 
-// A renderer in a debug context with blocking calls, where any Problem fails the test. Its destructor checks that no GL
-// error was reported. STRATA_TEST_EDIT_PATH (`compute` or `kernel`) says where strokes are painted if the options do not.
+// A renderer in a debug context with blocking calls, where any Problem fails the test. Its
+// destructor checks that no GL error was reported. STRATA_TEST_EDIT_PATH (`compute` or `kernel`)
+// says where strokes are painted if the options do not.
 class TestRenderer {
  public:
   explicit TestRenderer(render::RendererOptions options = {});
@@ -63,10 +67,12 @@ class TestRenderer {
 };
 
 // Of the whole mesh; with a context current.
-std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths, const render::MeshBuffers& mesh,
+std::shared_ptr<render::DepthBuffer> draw_depth(render::DepthBuffers& depths,
+                                                const render::MeshBuffers& mesh,
                                                 const Camera& camera);
 
 // A dab of a disc with a u8 value.
-StrokeBatch dab(const Camera& camera, double x, double y, double radius_px, std::uint32_t value_bits = 7);
+StrokeBatch dab(const Camera& camera, double x, double y, double radius_px,
+                std::uint32_t value_bits = 7);
 
 }  // namespace strata::test

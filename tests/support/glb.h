@@ -9,16 +9,20 @@
 
 namespace strata::test {
 
-// Builds glTF files piece by piece: each `add` makes a buffer view and an accessor, and gives the accessor's number.
+// Builds glTF files piece by piece: each `add` makes a buffer view and an accessor, and gives the
+// accessor's number.
 class GltfBuilder {
  public:
-  nlohmann::json json = {{"asset", {{"version", "2.0"}}},        {"scene", 0},
-                         {"scenes", {{{"nodes", {0}}}}},         {"nodes", {{{"mesh", 0}}}},
-                         {"accessors", nlohmann::json::array()}, {"bufferViews", nlohmann::json::array()}};
+  nlohmann::json json = {
+      {"asset", {{"version", "2.0"}}},        {"scene", 0},
+      {"scenes", {{{"nodes", {0}}}}},         {"nodes", {{{"mesh", 0}}}},
+      {"accessors", nlohmann::json::array()}, {"bufferViews", nlohmann::json::array()}};
 
   template <class Number>
-  int add(const std::vector<Number>& numbers, int component_type, const std::string& type, bool normalized = false) {
-    static const std::map<std::string, int> components{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
+  int add(const std::vector<Number>& numbers, int component_type, const std::string& type,
+          bool normalized = false) {
+    static const std::map<std::string, int> components{
+        {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
     const int view = add_view(numbers.data(), numbers.size() * sizeof(Number));
     json["accessors"].push_back({{"bufferView", view},
                                  {"componentType", component_type},
@@ -29,7 +33,8 @@ class GltfBuilder {
   }
   int add_view(const void* data, std::size_t size) {
     binary_.resize((binary_.size() + 3) / 4 * 4);
-    json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}});
+    json["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", size}});
     binary_.append(static_cast<const char*>(data), size);
     return static_cast<int>(json["bufferViews"].size()) - 1;
   }
@@ -57,7 +62,9 @@ class GltfBuilder {
     if (!uri.empty()) copy["buffers"][0]["uri"] = uri;
     return copy;
   }
-  static void word(std::string& file, std::uint32_t value) { file.append(reinterpret_cast<const char*>(&value), 4); }
+  static void word(std::string& file, std::uint32_t value) {
+    file.append(reinterpret_cast<const char*>(&value), 4);
+  }
 
   std::string binary_;
 };

@@ -21,7 +21,8 @@ class PlyWriter {
 
   PlyWriter(Encoding encoding, const std::string& declarations) : encoding_(encoding) {
     const char* names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-    bytes_ = "ply\nformat " + std::string(names[static_cast<int>(encoding)]) + " 1.0\n" + declarations + "end_header\n";
+    bytes_ = "ply\nformat " + std::string(names[static_cast<int>(encoding)]) + " 1.0\n" +
+             declarations + "end_header\n";
   }
 
   template <class Number>
@@ -55,20 +56,24 @@ class PlyWriter {
 
 inline Result<mesh::LoadedMesh> load_text(const std::string& bytes, const std::string& filename) {
   Progress progress;
-  return mesh::load_mesh_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, filename, progress);
+  return mesh::load_mesh_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
+                               filename, progress);
 }
 
 // Files by name, in memory; `texts` must live on.
-inline Result<mesh::InputFiles> files_of(const std::vector<std::pair<std::string, std::string>>& texts) {
+inline Result<mesh::InputFiles> files_of(
+    const std::vector<std::pair<std::string, std::string>>& texts) {
   std::vector<mesh::InputFiles::Entry> entries;
   for (const auto& [name, text] : texts)
-    entries.push_back({name, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, std::nullopt});
+    entries.push_back(
+        {name, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, std::nullopt});
   Progress progress;
   return mesh::InputFiles::of(std::move(entries), std::filesystem::temp_directory_path(), progress);
 }
 
-inline Result<mesh::LoadedMesh> load_texts(const std::vector<std::pair<std::string, std::string>>& texts,
-                                           const mesh::LoadOptions& options = {}) {
+inline Result<mesh::LoadedMesh> load_texts(
+    const std::vector<std::pair<std::string, std::string>>& texts,
+    const mesh::LoadOptions& options = {}) {
   auto files = files_of(texts);
   if (!files) return tl::unexpected(files.error());
   Progress progress;

@@ -14,9 +14,12 @@ void add_triangle(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uin
   mesh.triangles.insert(mesh.triangles.end(), {a, b, c});
 }
 
-// Two triangles for each cell of a grid of vertices that closes on itself along x, and along y where asked.
+// Two triangles for each cell of a grid of vertices that closes on itself along x, and along y
+// where asked.
 void add_cells(TriangleMesh& mesh, int columns, int rows, bool closed_rows) {
-  const auto at = [&](int x, int y) { return static_cast<std::uint32_t>((y % rows) * columns + x % columns); };
+  const auto at = [&](int x, int y) {
+    return static_cast<std::uint32_t>((y % rows) * columns + x % columns);
+  };
   for (int y = 0; y < (closed_rows ? rows : rows - 1); ++y)
     for (int x = 0; x < columns; ++x) {
       add_triangle(mesh, at(x, y), at(x + 1, y), at(x + 1, y + 1));
@@ -34,8 +37,8 @@ TriangleMesh sphere(int segments, double noise) {
   for (int y = 1; y < rows; ++y)
     for (int x = 0; x < segments; ++x) {
       const double u = 2 * std::numbers::pi * x / segments, v = std::numbers::pi * y / rows;
-      mesh.positions.push_back(radius() *
-                               glm::dvec3(std::sin(v) * std::cos(u), std::sin(v) * std::sin(u), -std::cos(v)));
+      mesh.positions.push_back(radius() * glm::dvec3(std::sin(v) * std::cos(u),
+                                                     std::sin(v) * std::sin(u), -std::cos(v)));
     }
   add_cells(mesh, segments, rows - 1, false);
   const auto south = static_cast<std::uint32_t>(mesh.positions.size()), north = south + 1;
@@ -76,7 +79,8 @@ TriangleMesh open_grid(int cells, double height) {
       add_triangle(mesh, a, a + 1, above + 1);
       add_triangle(mesh, a, above + 1, above);
     }
-  for (const auto v : mesh.triangles) mesh.corner_uvs.push_back(glm::vec2(0.05) + 0.9f * glm::vec2(mesh.positions[v]));
+  for (const auto v : mesh.triangles)
+    mesh.corner_uvs.push_back(glm::vec2(0.05) + 0.9f * glm::vec2(mesh.positions[v]));
   return mesh;
 }
 
@@ -88,7 +92,8 @@ TriangleMesh grid_with_fins(int cells) {
     const std::uint32_t a = (i + 2) * side + i + 1;
     mesh.positions.push_back(mesh.positions[a] + glm::dvec3(0.02, 0.03, 0.3));
     add_triangle(mesh, a, a + 1, static_cast<std::uint32_t>(mesh.positions.size() - 1));
-    if (i % 2 == 0) add_triangle(mesh, a + 1, a, static_cast<std::uint32_t>(mesh.positions.size() - 1));
+    if (i % 2 == 0)
+      add_triangle(mesh, a + 1, a, static_cast<std::uint32_t>(mesh.positions.size() - 1));
   }
   return mesh;
 }
@@ -107,7 +112,8 @@ TriangleMesh slivers(int count) {
 
 TriangleMesh cube_with_face_charts() {
   TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i) mesh.positions.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2 & 1)});
+  for (int i = 0; i < 8; ++i)
+    mesh.positions.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2 & 1)});
   const std::uint32_t faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                      {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   for (int f = 0; f < 6; ++f) {
@@ -157,7 +163,8 @@ TriangleMesh cubes(int count) {
   for (int i = 0; i < count; ++i) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     const glm::dvec3 corner(2.5 * (i % 10), 2.5 * (i / 10), 0);
-    for (int k = 0; k < 8; ++k) mesh.positions.push_back(corner + glm::dvec3(k & 1, k >> 1 & 1, k >> 2 & 1));
+    for (int k = 0; k < 8; ++k)
+      mesh.positions.push_back(corner + glm::dvec3(k & 1, k >> 1 & 1, k >> 2 & 1));
     for (const auto& side : kSides) {
       add_triangle(mesh, first + side[0], first + side[1], first + side[2]);
       add_triangle(mesh, first + side[0], first + side[2], first + side[3]);
@@ -169,12 +176,14 @@ TriangleMesh cubes(int count) {
 TriangleMesh gear(int teeth) {
   TriangleMesh mesh;
   const auto columns = static_cast<std::uint32_t>(4 * teeth);
-  // Four rings: outer and inner rim below, then above. Caps lie between outer and inner, walls between below and above.
+  // Four rings: outer and inner rim below, then above. Caps lie between outer and inner, walls
+  // between below and above.
   for (int ring = 0; ring < 4; ++ring)
     for (std::uint32_t i = 0; i < columns; ++i) {
       const double angle = 2 * std::numbers::pi * i / columns;
       const double radius = ring % 2 == 1 ? 0.4 : i % 4 < 2 ? 1 : 0.8;
-      mesh.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), ring < 2 ? 0 : 0.3});
+      mesh.positions.push_back(
+          {radius * std::cos(angle), radius * std::sin(angle), ring < 2 ? 0 : 0.3});
     }
   const auto quads = [&](std::uint32_t from, std::uint32_t to) {
     for (std::uint32_t i = 0; i < columns; ++i) {
@@ -207,8 +216,10 @@ TriangleMesh strips(int count, double length) {
   for (int i = 0; i < count; ++i) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     const double angle = 0.1 * i;
-    const glm::dvec3 origin(3.0 * i, 0, 0), across(std::cos(angle), std::sin(angle), 0), along(0, 0, length);
-    mesh.positions.insert(mesh.positions.end(), {origin, origin + across, origin + across + along, origin + along});
+    const glm::dvec3 origin(3.0 * i, 0, 0), across(std::cos(angle), std::sin(angle), 0),
+        along(0, 0, length);
+    mesh.positions.insert(mesh.positions.end(),
+                          {origin, origin + across, origin + across + along, origin + along});
     add_triangle(mesh, first, first + 1, first + 2);
     add_triangle(mesh, first, first + 2, first + 3);
   }

@@ -9,18 +9,25 @@
 namespace strata::test {
 
 // Small meshes of each class that scans come in. Deterministic.
-mesh::TriangleMesh sphere(int segments, double noise = 0);     // closed
-mesh::TriangleMesh torus(int segments);                        // closed, with a hole through it
-mesh::TriangleMesh open_grid(int cells, double height = 0.2);  // boundary; corner_uvs fill [0.05, 0.95]²
-mesh::TriangleMesh grid_with_fins(int cells);                  // edges with three and four triangles
-mesh::TriangleMesh slivers(int count);                         // a fan of triangles 1000 times longer than wide
-mesh::TriangleMesh cube_with_face_charts();                    // 12 triangles; corner_uvs in 6 separate squares
-mesh::TriangleMesh flipped_and_duplicate(int cells);           // every 7th triangle turned round, some twice
-mesh::TriangleMesh separate_triangles(int count);              // no two connected
-mesh::TriangleMesh cubes(int count);                           // apart, of 12 triangles and 8 vertices each
-mesh::TriangleMesh gear(int teeth);                            // two flat caps with a hole, straight and slanted flanks
-mesh::TriangleMesh flat_ring(int sides);                       // one plane, thin and hollow
-mesh::TriangleMesh strips(int count, double length);           // apart, two triangles each, 1 wide
+mesh::TriangleMesh sphere(int segments, double noise = 0);  // closed
+mesh::TriangleMesh torus(int segments);                     // closed, with a hole through it
+// boundary; corner_uvs fill [0.05, 0.95]²
+mesh::TriangleMesh open_grid(int cells, double height = 0.2);
+// edges with three and four triangles
+mesh::TriangleMesh grid_with_fins(int cells);
+// a fan of triangles 1000 times longer than wide
+mesh::TriangleMesh slivers(int count);
+// 12 triangles; corner_uvs in 6 separate squares
+mesh::TriangleMesh cube_with_face_charts();
+// every 7th triangle turned round, some twice
+mesh::TriangleMesh flipped_and_duplicate(int cells);
+mesh::TriangleMesh separate_triangles(int count);  // no two connected
+// apart, of 12 triangles and 8 vertices each
+mesh::TriangleMesh cubes(int count);
+// two flat caps with a hole, straight and slanted flanks
+mesh::TriangleMesh gear(int teeth);
+mesh::TriangleMesh flat_ring(int sides);              // one plane, thin and hollow
+mesh::TriangleMesh strips(int count, double length);  // apart, two triangles each, 1 wide
 
 mesh::TriangleMesh transformed(mesh::TriangleMesh mesh, double scale, const glm::dvec3& offset);
 
@@ -30,6 +37,7 @@ struct NamedMesh {
 };
 // NOLINTNEXTLINE(readability-identifier-naming): GoogleTest looks for it
 inline void PrintTo(const NamedMesh& named, std::ostream* out) { *out << named.name; }
-std::vector<NamedMesh> mesh_classes();  // all of the above, at sizes that tests can check by brute force
+// all of the above, at sizes that tests can check by brute force
+std::vector<NamedMesh> mesh_classes();
 
 }  // namespace strata::test

@@ -28,7 +28,8 @@ void write_samples(TIFF* tiff, int width, int height, const TiffSettings& s,
         const std::uint32_t value = x < width && y < height ? sample(x, y, k) : 0;
         if (s.bits < 8) {
           collected = collected << s.bits | value;
-          if ((bits += static_cast<unsigned>(s.bits)) == 8) put(bytes, std::exchange(collected, 0), 1), bits = 0;
+          if ((bits += static_cast<unsigned>(s.bits)) == 8)
+            put(bytes, std::exchange(collected, 0), 1), bits = 0;
         } else {
           put(bytes, value, s.bits / 8);
         }
@@ -36,8 +37,8 @@ void write_samples(TIFF* tiff, int width, int height, const TiffSettings& s,
     if (bits > 0) put(bytes, collected << (8 - bits), 1);
     return bytes;
   };
-  constexpr int kTile =
-      32;  // libtiff refuses uncompressed tiles of less than 1024 bytes that are not mapped from a file
+  // libtiff refuses uncompressed tiles of less than 1024 bytes that are not mapped from a file
+  constexpr int kTile = 32;
   const int planes = s.separate ? s.samples : 1;
   for (int plane = 0; plane < planes; ++plane) {
     const int first = s.separate ? plane : 0, last = s.separate ? plane + 1 : s.samples;
@@ -52,15 +53,16 @@ void write_samples(TIFF* tiff, int width, int height, const TiffSettings& s,
         Bytes tile;
         for (int y = top; y < top + kTile; ++y)
           for (const auto byte : row(y, first, last, left, left + kTile)) tile.push_back(byte);
-        TIFFWriteTile(tiff, tile.data(), static_cast<std::uint32_t>(left), static_cast<std::uint32_t>(top), 0,
-                      static_cast<std::uint16_t>(plane));
+        TIFFWriteTile(tiff, tile.data(), static_cast<std::uint32_t>(left),
+                      static_cast<std::uint32_t>(top), 0, static_cast<std::uint16_t>(plane));
       }
   }
 }
 
 }  // namespace
 
-Bytes tiff_of(int width, int height, const TiffSettings& s, const std::function<std::uint32_t(int, int, int)>& sample) {
+Bytes tiff_of(int width, int height, const TiffSettings& s,
+              const std::function<std::uint32_t(int, int, int)>& sample) {
   Bytes bytes;
   TiffMemory file{{}, &bytes, 0, {}};
   {
@@ -74,7 +76,8 @@ Bytes tiff_of(int width, int height, const TiffSettings& s, const std::function<
       TIFFSetField(tiff.get(), TIFFTAG_PHOTOMETRIC, s.photometric);
       TIFFSetField(tiff.get(), TIFFTAG_COMPRESSION, s.compression);
       TIFFSetField(tiff.get(), TIFFTAG_ORIENTATION, s.orientation);
-      TIFFSetField(tiff.get(), TIFFTAG_PLANARCONFIG, s.separate ? PLANARCONFIG_SEPARATE : PLANARCONFIG_CONTIG);
+      TIFFSetField(tiff.get(), TIFFTAG_PLANARCONFIG,
+                   s.separate ? PLANARCONFIG_SEPARATE : PLANARCONFIG_CONTIG);
       if (s.alpha >= 0) {
         const auto kind = static_cast<std::uint16_t>(s.alpha);
         TIFFSetField(tiff.get(), TIFFTAG_EXTRASAMPLES, 1, &kind);
@@ -119,7 +122,8 @@ Bytes bmp_of(const Bytes& rgba, int width, int height, int bits, bool top_down) 
   put(out, 1, 2);
   put(out, static_cast<std::uint32_t>(bits), 2);
   put(out, 0, 24);
-  for (std::uint32_t i = 0; i < colors; ++i) put(out, (255 - i) << 16 | i << 8 | i, 4);  // blue low: (255 − i, i, i)
+  // blue low: (255 − i, i, i)
+  for (std::uint32_t i = 0; i < colors; ++i) put(out, (255 - i) << 16 | i << 8 | i, 4);
   for (int i = 0; i < height; ++i) {
     const int y = top_down ? i : height - 1 - i;
     const std::size_t begin = out.size();
@@ -128,7 +132,9 @@ Bytes bmp_of(const Bytes& rgba, int width, int height, int bits, bool top_down) 
       if (bits == 8)
         put(out, p[0], 1);
       else
-        put(out, std::uint32_t{p[2]} | std::uint32_t{p[1]} << 8 | std::uint32_t{p[0]} << 16 | std::uint32_t{p[3]} << 24,
+        put(out,
+            std::uint32_t{p[2]} | std::uint32_t{p[1]} << 8 | std::uint32_t{p[0]} << 16 |
+                std::uint32_t{p[3]} << 24,
             bits / 8);
     }
     out.resize(begin + row);
@@ -147,14 +153,17 @@ Bytes tga_of(const Bytes& rgba, int width, int height, int bits, bool packed) {
     if (bits == 8)
       put(out, p[0], 1);
     else
-      put(out, std::uint32_t{p[2]} | std::uint32_t{p[1]} << 8 | std::uint32_t{p[0]} << 16 | std::uint32_t{p[3]} << 24,
+      put(out,
+          std::uint32_t{p[2]} | std::uint32_t{p[1]} << 8 | std::uint32_t{p[0]} << 16 |
+              std::uint32_t{p[3]} << 24,
           bits / 8);
   };
   for (int y = height - 1; y >= 0; --y)  // the lowest row first
     for (int x = 0; x < width;) {
       const std::uint8_t* p = &rgba[4 * (std::size_t(y) * width + x)];
       int same = 1;
-      while (packed && same < 128 && x + same < width && std::memcmp(p, p + 4 * same, 4) == 0) ++same;
+      while (packed && same < 128 && x + same < width && std::memcmp(p, p + 4 * same, 4) == 0)
+        ++same;
       if (packed) put(out, same > 1 ? 127u + static_cast<unsigned>(same) : 0u, 1);
       put_pixel(p);
       x += same;

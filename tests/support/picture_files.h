@@ -27,7 +27,8 @@ Bytes tiff_of(int width, int height, const TiffSettings& settings,
               const std::function<std::uint32_t(int, int, int)>& sample);
 
 Bytes webp_of(const Bytes& rgba, int width, int height);  // lossless
-// `bits`: 8 (a table of 256 colours, `rgba`'s red), 24 or 32; `top_down`: the first row is the top one.
+// `bits`: 8 (a table of 256 colours, `rgba`'s red), 24 or 32; `top_down`: the first row is the top
+// one.
 Bytes bmp_of(const Bytes& rgba, int width, int height, int bits, bool top_down = false);
 // `bits`: 8 (grey, of red), 24 or 32.
 Bytes tga_of(const Bytes& rgba, int width, int height, int bits, bool packed);

@@ -85,8 +85,8 @@ void RoomTest::restart(std::uint64_t gpu_memory) {
   ASSERT_TRUE(renderer) << renderer.error().detail;
   renderer_ = std::move(*renderer);
   encoder_ = std::make_unique<stream::JpegPool>(1);
-  rooms_ = std::make_unique<room::Rooms>(*store_, *renderer_, stream::StreamContext{renderer_.get(), encoder_.get()},
-                                         options_);
+  rooms_ = std::make_unique<room::Rooms>(
+      *store_, *renderer_, stream::StreamContext{renderer_.get(), encoder_.get()}, options_);
 }
 
 std::shared_ptr<room::Room> RoomTest::room() {
@@ -112,8 +112,9 @@ Camera RoomTest::camera(glm::dvec3 from, bool orthographic) const {
   const glm::dvec3 direction = glm::normalize(from);
   const glm::dvec3 up = std::abs(direction.z) > 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
   return {glm::lookAt(center + direction * size * 1.5, center, up),
-          orthographic ? glm::ortho(-size * 0.67, size * 0.67, -size * 0.5, size * 0.5, size * 0.1, size * 4)
-                       : glm::perspective(0.7, 640.0 / 480.0, size * 0.1, size * 4),
+          orthographic
+              ? glm::ortho(-size * 0.67, size * 0.67, -size * 0.5, size * 0.5, size * 0.1, size * 4)
+              : glm::perspective(0.7, 640.0 / 480.0, size * 0.1, size * 4),
           640, 480};
 }
 
@@ -122,8 +123,8 @@ room::EditRequest RoomTest::request(const Layer& layer, decltype(room::EditReque
   return {random_uuid(), {user, Role::annotator}, layer.id, std::move(edit), {{"op", "test"}}};
 }
 
-room::EditRequest RoomTest::stroke(const Layer& layer, double value, std::vector<glm::dvec2> path, double radius_px,
-                                   const std::string& user) const {
+room::EditRequest RoomTest::stroke(const Layer& layer, double value, std::vector<glm::dvec2> path,
+                                   double radius_px, const std::string& user) const {
   room::StrokeEdit edit;
   edit.batch.camera = camera({0.3, -1, 0.4});
   edit.batch.path = std::move(path);
@@ -136,12 +137,15 @@ room::EditRequest RoomTest::stroke(const Layer& layer, double value, std::vector
 std::future<Result<room::EditAnswer>> RoomTest::start(room::EditRequest edit) {
   auto promise = std::make_shared<std::promise<Result<room::EditAnswer>>>();
   auto future = promise->get_future();
-  room()->edit(std::move(edit), {},
-               [promise](Result<room::EditAnswer> answer) { promise->set_value(std::move(answer)); });
+  room()->edit(std::move(edit), {}, [promise](Result<room::EditAnswer> answer) {
+    promise->set_value(std::move(answer));
+  });
   return future;
 }
 
-Result<room::EditAnswer> RoomTest::send(room::EditRequest edit) { return start(std::move(edit)).get(); }
+Result<room::EditAnswer> RoomTest::send(room::EditRequest edit) {
+  return start(std::move(edit)).get();
+}
 
 Result<room::EditAnswer> RoomTest::send_until_taken(const room::EditRequest& edit) {
   Result<room::EditAnswer> answer = fail(503, "", "");
@@ -170,7 +174,8 @@ void RoomTest::expect_picture_of_journal() {
   ASSERT_TRUE(renderer) << renderer.error().detail;
   Result<render::Frame> expected = fail(503, "", "");
   {
-    room::Rooms rooms(*store_, **renderer, stream::StreamContext{renderer->get(), encoder_.get()}, {});
+    room::Rooms rooms(*store_, **renderer, stream::StreamContext{renderer->get(), encoder_.get()},
+                      {});
     auto fresh = rooms.open("pot", Role::owner);
     ASSERT_TRUE(fresh) << fresh.error().detail;
     expected = (*fresh)->picture({}, camera({0.3, -1, 0.4}));
@@ -179,7 +184,8 @@ void RoomTest::expect_picture_of_journal() {
   Result<render::Frame> shown = fail(503, "", "");
   for (int i = 0; i < 3000 && !(shown && shown->pixels == expected->pixels); ++i) {
     shown = room()->picture({}, camera({0.3, -1, 0.4}));
-    if (!shown || shown->pixels != expected->pixels) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (!shown || shown->pixels != expected->pixels)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   ASSERT_TRUE(shown) << shown.error().detail;
   EXPECT_EQ(shown->pixels, expected->pixels);

@@ -15,7 +15,8 @@
 
 namespace strata::test {
 
-// Rooms over a real database and a real renderer, with one small model: a folded surface in millimetres.
+// Rooms over a real database and a real renderer, with one small model: a folded surface in
+// millimetres.
 class RoomTest : public ::testing::Test {
  protected:
   void SetUp() override;
@@ -29,8 +30,8 @@ class RoomTest : public ::testing::Test {
   // Looks at the model from +z (or `from`), 640 × 480, orthographic or perspective.
   Camera camera(glm::dvec3 from = {0, 0, 1}, bool orthographic = false) const;
   // Of an annotator.
-  room::EditRequest stroke(const Layer& layer, double value, std::vector<glm::dvec2> path, double radius_px,
-                           const std::string& user = "anna") const;
+  room::EditRequest stroke(const Layer& layer, double value, std::vector<glm::dvec2> path,
+                           double radius_px, const std::string& user = "anna") const;
   room::EditRequest request(const Layer& layer, decltype(room::EditRequest::edit) edit,
                             const std::string& user = "anna") const;
   // Sends and waits until it is durable or refused.
@@ -40,7 +41,8 @@ class RoomTest : public ::testing::Test {
   std::future<Result<room::EditAnswer>> start(room::EditRequest request);
   // What the journal holds of the layer, and that the room holds the same.
   void expect_room_equals_journal(const Layer& layer);
-  // The picture of the room, once the GPU shows what the journal holds; fails when that never comes.
+  // The picture of the room, once the GPU shows what the journal holds; fails when that never
+  // comes.
   void expect_picture_of_journal();
 
   std::string dsn_;

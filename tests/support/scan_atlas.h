@@ -13,7 +13,8 @@ struct ScanAtlas {
   mesh::Atlas atlas;  // made, never the file's own
 };
 
-// A real scan of STRATA_TEST_DATA with an atlas made at 2048², which takes seconds: every test of a process shares it.
+// A real scan of STRATA_TEST_DATA with an atlas made at 2048², which takes seconds: every test of a
+// process shares it.
 const Result<ScanAtlas>& scan_with_made_atlas(const std::string& name);
 
 }  // namespace strata::test

@@ -9,7 +9,8 @@
 
 namespace strata::test {
 
-// Writes shapefiles byte by byte after ESRI's description, so that a reader is not checked against its own writer.
+// Writes shapefiles byte by byte after ESRI's description, so that a reader is not checked against
+// its own writer.
 
 inline std::string big_endian(std::uint32_t value) {
   std::string bytes;
@@ -21,7 +22,9 @@ inline std::string little_endian(std::uint64_t value, int bytes = 4) {
   for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * i) & 0xff);
   return text;
 }
-inline std::string number(double value) { return little_endian(std::bit_cast<std::uint64_t>(value), 8); }
+inline std::string number(double value) {
+  return little_endian(std::bit_cast<std::uint64_t>(value), 8);
+}
 
 using ShapeRings = std::vector<std::vector<std::pair<double, double>>>;
 
@@ -40,8 +43,9 @@ inline std::string polygon_record(const ShapeRings& rings, std::uint32_t type = 
       ++count;
     }
   }
-  std::string record = little_endian(type) + number(low_x) + number(low_y) + number(high_x) + number(high_y) +
-                       little_endian(rings.size()) + little_endian(count) + starts + points;
+  std::string record = little_endian(type) + number(low_x) + number(low_y) + number(high_x) +
+                       number(high_y) + little_endian(rings.size()) + little_endian(count) +
+                       starts + points;
   if (type == 15) record += std::string(16 + 8 * std::size_t{count}, '\0');
   return record;
 }
@@ -51,8 +55,9 @@ inline std::string shp_of(const std::vector<std::string>& records, std::uint32_t
   for (std::size_t i = 0; i < records.size(); ++i)
     body += big_endian(static_cast<std::uint32_t>(i + 1)) +
             big_endian(static_cast<std::uint32_t>(records[i].size() / 2)) + records[i];
-  return big_endian(9994) + std::string(20, '\0') + big_endian(static_cast<std::uint32_t>((100 + body.size()) / 2)) +
-         little_endian(1000) + little_endian(type) + std::string(64, '\0') + body;
+  return big_endian(9994) + std::string(20, '\0') +
+         big_endian(static_cast<std::uint32_t>((100 + body.size()) / 2)) + little_endian(1000) +
+         little_endian(type) + std::string(64, '\0') + body;
 }
 
 // A field of a .dbf: 'N' or 'C', values as they stand in the file.
@@ -78,14 +83,16 @@ inline std::string dbf_of(const std::vector<DbfField>& fields) {
     record += static_cast<std::size_t>(field.width);
   }
   const std::size_t rows = fields.empty() ? 0 : fields[0].values.size();
-  std::string dbf = std::string("\x03\x7c\x01\x01", 4) + little_endian(rows) + little_endian(33 + described.size(), 2) +
-                    little_endian(record, 2) + std::string(20, '\0') + described + "\r";
+  std::string dbf = std::string("\x03\x7c\x01\x01", 4) + little_endian(rows) +
+                    little_endian(33 + described.size(), 2) + little_endian(record, 2) +
+                    std::string(20, '\0') + described + "\r";
   for (std::size_t row = 0; row < rows; ++row) {
     dbf += ' ';
     for (const DbfField& field : fields) {
       std::string value = field.values[row].substr(0, static_cast<std::size_t>(field.width));
       const std::size_t missing = static_cast<std::size_t>(field.width) - value.size();
-      dbf += field.type == 'N' ? std::string(missing, ' ') + value : value + std::string(missing, ' ');
+      dbf +=
+          field.type == 'N' ? std::string(missing, ' ') + value : value + std::string(missing, ' ');
     }
   }
   return dbf + '\x1a';

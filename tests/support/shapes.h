@@ -17,18 +17,22 @@ inline ShapeBits shape_bits(const std::function<bool(double, double)>& inside) {
         bits[std::size_t(y * kShapeSide + x) / 64] |= std::uint64_t{1} << (x % 64);
   return bits;
 }
-inline std::shared_ptr<const ShapeTexture> shape(const std::function<bool(double, double)>& inside) {
+inline std::shared_ptr<const ShapeTexture> shape(
+    const std::function<bool(double, double)>& inside) {
   return std::make_shared<const ShapeTexture>(shape_bits(inside));
 }
 
 // None of these is its own mirror image.
-inline bool in_flag(double x, double y) { return (x < -0.6 && x > -0.8) || (x > -0.8 && y > x * 0.5 + 0.1 && y < 0.9); }
+inline bool in_flag(double x, double y) {
+  return (x < -0.6 && x > -0.8) || (x > -0.8 && y > x * 0.5 + 0.1 && y < 0.9);
+}
 inline bool in_ring(double x, double y) {
   return std::abs(std::hypot(x, y) - 0.8) < 0.12 && !(x > 0 && y > 0 && x > y);
 }
 inline bool in_bar(double x, double y) { return std::abs(y - 0.3) < 0.012 && x < 0.7; }
 inline bool in_dots(double x, double y) {
-  return std::hypot(x - 0.7, y - 0.6) < 0.02 || std::hypot(x + 0.5, y - 0.1) < 0.05 || std::hypot(x, y + 0.9) < 0.08;
+  return std::hypot(x - 0.7, y - 0.6) < 0.02 || std::hypot(x + 0.5, y - 0.1) < 0.05 ||
+         std::hypot(x, y + 0.9) < 0.08;
 }
 
 }  // namespace strata::test

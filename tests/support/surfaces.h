@@ -39,7 +39,8 @@ void for_each_surface_texel(const mesh::SurfaceMap& map, Visit visit) {
 }
 
 // A layer that holds what `value_at` gives for each texel's position; gutter follows.
-inline TileMap layer_of(const mesh::SurfaceMap& map, const std::function<int(glm::vec3)>& value_at) {
+inline TileMap layer_of(const mesh::SurfaceMap& map,
+                        const std::function<int(glm::vec3)>& value_at) {
   TileMap tiles;
   for (int y = 0; y < map.resolution / kTileSize; ++y)
     for (int x = 0; x < map.resolution / kTileSize; ++x) {
@@ -48,10 +49,14 @@ inline TileMap layer_of(const mesh::SurfaceMap& map, const std::function<int(glm
         const int tx = x * kTileSize + i % kTileSize, ty = y * kTileSize + i / kTileSize;
         const auto slot = map.slot_of_block[std::size_t(ty / 8) * map.blocks_per_side + tx / 8];
         const int texel = ty % 8 * 8 + tx % 8;
-        if (slot == mesh::kNoSlot || map.packed_position[std::size_t{slot} * 64 + texel] == mesh::kNoPosition) continue;
-        if (const int value = value_at(map.position(slot, texel))) tile->write(i, static_cast<std::uint32_t>(value));
+        if (slot == mesh::kNoSlot ||
+            map.packed_position[std::size_t{slot} * 64 + texel] == mesh::kNoPosition)
+          continue;
+        if (const int value = value_at(map.position(slot, texel)))
+          tile->write(i, static_cast<std::uint32_t>(value));
       }
-      if (tile->valid.any()) tiles[{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}] = tile;
+      if (tile->valid.any())
+        tiles[{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}] = tile;
     }
   return tiles;
 }

@@ -32,12 +32,17 @@ const auto* const kStopAtEnd = ::testing::AddGlobalTestEnvironment(new StopAtEnd
 }  // namespace
 
 TemporaryFolder::TemporaryFolder() {
-  // In memory where there is room: the tests kill processes, not machines, and a disk makes every initdb slow.
+  // In memory where there is room: the tests kill processes, not machines, and a disk makes every
+  // initdb slow.
   std::error_code error;
   const char* wanted = std::getenv("STRATA_TEST_TMP");
   const auto space = std::filesystem::space("/dev/shm", error);
-  const bool in_memory = !error && space.available > (std::uintmax_t{3} << 30) && access("/dev/shm", W_OK) == 0;
-  std::string name = std::string(wanted ? wanted : in_memory ? "/dev/shm" : "/tmp") + "/strata-test-XXXXXX";
+  const bool in_memory =
+      !error && space.available > (std::uintmax_t{3} << 30) && access("/dev/shm", W_OK) == 0;
+  std::string name = std::string(wanted      ? wanted
+                                 : in_memory ? "/dev/shm"
+                                             : "/tmp") +
+                     "/strata-test-XXXXXX";
   if (!mkdtemp(name.data())) throw std::runtime_error("mkdtemp failed: " + name);
   chmod(name.c_str(), 0755);
   path_ = name;
@@ -52,11 +57,13 @@ store::Cluster& shared_cluster() {
   if (!shared) {
     auto fresh = std::make_unique<Shared>();
     auto cluster = store::Cluster::start(fresh->folder.path());
-    if (!cluster) throw std::runtime_error("no PostgreSQL for the tests: " + cluster.error().detail);
+    if (!cluster)
+      throw std::runtime_error("no PostgreSQL for the tests: " + cluster.error().detail);
     fresh->cluster = std::move(*cluster);
     shared = std::move(fresh);
   }
-  if (auto running = shared->cluster->ensure_running(); !running) throw std::runtime_error(running.error().detail);
+  if (auto running = shared->cluster->ensure_running(); !running)
+    throw std::runtime_error(running.error().detail);
   return *shared->cluster;
 }
 
@@ -80,7 +87,8 @@ std::vector<int> children_of(int parent) {
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     std::ifstream status(entry.path() / "status");
     for (std::string line; std::getline(status, line);)
-      if (line.starts_with("PPid:") && std::stoi(line.substr(5)) == parent) children.push_back(std::stoi(name));
+      if (line.starts_with("PPid:") && std::stoi(line.substr(5)) == parent)
+        children.push_back(std::stoi(name));
   }
   return children;
 }
@@ -108,11 +116,12 @@ void Hang::kill() {
 std::string fresh_database() {
   static std::atomic<int> count{0};
   const std::string name = "test_" + std::to_string(++count);
-  const std::unique_ptr<PGconn, decltype(&PQfinish)> connection(PQconnectdb(shared_cluster().dsn("postgres").c_str()),
-                                                                &PQfinish);
+  const std::unique_ptr<PGconn, decltype(&PQfinish)> connection(
+      PQconnectdb(shared_cluster().dsn("postgres").c_str()), &PQfinish);
   const std::unique_ptr<PGresult, decltype(&PQclear)> made(
       PQexec(connection.get(), ("CREATE DATABASE " + name).c_str()), &PQclear);
-  if (PQresultStatus(made.get()) != PGRES_COMMAND_OK) throw std::runtime_error(PQerrorMessage(connection.get()));
+  if (PQresultStatus(made.get()) != PGRES_COMMAND_OK)
+    throw std::runtime_error(PQerrorMessage(connection.get()));
   return shared_cluster().dsn(name);
 }
 
@@ -122,6 +131,8 @@ std::unique_ptr<store::Store> open_store(const std::string& dsn, int connections
   return std::move(*opened);
 }
 
-std::unique_ptr<store::Store> fresh_store(int connections) { return open_store(fresh_database(), connections); }
+std::unique_ptr<store::Store> fresh_store(int connections) {
+  return open_store(fresh_database(), connections);
+}
 
 }  // namespace strata::test

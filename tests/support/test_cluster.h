@@ -9,8 +9,8 @@
 
 namespace strata::test {
 
-// One private PostgreSQL for the test binary, started at first use in a temporary folder and removed at the end.
-// Compile tests/support/test_cluster.cpp into the test.
+// One private PostgreSQL for the test binary, started at first use in a temporary folder and
+// removed at the end. Compile tests/support/test_cluster.cpp into the test.
 store::Cluster& shared_cluster();
 
 // kill -9 of the postmaster; returns once it is dead, so that `ensure_running` sees it.
@@ -37,8 +37,8 @@ std::string fresh_database();
 std::unique_ptr<store::Store> fresh_store(int connections = 4);
 std::unique_ptr<store::Store> open_store(const std::string& dsn, int connections = 4);
 
-// A temporary folder that the database user can reach; removed with the object. STRATA_TEST_TMP names another place
-// than /dev/shm (or /tmp) for it.
+// A temporary folder that the database user can reach; removed with the object. STRATA_TEST_TMP
+// names another place than /dev/shm (or /tmp) for it.
 class TemporaryFolder {
  public:
   TemporaryFolder();

@@ -41,12 +41,13 @@ struct TiffFile {
       return Tag{id, type, 1, little_endian(value, type == 3 ? 2 : 4)};
     };
     std::vector<std::uint16_t> every_bits(samples, bits), every_format(samples, format);
-    std::vector<Tag> tags{one(256, 4, width),       one(257, 4, height),
-                          shorts(258, every_bits),  one(259, 3, 1),
-                          one(262, 3, photometric), one(273, 4, 0),
-                          one(274, 3, orientation), one(277, 3, samples),
-                          one(278, 4, height),      one(279, 4, static_cast<std::uint32_t>(pixels.size())),
-                          one(284, 3, 1),           shorts(339, every_format)};
+    std::vector<Tag> tags{
+        one(256, 4, width),       one(257, 4, height),
+        shorts(258, every_bits),  one(259, 3, 1),
+        one(262, 3, photometric), one(273, 4, 0),
+        one(274, 3, orientation), one(277, 3, samples),
+        one(278, 4, height),      one(279, 4, static_cast<std::uint32_t>(pixels.size())),
+        one(284, 3, 1),           shorts(339, every_format)};
     if (photometric == 2 && samples == 4) tags.insert(tags.end() - 1, one(338, 3, 2));
     tags.insert(tags.end(), more.begin(), more.end());
     std::size_t at = 8 + 2 + 12 * tags.size() + 4;
@@ -62,7 +63,8 @@ struct TiffFile {
     for (Tag& tag : tags) {
       if (tag.id == 273) tag.bytes = little_endian(at + held.size());
       tag.bytes.resize(4, '\0');
-      file += little_endian(tag.id, 2) + little_endian(tag.type, 2) + little_endian(tag.count) + tag.bytes;
+      file += little_endian(tag.id, 2) + little_endian(tag.type, 2) + little_endian(tag.count) +
+              tag.bytes;
     }
     return file + little_endian(0) + held + pixels;
   }

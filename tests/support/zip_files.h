@@ -18,7 +18,8 @@ inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>
   zip_t* zip = zip_open_from_source(target, ZIP_TRUNCATE, &error);
   if (!zip) throw std::runtime_error(zip_error_strerror(&error));
   for (const auto& [name, content] : entries)
-    zip_file_add(zip, name.c_str(), zip_source_buffer(zip, content.data(), content.size(), 0), ZIP_FL_ENC_UTF_8);
+    zip_file_add(zip, name.c_str(), zip_source_buffer(zip, content.data(), content.size(), 0),
+                 ZIP_FL_ENC_UTF_8);
   if (zip_close(zip) != 0) throw std::runtime_error(zip_strerror(zip));
   zip_source_open(target);
   zip_source_seek(target, 0, SEEK_END);

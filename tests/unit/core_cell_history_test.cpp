@@ -68,7 +68,8 @@ class OneRow {
     return found == now_.end() ? json() : found->second;
   }
   void push(bool writer, Cells before, Cells after) {
-    newest_first_.insert(newest_first_.begin(), {next_++, writer, true, std::move(before), std::move(after)});
+    newest_first_.insert(newest_first_.begin(),
+                         {next_++, writer, true, std::move(before), std::move(after)});
   }
 
   std::int64_t next_ = 1;

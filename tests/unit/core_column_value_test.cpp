@@ -1,4 +1,5 @@
-// What a column of a table takes: values of each kind in JSON and as text, and columns that do not fit together.
+// What a column of a table takes: values of each kind in JSON and as text, and columns that do not
+// fit together.
 #include <gtest/gtest.h>
 
 #include "core/column_value.h"
@@ -70,15 +71,17 @@ TEST(ColumnValue, numbers_keep_to_the_limits_of_their_column) {
 TEST(ColumnValue, dates_and_times_are_of_the_calendar) {
   const Column date = column(ColumnKind::date), time = column(ColumnKind::timestamp);
   EXPECT_EQ(kept(date, "2024-02-29"), "2024-02-29");
-  for (const char* bad : {"2023-02-29", "2024-2-9", "0000-01-01", "2024-13-01", "2024-02-29T00:00:00Z", "29.2.2024"})
+  for (const char* bad :
+       {"2023-02-29", "2024-2-9", "0000-01-01", "2024-13-01", "2024-02-29T00:00:00Z", "29.2.2024"})
     expect_refused(date, bad);
   EXPECT_EQ(kept(time, "2024-02-29T12:30:00Z"), "2024-02-29T12:30:00.000Z");
   EXPECT_EQ(kept(time, "2024-02-29 23:30:15.1239-01:30"), "2024-03-01T01:00:15.123Z");
   EXPECT_EQ(kept(time, "2024-03-01T00:30+01:00"), "2024-02-29T23:30:00.000Z");
   EXPECT_EQ(kept(time, "1066-10-14"), "1066-10-14T00:00:00.000Z");
   EXPECT_EQ(kept(time, "9999-12-31T23:59:59.999Z"), "9999-12-31T23:59:59.999Z");
-  for (const char* bad : {"2024-02-29T24:00:00Z", "2024-02-29T12:60Z", "2024-02-29T12", "2024-02-29T12:00:00.Z",
-                          "0001-01-01T00:00:00+01:00", "9999-12-31T23:59:59-00:01", "2024-02-29T12:00:00 UTC", "now"})
+  for (const char* bad :
+       {"2024-02-29T24:00:00Z", "2024-02-29T12:60Z", "2024-02-29T12", "2024-02-29T12:00:00.Z",
+        "0001-01-01T00:00:00+01:00", "9999-12-31T23:59:59-00:01", "2024-02-29T12:00:00 UTC", "now"})
     expect_refused(time, bad);
 }
 
@@ -89,8 +92,10 @@ TEST(ColumnValue, the_other_kinds_take_what_they_are_made_for) {
   expect_refused(column(ColumnKind::period), "circa 1560");
   EXPECT_EQ(kept(column(ColumnKind::enumeration), "fair"), "fair");
   expect_refused(column(ColumnKind::enumeration), "Fair");
-  EXPECT_EQ(kept(column(ColumnKind::url), "https://example.org/a?b=c#d"), "https://example.org/a?b=c#d");
-  for (const char* bad : {"javascript:alert(1)", "data:text/html,x", "https://", "http://a b", "example.org", "urn:"})
+  EXPECT_EQ(kept(column(ColumnKind::url), "https://example.org/a?b=c#d"),
+            "https://example.org/a?b=c#d");
+  for (const char* bad :
+       {"javascript:alert(1)", "data:text/html,x", "https://", "http://a b", "example.org", "urn:"})
     expect_refused(column(ColumnKind::url), bad);
   EXPECT_EQ(kept(column(ColumnKind::term), 4294967295), 4294967295);
   for (const json& bad : {json(-1), json(4294967296), json(1.5), json("1")})
@@ -145,7 +150,8 @@ TEST(ColumnValue, cells_are_read_as_people_write_them) {
   EXPECT_EQ(parse_value(column(ColumnKind::integer), "+7", false, "cell").value(), 7);
   EXPECT_EQ(parse_value(column(ColumnKind::boolean), "Yes", false, "cell").value(), true);
   EXPECT_FALSE(parse_value(column(ColumnKind::boolean), "maybe", false, "cell").has_value());
-  EXPECT_EQ(parse_value(column(ColumnKind::relation), "3; 1 2", false, "cell").value(), json({1, 2, 3}));
+  EXPECT_EQ(parse_value(column(ColumnKind::relation), "3; 1 2", false, "cell").value(),
+            json({1, 2, 3}));
   EXPECT_FALSE(parse_value(column(ColumnKind::relation), "3; x", false, "cell").has_value());
 }
 
@@ -158,8 +164,10 @@ TEST(ColumnValue, retyping_keeps_what_the_new_kind_can_hold) {
   EXPECT_EQ(converted(ColumnKind::text, ColumnKind::integer, "twelve"), "refused");
   EXPECT_EQ(converted(ColumnKind::numeric, ColumnKind::integer, 2.0), 2);
   EXPECT_EQ(converted(ColumnKind::numeric, ColumnKind::integer, 2.5), "refused");
-  EXPECT_EQ(converted(ColumnKind::timestamp, ColumnKind::date, "2024-02-29T12:00:00.000Z"), "2024-02-29");
-  EXPECT_EQ(converted(ColumnKind::date, ColumnKind::timestamp, "2024-02-29"), "2024-02-29T00:00:00.000Z");
+  EXPECT_EQ(converted(ColumnKind::timestamp, ColumnKind::date, "2024-02-29T12:00:00.000Z"),
+            "2024-02-29");
+  EXPECT_EQ(converted(ColumnKind::date, ColumnKind::timestamp, "2024-02-29"),
+            "2024-02-29T00:00:00.000Z");
   EXPECT_EQ(converted(ColumnKind::date, ColumnKind::period, "2024-02-29"), "2024-02-29");
   EXPECT_EQ(converted(ColumnKind::term, ColumnKind::relation, 5), json({5}));
   EXPECT_EQ(converted(ColumnKind::text, ColumnKind::text, "'=x"), "'=x");
@@ -185,7 +193,8 @@ TEST(ColumnValue, a_column_that_does_not_fit_together_is_refused_by_its_field) {
   EXPECT_EQ(changed(ColumnKind::text, [](Column& c) { c.unit = "mm"; }), "unit");
   EXPECT_EQ(changed(ColumnKind::text, [](Column& c) { c.minimum = 1; }), "minimum");
   EXPECT_EQ(changed(ColumnKind::text, [](Column& c) { c.maximum = 1; }), "maximum");
-  EXPECT_EQ(changed(ColumnKind::numeric, [](Column& c) { c.minimum = 2, c.maximum = 1; }), "minimum");
+  EXPECT_EQ(changed(ColumnKind::numeric, [](Column& c) { c.minimum = 2, c.maximum = 1; }),
+            "minimum");
   EXPECT_EQ(changed(ColumnKind::text, [](Column& c) { c.choices = {"a"}; }), "choices");
   EXPECT_EQ(changed(ColumnKind::enumeration, [](Column& c) { c.choices = {}; }), "choices");
   EXPECT_EQ(changed(ColumnKind::enumeration, [](Column& c) { c.choices = {"a", "a"}; }), "choices");
@@ -193,10 +202,19 @@ TEST(ColumnValue, a_column_that_does_not_fit_together_is_refused_by_its_field) {
   EXPECT_EQ(changed(ColumnKind::date, [](Column& c) { c.target = 1; }), "target");
   EXPECT_EQ(changed(ColumnKind::relation, [](Column& c) { c.unique = true; }), "unique");
   EXPECT_EQ(changed(ColumnKind::boolean, [](Column& c) { c.unique = true; }), "unique");
-  EXPECT_EQ(changed(ColumnKind::text, [](Column& c) { c.unique = true, c.default_value = "a"; }), "default");
+  EXPECT_EQ(changed(ColumnKind::text, [](Column& c) { c.unique = true, c.default_value = "a"; }),
+            "default");
   EXPECT_EQ(changed(ColumnKind::integer, [](Column& c) { c.default_value = "a"; }), "default");
-  EXPECT_EQ(changed(ColumnKind::text, [](Column& c) { c.labels = {{"es", "Nombre"}, {"pt-BR", "Nome"}}; }), "");
-  EXPECT_EQ(changed(ColumnKind::text, [](Column& c) { c.labels = {{"not a tag", "x"}}; }), "labels");
+  EXPECT_EQ(changed(ColumnKind::text,
+                    [](Column& c) {
+                      c.labels = {{"es", "Nombre"}, {"pt-BR", "Nome"}};
+                    }),
+            "");
+  EXPECT_EQ(changed(ColumnKind::text,
+                    [](Column& c) {
+                      c.labels = {{"not a tag", "x"}};
+                    }),
+            "labels");
 }
 
 TEST(ColumnValue, a_record_tells_every_column) {

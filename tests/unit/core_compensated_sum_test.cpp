@@ -37,7 +37,8 @@ TEST(CompensatedSum, sums_of_parts_are_the_sum_of_all) {
   std::mt19937 random(3);
   std::vector<double> values;
   for (int i = 0; i < 100'000; ++i)
-    values.push_back(std::ldexp(static_cast<double>(random() % 1000), static_cast<int>(random() % 60)));
+    values.push_back(
+        std::ldexp(static_cast<double>(random() % 1000), static_cast<int>(random() % 60)));
   CompensatedSum all, joined, part;
   for (std::size_t i = 0; i < values.size(); ++i) {
     all += values[i];

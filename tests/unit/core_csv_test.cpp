@@ -47,7 +47,8 @@ TEST(Csv, lines_are_counted_through_quoted_line_ends) {
 }
 
 TEST(Csv, a_problem_names_the_line) {
-  const auto expect_problem = [](std::string_view text, const char* part, const CsvLimits& limits = {}) {
+  const auto expect_problem = [](std::string_view text, const char* part,
+                                 const CsvLimits& limits = {}) {
     const auto csv = parse_csv(text, limits);
     ASSERT_FALSE(csv.has_value()) << text;
     EXPECT_EQ(csv.error().status, 422);
@@ -114,7 +115,8 @@ TEST(Csv, a_part_that_another_separator_makes_a_cell_is_guarded) {
 TEST(Csv, a_text_with_any_separator_is_quoted_and_a_number_is_not) {
   for (const char separator : {',', ';', '\t'}) {
     EXPECT_EQ(csv_line({"a;b", "a,b", "a\tb", "x"}, separator),
-              std::string("\"a;b\"") + separator + "\"a,b\"" + separator + "\"a\tb\"" + separator + "x\r\n");
+              std::string("\"a;b\"") + separator + "\"a,b\"" + separator + "\"a\tb\"" + separator +
+                  "x\r\n");
   }
   EXPECT_EQ(csv_line({"1,5", "-2,25e-05"}, ';'), "1,5;-2,25e-05\r\n");
   EXPECT_EQ(csv_line({"1,5"}, ','), "\"1,5\"\r\n");
@@ -156,7 +158,8 @@ TEST(Csv, guarded_texts_come_back_and_run_nowhere_whatever_separates) {
     for (const char other : {',', ';', '\t'})
       for (const std::string& cell : cells_as_seen(line, other))
         for (const char* sign : {"=", "+", "-", "@", "\uff1d", "\uff20"})
-          ASSERT_FALSE(cell.starts_with(sign)) << line << "as separated by " << other << ": " << cell;
+          ASSERT_FALSE(cell.starts_with(sign))
+              << line << "as separated by " << other << ": " << cell;
   }
 }
 

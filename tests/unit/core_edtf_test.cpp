@@ -25,7 +25,8 @@ TEST(Edtf, day_numbers_count_the_days_of_the_calendar) {
   std::int64_t expected = day_number(-401, 1, 1);
   for (std::int64_t year = -401; year <= 401; ++year)
     for (int month = 1; month <= 12; ++month)
-      for (int day = 1; day <= days_in_month(year, month); ++day) ASSERT_EQ(day_number(year, month, day), expected++);
+      for (int day = 1; day <= days_in_month(year, month); ++day)
+        ASSERT_EQ(day_number(year, month, day), expected++);
 }
 
 TEST(Edtf, a_date_means_all_of_its_days) {
@@ -73,12 +74,15 @@ TEST(Edtf, intervals_may_be_open_or_unknown_at_an_end) {
 }
 
 TEST(Edtf, what_is_no_period_is_refused_with_examples) {
-  for (const char* text :
-       {"",           " ",      "circa 1560",     "156",         "15600",       "1560-13",    "1560-00",
-        "1561-02-29", "1560-4", "1560-04-1",      "1560-04-31",  "X560",        "1X60",       "XXXX",
-        "156X-04",    "-0000",  "Y1560",          "Y0001560",    "Y9999999999", "1580/1560",  "/",
-        "../..",      "/..",    "1560/1570/1580", "1560~?",      "1560-25",     "1560-21-01", "1560-XX-04",
-        "1560T12:00", "--156",  "1560-04-12Z",    "1560 / 1570", "\xff\xfe"}) {
+  for (const char* text : {"",           " ",         "circa 1560",  "156",
+                           "15600",      "1560-13",   "1560-00",     "1561-02-29",
+                           "1560-4",     "1560-04-1", "1560-04-31",  "X560",
+                           "1X60",       "XXXX",      "156X-04",     "-0000",
+                           "Y1560",      "Y0001560",  "Y9999999999", "1580/1560",
+                           "/",          "../..",     "/..",         "1560/1570/1580",
+                           "1560~?",     "1560-25",   "1560-21-01",  "1560-XX-04",
+                           "1560T12:00", "--156",     "1560-04-12Z", "1560 / 1570",
+                           "\xff\xfe"}) {
     const auto parsed = parse_edtf(text);
     ASSERT_FALSE(parsed.has_value()) << text;
     EXPECT_EQ(parsed.error().status, 422);

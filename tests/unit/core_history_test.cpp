@@ -42,7 +42,8 @@ class OneTileLayer {
     undone_[sequence] = !in_force;
     TileResolver resolver(tile_, written);
     for (const auto& entry : newest_first_) resolver.add(entry);
-    for (int i = 0; i < kTexelsPerTile; ++i) EXPECT_EQ(resolver.provisional().test(i), written.test(i) && waits(i));
+    for (int i = 0; i < kTexelsPerTile; ++i)
+      EXPECT_EQ(resolver.provisional().test(i), written.test(i) && waits(i));
     push(false, written, std::move(resolver).finish());
   }
 
@@ -69,15 +70,17 @@ class OneTileLayer {
         if (!is_undone(write.sequence)) found = waiting_.contains(write.sequence);
     return found;
   }
-  bool is_undone(std::int64_t sequence) const { return undone_.contains(sequence) && undone_.at(sequence); }
+  bool is_undone(std::int64_t sequence) const {
+    return undone_.contains(sequence) && undone_.at(sequence);
+  }
   std::int64_t next() const { return next_; }
   const TileData& tile() const { return tile_; }
 
  private:
   void push(bool writer, const TileMask& written, const TileData& after) {
     const bool provisional = waiting_.contains(next_);
-    newest_first_.insert(newest_first_.begin(),
-                         {next_++, writer, true, provisional, make_revision({}, tile_, after, written)});
+    newest_first_.insert(newest_first_.begin(), {next_++, writer, true, provisional,
+                                                 make_revision({}, tile_, after, written)});
     tile_ = after;
   }
   TileData tile_{ValueType::u8};

@@ -20,7 +20,8 @@ Palette palette(const char* text) {
 constexpr Rgba kRed{255, 0, 0, 255}, kGreen{0, 255, 0, 255}, kBlue{0, 0, 255, 128};
 
 TEST(KeyColors, numbers_of_records_take_the_palettes_colours) {
-  const Palette steps = palette(R"({"mode":"step","column":"depth","points":[{"at":0,"color":"#ff0000"},
+  const Palette steps =
+      palette(R"({"mode":"step","column":"depth","points":[{"at":0,"color":"#ff0000"},
     {"at":5,"color":"#00ff00","pattern":"hatch","angle":30,"spacing_mm":2}]})");
   const std::vector<KeyNumber> numbers{{9, 7}, {2, -3}, {4'000'000'000u, 5}};
   const Palette made = colors_of_numbers(steps, numbers);
@@ -47,12 +48,14 @@ TEST(KeyColors, each_number_is_coloured_as_the_palette_colours_it_alone) {
     for (std::uint32_t key = 0; key < 500; ++key)
       numbers.push_back({key * 7, std::uniform_real_distribution(-10.0, 14.0)(random)});
     const Palette made = colors_of_numbers(given, numbers);
-    for (const KeyNumber& known : numbers) ASSERT_EQ(color_of(made, known.key), color_of(given, known.number));
+    for (const KeyNumber& known : numbers)
+      ASSERT_EQ(color_of(made, known.key), color_of(given, known.number));
   }
 }
 
 TEST(KeyColors, texts_are_named_by_points_and_the_rest_are_others) {
-  const Palette states = palette(R"({"mode":"categorical","column":"state","others":"#0000ff80","points":[
+  const Palette states =
+      palette(R"({"mode":"categorical","column":"state","others":"#0000ff80","points":[
     {"at":0,"value":"loose","color":"#ff0000"},{"at":1,"value":"firm","color":"#00ff00","pattern":"dots"}]})");
   const std::vector<KeyText> texts{{5, "firm"}, {1, "loose"}, {3, "odd"}};
   const Palette made = colors_of_texts(states, texts);
@@ -66,7 +69,8 @@ TEST(KeyColors, texts_are_named_by_points_and_the_rest_are_others) {
 TEST(KeyColors, highlighted_keys_stand_out_in_their_own_colours) {
   const Palette keys = palette(R"({"mode":"categorical","points":[{"at":4,"color":"#0000ff80"}]})");
   const std::vector<std::uint32_t> lit{4, 9};
-  const Palette dimmed = highlighted_colors(keys, lit, false), isolated = highlighted_colors(keys, lit, true);
+  const Palette dimmed = highlighted_colors(keys, lit, false),
+                isolated = highlighted_colors(keys, lit, true);
   for (const Palette& made : {dimmed, isolated}) {
     EXPECT_EQ(color_of(made, 4), (Rgba{0, 0, 255, 255})) << "as opaque as can be";
     EXPECT_EQ(color_of(made, 9), generated_color(9));
@@ -82,7 +86,8 @@ TEST(Classification, equal_intervals_and_quantiles_hold_every_number_once) {
   for (int round = 0; round < 200; ++round) {
     std::vector<double> numbers(std::uniform_int_distribution<std::size_t>(1, 300)(random));
     const int values = std::uniform_int_distribution(1, 40)(random);
-    for (double& number : numbers) number = std::uniform_int_distribution(-values, values)(random) * 0.25;
+    for (double& number : numbers)
+      number = std::uniform_int_distribution(-values, values)(random) * 0.25;
     const int count = std::uniform_int_distribution(1, 12)(random);
     for (const ClassMethod method : {ClassMethod::equal, ClassMethod::quantile}) {
       const auto classes = classify(numbers, method, count);
@@ -93,7 +98,8 @@ TEST(Classification, equal_intervals_and_quantiles_hold_every_number_once) {
         const bool last = i + 1 == classes.size();
         std::uint64_t held = 0;
         for (const double number : numbers)
-          held += number >= classes[i].from && (number < classes[i].to || (last && number == classes[i].to));
+          held += number >= classes[i].from &&
+                  (number < classes[i].to || (last && number == classes[i].to));
         ASSERT_EQ(classes[i].count, held) << round << " " << i;
         if (!last) {
           ASSERT_EQ(classes[i].to, classes[i + 1].from);
@@ -104,7 +110,8 @@ TEST(Classification, equal_intervals_and_quantiles_hold_every_number_once) {
         total += held;
       }
       ASSERT_EQ(total, numbers.size());
-      if (method == ClassMethod::equal && classes.size() == static_cast<std::size_t>(count) && count > 1) {
+      if (method == ClassMethod::equal && classes.size() == static_cast<std::size_t>(count) &&
+          count > 1) {
         ASSERT_NEAR(classes[0].to - classes[0].from, classes[1].to - classes[1].from, 1e-9);
       }
     }
@@ -129,7 +136,8 @@ TEST(Classification, extremes_stay_finite_and_nothing_makes_no_class) {
   }
   constexpr double kHuge = std::numeric_limits<double>::max();
   const std::vector<double> far{-kHuge, 0, kHuge};
-  for (const NumberClass& each : classify(far, ClassMethod::equal, 4)) EXPECT_TRUE(std::isfinite(each.to));
+  for (const NumberClass& each : classify(far, ClassMethod::equal, 4))
+    EXPECT_TRUE(std::isfinite(each.to));
 }
 
 TEST(Classification, values_are_counted_the_most_frequent_first) {

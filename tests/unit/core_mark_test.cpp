@@ -22,7 +22,8 @@ Column column_of(ColumnKind kind) {
 TEST(Mark, what_is_written_is_read_again_as_json_and_as_text) {
   std::mt19937_64 random(5);
   const auto number = [&] {
-    return std::ldexp(static_cast<double>(static_cast<std::int64_t>(random())), static_cast<int>(random() % 56) - 80);
+    return std::ldexp(static_cast<double>(static_cast<std::int64_t>(random())),
+                      static_cast<int>(random() % 56) - 80);
   };
   for (int round = 0; round < 200; ++round) {
     const bool lines = round % 2 == 0;
@@ -53,18 +54,20 @@ TEST(Mark, texts_of_other_programs_are_understood) {
 
 TEST(Mark, what_is_none_is_refused) {
   for (const char* text :
-       {"", ";", "3", "LINESTRING Z (0 0 1, 1 0 0)", "3 LINESTRING (0 0, 1 1)", "3 LINESTRING Z (0 0 1)",
-        "3 LINESTRING Z (0 0 1, 0 0 1)", "3 LINESTRING Z (0 0 1, 1 0 0", "3 LINESTRING Z (0 0 nan, 1 0 0)",
-        "3 LINESTRING Z (0 0 inf, 1 0 0)", "0 LINESTRING Z (0 0 1, 1 0 0)", "-3 LINESTRING Z (0 0 1, 1 0 0)",
+       {"", ";", "3", "LINESTRING Z (0 0 1, 1 0 0)", "3 LINESTRING (0 0, 1 1)",
+        "3 LINESTRING Z (0 0 1)", "3 LINESTRING Z (0 0 1, 0 0 1)", "3 LINESTRING Z (0 0 1, 1 0 0",
+        "3 LINESTRING Z (0 0 nan, 1 0 0)", "3 LINESTRING Z (0 0 inf, 1 0 0)",
+        "0 LINESTRING Z (0 0 1, 1 0 0)", "-3 LINESTRING Z (0 0 1, 1 0 0)",
         "3 LINESTRING Z (0 0 1e13, 1 0 0)", "3 LINESTRING Z (0 0 1, 1 0 0) x", "3 POINT Z (0 0 1)"})
     EXPECT_EQ(parse_marks(text, true), std::nullopt) << text;
-  for (const char* text :
-       {R"({})", R"([1])", R"([{"model": 3}])", R"([{"model": "3", "coordinates": [[0,0,0],[1,0,0]]}])",
-        R"([{"model": 3, "coordinates": [[0,0,0]]}])", R"([{"model": 3, "coordinates": [[0,0],[1,0]]}])",
-        R"([{"model": 3, "coordinates": [[0,0,0],[1,0,"1"]]}])",
-        R"([{"model": 3, "coordinates": [[0,0,0],[1,0,2e12]]}])",
-        R"([{"model": 3, "coordinates": [[0,0,0],[1,0,0]], "more": 1}])",
-        R"([{"model": 0, "coordinates": [[0,0,0],[1,0,0]]}])"})
+  for (const char* text : {R"({})", R"([1])", R"([{"model": 3}])",
+                           R"([{"model": "3", "coordinates": [[0,0,0],[1,0,0]]}])",
+                           R"([{"model": 3, "coordinates": [[0,0,0]]}])",
+                           R"([{"model": 3, "coordinates": [[0,0],[1,0]]}])",
+                           R"([{"model": 3, "coordinates": [[0,0,0],[1,0,"1"]]}])",
+                           R"([{"model": 3, "coordinates": [[0,0,0],[1,0,2e12]]}])",
+                           R"([{"model": 3, "coordinates": [[0,0,0],[1,0,0]], "more": 1}])",
+                           R"([{"model": 0, "coordinates": [[0,0,0],[1,0,0]]}])"})
     EXPECT_EQ(read_marks(json::parse(text), true), std::nullopt) << text;
   const Column column = column_of(ColumnKind::line);
   for (const json& value : {json("x"), json(3), json(true), json::object(), json::array({1, 2})}) {
@@ -78,7 +81,8 @@ TEST(Mark, what_is_none_is_refused) {
   EXPECT_EQ(read_marks(to_json(many), false), std::nullopt);
   many.resize(kMostMarks);
   EXPECT_TRUE(read_marks(to_json(many), false));
-  const std::vector<Mark> long_ones(2, {1, std::vector<glm::dvec3>(kMostMarkPlaces / 2 + 1, {1, 2, 3})});
+  const std::vector<Mark> long_ones(
+      2, {1, std::vector<glm::dvec3>(kMostMarkPlaces / 2 + 1, {1, 2, 3})});
   EXPECT_EQ(read_marks(to_json(long_ones), true), std::nullopt);
 }
 
@@ -102,8 +106,8 @@ TEST(Mark, columns_of_marks_have_no_default_and_are_not_unique) {
   const json line = to_json(std::vector<Mark>{{3, {{0, 0, 1}, {2.5, 0, 1}}}});
   EXPECT_EQ(convert_value(column_of(ColumnKind::line), column_of(ColumnKind::text), line, "f"),
             json("3 LINESTRING Z (0 0 1, 2.5 0 1)"));
-  const auto again =
-      convert_value(column_of(ColumnKind::text), column_of(ColumnKind::line), "3 LINESTRING Z (0 0 1, 2.5 0 1)", "f");
+  const auto again = convert_value(column_of(ColumnKind::text), column_of(ColumnKind::line),
+                                   "3 LINESTRING Z (0 0 1, 2.5 0 1)", "f");
   ASSERT_TRUE(again) << again.error().detail;
   EXPECT_EQ(*again, line);
   EXPECT_FALSE(convert_value(column_of(ColumnKind::integer), column_of(ColumnKind::line), 3, "f"));

@@ -10,7 +10,8 @@ namespace {
 using namespace std::string_literals;
 
 std::string sniff(const std::string& bytes, const std::string& name = "file") {
-  return sniff_media_type({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, name);
+  return sniff_media_type({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()},
+                          name);
 }
 
 // A zip's first entry, stored.
@@ -45,10 +46,12 @@ TEST(MediaType, files_are_told_by_their_first_bytes) {
 }
 
 TEST(MediaType, a_name_cannot_make_a_page_a_picture) {
-  for (const char* page : {"<html><script>alert(1)</script>", "  \n<!DOCTYPE HTML><p>", "<ScRiPt>alert(1)</script>",
-                           "<!-- x --><html>", "\xef\xbb\xbf<body onload=alert(1)>", "<iframe src=x>"})
+  for (const char* page :
+       {"<html><script>alert(1)</script>", "  \n<!DOCTYPE HTML><p>", "<ScRiPt>alert(1)</script>",
+        "<!-- x --><html>", "\xef\xbb\xbf<body onload=alert(1)>", "<iframe src=x>"})
     EXPECT_EQ(sniff(page, "photo.jpg"), "text/html") << page;
-  for (const char* drawing : {"<svg onload=alert(1)>", "<?xml version='1.0'?><svg/>", "<!-- a --> <svg xmlns=''>"})
+  for (const char* drawing :
+       {"<svg onload=alert(1)>", "<?xml version='1.0'?><svg/>", "<!-- a --> <svg xmlns=''>"})
     EXPECT_EQ(sniff(drawing, "photo.png"), "image/svg+xml") << drawing;
   EXPECT_EQ(sniff("<?xml version='1.0'?><lido/>", "a.svg"), "application/xml");
   EXPECT_FALSE(is_raster_picture("image/svg+xml"));
@@ -64,10 +67,11 @@ TEST(MediaType, the_name_tells_only_kinds_of_plain_text_apart) {
 }
 
 TEST(MediaType, no_beginning_of_a_file_reads_beyond_it) {
-  for (const std::string& whole :
-       {"RIFF\x10\0\0\0WEBP"s, "\0\0\0\x18"s + "ftypheic"s, zip_entry("[Content_Types].xml", "word/"),
-        "\x1a\x45\xdf\xa3"s, "BM\0\0\0\0\0\0\0\0\x36\0\0\0"s, "<!DOCTYPE html>"s})
-    for (std::size_t cut = 0; cut <= whole.size(); ++cut) EXPECT_FALSE(sniff(whole.substr(0, cut)).empty());
+  for (const std::string& whole : {"RIFF\x10\0\0\0WEBP"s, "\0\0\0\x18"s + "ftypheic"s,
+                                   zip_entry("[Content_Types].xml", "word/"), "\x1a\x45\xdf\xa3"s,
+                                   "BM\0\0\0\0\0\0\0\0\x36\0\0\0"s, "<!DOCTYPE html>"s})
+    for (std::size_t cut = 0; cut <= whole.size(); ++cut)
+      EXPECT_FALSE(sniff(whole.substr(0, cut)).empty());
 }
 
 }  // namespace

@@ -8,11 +8,12 @@ namespace strata {
 namespace {
 
 // "code=SU 1 n=2", or "" where the name is not of the pattern; with a mark where the code is known.
-std::string read(const std::string& pattern, const std::string& name, const std::set<std::string>& known = {}) {
+std::string read(const std::string& pattern, const std::string& name,
+                 const std::set<std::string>& known = {}) {
   const auto parsed = NamePattern::parse(pattern, "pattern");
   EXPECT_TRUE(parsed) << parsed.error().detail;
-  const auto reading =
-      parsed->read(name, "code", [&](std::string_view value) { return known.contains(std::string(value)); });
+  const auto reading = parsed->read(
+      name, "code", [&](std::string_view value) { return known.contains(std::string(value)); });
   if (!reading) return {};
   std::string told = reading->is_known ? "!" : "";
   for (const auto& [word, value] : reading->words) told += word + "=" + value + " ";
@@ -27,22 +28,25 @@ TEST(NamePattern, words_are_what_stands_between_the_texts) {
 }
 
 TEST(NamePattern, other_names_are_not_of_it) {
-  for (const char* name : {"", "12.jpg", "12_north.jpg", "_north_1.jpg", "12__1.jpg", "12_north_.jpg", "12_north_1.png",
-                           "12_north_1.jpg.exe"})
+  for (const char* name : {"", "12.jpg", "12_north.jpg", "_north_1.jpg", "12__1.jpg",
+                           "12_north_.jpg", "12_north_1.png", "12_north_1.jpg.exe"})
     EXPECT_EQ(read("{code}_{view}_{n}.jpg", name), "") << name;
 }
 
 TEST(NamePattern, of_several_readings_the_known_one_is_meant) {
-  EXPECT_EQ(read("{code}_{view}_{n}.jpg", "SU_12_north_1.jpg", {"SU_12"}), "!code=SU_12 n=1 view=north ");
-  EXPECT_EQ(read("{code}_{view}_{n}.jpg", "SU_12_north_1.jpg", {"SU"}), "!code=SU n=north_1 view=12 ");
-  EXPECT_EQ(read("{code}_{view}_{n}.jpg", "SU_12_north_1.jpg", {"SU", "SU_12"}), "!code=SU_12 n=1 view=north ");
+  EXPECT_EQ(read("{code}_{view}_{n}.jpg", "SU_12_north_1.jpg", {"SU_12"}),
+            "!code=SU_12 n=1 view=north ");
+  EXPECT_EQ(read("{code}_{view}_{n}.jpg", "SU_12_north_1.jpg", {"SU"}),
+            "!code=SU n=north_1 view=12 ");
+  EXPECT_EQ(read("{code}_{view}_{n}.jpg", "SU_12_north_1.jpg", {"SU", "SU_12"}),
+            "!code=SU_12 n=1 view=north ");
   EXPECT_EQ(read("{view}-{code}.jpg", "a-b-c.jpg", {"c"}), "!code=c view=a-b ");
   EXPECT_EQ(read("{code}_{n}.jpg", "x_y_z.jpg", {"q"}), "code=x_y n=z ");
 }
 
 TEST(NamePattern, patterns_that_say_nothing_are_refused) {
-  for (const char* pattern :
-       {"", "photo.jpg", "{a}{b}", "{a", "a}", "{}", "{a{b}}", "{a}_{a}", "{a}1{b}2{c}3{d}4{e}5{f}6{g}7{h}8{i}"}) {
+  for (const char* pattern : {"", "photo.jpg", "{a}{b}", "{a", "a}", "{}", "{a{b}}", "{a}_{a}",
+                              "{a}1{b}2{c}3{d}4{e}5{f}6{g}7{h}8{i}"}) {
     const auto parsed = NamePattern::parse(pattern, "pattern");
     ASSERT_FALSE(parsed) << pattern;
     EXPECT_EQ(parsed.error().status, 422);

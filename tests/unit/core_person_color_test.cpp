@@ -40,8 +40,11 @@ Color lab(const Color& c) {
 
 // As people see it who lack the cones for green (Machado, Oliveira, Fernandes 2009).
 Color without_green(const Color& c) {
-  const auto part = [&](double r, double g, double b) { return std::clamp(r * c[0] + g * c[1] + b * c[2], 0.0, 1.0); };
-  return {part(0.367322, 0.860646, -0.227968), part(0.280085, 0.672501, 0.047413), part(-0.011820, 0.042940, 0.968881)};
+  const auto part = [&](double r, double g, double b) {
+    return std::clamp(r * c[0] + g * c[1] + b * c[2], 0.0, 1.0);
+  };
+  return {part(0.367322, 0.860646, -0.227968), part(0.280085, 0.672501, 0.047413),
+          part(-0.011820, 0.042940, 0.968881)};
 }
 
 double difference(const Color& a, const Color& b) {
@@ -51,7 +54,8 @@ double difference(const Color& a, const Color& b) {
 
 TEST(PersonColor, white_letters_are_legible_on_each) {
   EXPECT_GE(contrast_with_white(kNobodysColor), 4.5);
-  for (int id = 1; id <= 12; ++id) EXPECT_GE(contrast_with_white(person_color(id)), 4.5) << person_color(id);
+  for (int id = 1; id <= 12; ++id)
+    EXPECT_GE(contrast_with_white(person_color(id)), 4.5) << person_color(id);
 }
 
 TEST(PersonColor, accounts_that_follow_each_other_differ) {
@@ -59,7 +63,8 @@ TEST(PersonColor, accounts_that_follow_each_other_differ) {
     for (int b = 1; b < a; ++b) {
       const Color x = linear(person_color(a)), y = linear(person_color(b));
       EXPECT_GE(difference(x, y), 14) << person_color(a) << " " << person_color(b);
-      EXPECT_GE(difference(without_green(x), without_green(y)), 14) << person_color(a) << " " << person_color(b);
+      EXPECT_GE(difference(without_green(x), without_green(y)), 14)
+          << person_color(a) << " " << person_color(b);
     }
 }
 

@@ -31,7 +31,8 @@ Bytes see_through() {
 
 std::function<std::uint32_t(int, int, int)> samples_of(const Bytes& rgba, int scale = 1) {
   return [&rgba, scale](int x, int y, int s) {
-    return std::uint32_t{rgba[4 * (std::size_t(y) * kWidth + x) + s]} * static_cast<std::uint32_t>(scale);
+    return std::uint32_t{rgba[4 * (std::size_t(y) * kWidth + x) + s]} *
+           static_cast<std::uint32_t>(scale);
   };
 }
 
@@ -46,7 +47,8 @@ void expect_same(const Bytes& file, PictureFormat format, const Bytes& rgba, int
   EXPECT_EQ(picture_format(file), format);
   const auto info = inspect_picture(file);
   ASSERT_TRUE(info) << info.error().detail;
-  EXPECT_EQ(std::tuple(info->format, info->width, info->height), std::tuple(format, kWidth, kHeight));
+  EXPECT_EQ(std::tuple(info->format, info->width, info->height),
+            std::tuple(format, kWidth, kHeight));
   const auto back = decode_picture(file);
   ASSERT_TRUE(back) << back.error().detail;
   EXPECT_EQ(std::pair(back->width, back->height), std::pair(kWidth, kHeight));
@@ -56,15 +58,18 @@ void expect_same(const Bytes& file, PictureFormat format, const Bytes& rgba, int
 
 TEST(PictureFormats, a_tiff_keeps_its_pixels_however_it_is_stored) {
   const Bytes rgba = gradient(kWidth, kHeight);
-  for (const auto compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS})
+  for (const auto compression :
+       {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS})
     for (const bool tiled : {false, true})
       for (const bool separate : {false, true}) {
-        SCOPED_TRACE(testing::Message() << compression << (tiled ? " tiled" : "") << (separate ? " separate" : ""));
+        SCOPED_TRACE(testing::Message()
+                     << compression << (tiled ? " tiled" : "") << (separate ? " separate" : ""));
         TiffSettings settings;
         settings.compression = static_cast<std::uint16_t>(compression);
         settings.tiled = tiled;
         settings.separate = separate;
-        expect_same(tiff_of(kWidth, kHeight, settings, samples_of(rgba)), PictureFormat::tiff, rgba);
+        expect_same(tiff_of(kWidth, kHeight, settings, samples_of(rgba)), PictureFormat::tiff,
+                    rgba);
       }
 }
 
@@ -91,7 +96,8 @@ TEST(PictureFormats, a_tiff_of_16_bits_grey_or_a_table_is_shown) {
     for (int i = 0; i < 256; ++i)
       table.palette.push_back(static_cast<std::uint16_t>(257 * (channel == 0 ? 255 - i : i)));
   Bytes colored = grey;
-  for (std::size_t i = 0; i < colored.size(); i += 4) colored[i] = static_cast<std::uint8_t>(255 - grey[i]);
+  for (std::size_t i = 0; i < colored.size(); i += 4)
+    colored[i] = static_cast<std::uint8_t>(255 - grey[i]);
   expect_same(tiff_of(kWidth, kHeight, table, samples_of(rgba)), PictureFormat::tiff, colored, 1);
 }
 
@@ -155,7 +161,8 @@ TEST(PictureFormats, a_tga_keeps_its_pixels) {
   for (const bool packed : {false, true}) {
     const Bytes rgba = gradient(kWidth, kHeight);
     expect_same(test::tga_of(rgba, kWidth, kHeight, 24, packed), PictureFormat::tga, rgba);
-    expect_same(test::tga_of(see_through(), kWidth, kHeight, 32, packed), PictureFormat::tga, see_through());
+    expect_same(test::tga_of(see_through(), kWidth, kHeight, 32, packed), PictureFormat::tga,
+                see_through());
     Bytes grey = rgba;
     for (std::size_t i = 0; i < grey.size(); i += 4) grey[i + 1] = grey[i + 2] = grey[i];
     expect_same(test::tga_of(rgba, kWidth, kHeight, 8, packed), PictureFormat::tga, grey);
@@ -205,7 +212,8 @@ TEST(PictureFormats, a_jpeg_whose_rest_was_cut_out_of_it_is_refused) {
 TEST(PictureFormats, formats_that_are_not_read_are_named) {
   const auto says = [](std::string bytes) {
     bytes.resize(200);
-    const auto refused = decode_picture({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    const auto refused =
+        decode_picture({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
     return refused ? Problem{} : refused.error();
   };
   using namespace std::literals;
@@ -222,11 +230,12 @@ TEST(PictureFormats, formats_that_are_not_read_are_named) {
 
 TEST(PictureFormats, what_goes_with_a_mesh_is_not_taken_for_a_tga) {
   // Indices and coordinates of a glTF, a database, zeros.
-  const std::vector<Bytes> others{{0, 0, 1, 0, 2, 0, 0, 0, 2, 0, 3, 0, 3, 0, 4, 0, 5, 0, 6, 0},
-                                  {0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0},
-                                  {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19},
-                                  {3, 126, 7, 26, 4, 0, 0, 0, 65, 0, 12, 0, 0, 0, 0, 0, 0, 0, 0, 0},
-                                  Bytes(400, 0)};
+  const std::vector<Bytes> others{
+      {0, 0, 1, 0, 2, 0, 0, 0, 2, 0, 3, 0, 3, 0, 4, 0, 5, 0, 6, 0},
+      {0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0},
+      {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19},
+      {3, 126, 7, 26, 4, 0, 0, 0, 65, 0, 12, 0, 0, 0, 0, 0, 0, 0, 0, 0},
+      Bytes(400, 0)};
   for (const Bytes& bytes : others) EXPECT_FALSE(picture_format(bytes));
 }
 

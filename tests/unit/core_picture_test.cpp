@@ -21,14 +21,16 @@ TEST(Picture, a_jpeg_shows_what_was_drawn_top_row_first) {
     ASSERT_TRUE(back);
     ASSERT_EQ(std::pair(back->width, back->height), std::pair(200, 120));
     int worst = 0;
-    for (std::size_t i = 0; i < rgba.size(); ++i) worst = std::max(worst, std::abs(int(rgba[i]) - int(back->rgba[i])));
+    for (std::size_t i = 0; i < rgba.size(); ++i)
+      worst = std::max(worst, std::abs(int(rgba[i]) - int(back->rgba[i])));
     EXPECT_LE(worst, 12);
   }
 }
 
 TEST(Picture, higher_quality_costs_more_bytes) {
   const auto rgba = gradient(256, 256);
-  EXPECT_LT(encode_jpeg(rgba, 256, 256, {40, false}).size(), encode_jpeg(rgba, 256, 256, {95, true}).size());
+  EXPECT_LT(encode_jpeg(rgba, 256, 256, {40, false}).size(),
+            encode_jpeg(rgba, 256, 256, {95, true}).size());
 }
 
 TEST(PictureWriter, writes_what_the_whole_picture_would_be_however_its_rows_come) {
@@ -67,11 +69,13 @@ TEST(Camera, of_some_rows_sees_there_what_the_whole_one_sees) {
   camera.height = 480;
   camera.projection = glm::dmat4(1.5, 0, 0, 0, 0, 2, 0, 0, 0.1, 0.2, -1.02, -1, 0, 0, -0.2, 0);
   camera.view[3] = glm::dvec4(0.1, -0.3, -5, 1);
-  for (const auto& [top, rows] : {std::pair(0, 480), std::pair(0, 32), std::pair(100, 7), std::pair(448, 32)}) {
+  for (const auto& [top, rows] :
+       {std::pair(0, 480), std::pair(0, 32), std::pair(100, 7), std::pair(448, 32)}) {
     const Camera part = camera_of_rows(camera, top, rows);
     EXPECT_EQ(part.height, rows);
     for (const double y : {0.0, 0.5, 6.25}) {
-      const Ray whole = ray_through_pixel(camera, 123.5, top + y), own = ray_through_pixel(part, 123.5, y);
+      const Ray whole = ray_through_pixel(camera, 123.5, top + y),
+                own = ray_through_pixel(part, 123.5, y);
       EXPECT_LT(glm::distance(whole.origin, own.origin), 1e-9);
       EXPECT_LT(glm::distance(whole.direction, own.direction), 1e-9);
     }

@@ -15,7 +15,8 @@ bool contains_by_crossings(const Rings& rings, const glm::dvec2& p) {
   for (const auto& ring : rings)
     for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
       const glm::dvec2 a = ring[i], b = ring[j];
-      if ((a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x) inside = !inside;
+      if ((a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x)
+        inside = !inside;
     }
   return inside;
 }
@@ -31,7 +32,8 @@ TEST(PolygonArea, contains_what_a_ray_leaves_an_odd_number_of_times) {
     int inside = 0;
     for (int i = 0; i < 3000; ++i) {
       const glm::dvec2 p(at(random), at(random));
-      ASSERT_EQ(area.contains(p), contains_by_crossings(rings, p)) << points << " at " << p.x << " " << p.y;
+      ASSERT_EQ(area.contains(p), contains_by_crossings(rings, p))
+          << points << " at " << p.x << " " << p.y;
       inside += area.contains(p);
     }
     EXPECT_GT(inside, 0);
@@ -48,8 +50,10 @@ TEST(PolygonArea, a_ring_in_a_ring_is_a_hole) {
 }
 
 TEST(PolygonArea, neighbours_share_no_point_of_their_border_and_leave_none_out) {
-  const PolygonArea left({{{0, 0}, {5, 0}, {5, 8}, {0, 8}}}), right({{{5, 0}, {9, 0}, {9, 8}, {5, 8}}});
-  for (double y = 0.25; y < 8; y += 0.5) EXPECT_NE(left.contains({5, y}), right.contains({5, y})) << y;
+  const PolygonArea left({{{0, 0}, {5, 0}, {5, 8}, {0, 8}}}),
+      right({{{5, 0}, {9, 0}, {9, 8}, {5, 8}}});
+  for (double y = 0.25; y < 8; y += 0.5)
+    EXPECT_NE(left.contains({5, y}), right.contains({5, y})) << y;
 }
 
 TEST(PolygonArea, without_area_contains_nothing) {

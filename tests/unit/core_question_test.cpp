@@ -126,7 +126,8 @@ class Turns : public testing::Test {
     threads_.clear();
   }
 
-  const std::shared_ptr<QuestionTurns> turns_ = std::make_shared<QuestionTurns>(1, std::chrono::nanoseconds(0));
+  const std::shared_ptr<QuestionTurns> turns_ =
+      std::make_shared<QuestionTurns>(1, std::chrono::nanoseconds(0));
   std::mutex mutex_;
   std::vector<std::string> order_;
   std::vector<std::thread> threads_;

@@ -17,7 +17,8 @@ TEST(RelationCycles, a_key_above_itself_is_found_whatever_lies_between) {
   EXPECT_EQ(relation_cycles({{1, {2, 3}}, {2, {3}}, {3, {4}}}), Cycles{});
   EXPECT_EQ(relation_cycles({{5, {5}}}), (Cycles{{5}}));
   EXPECT_EQ(relation_cycles({{3, {1}}, {1, {2}}, {2, {3, 9}}, {9, {2}}}), (Cycles{{1, 2, 3}}));
-  EXPECT_EQ(relation_cycles({{1, {2}}, {2, {1}}, {7, {8}}, {8, {7}}, {2000, {1, 7}}}), (Cycles{{1, 2}, {7, 8}}));
+  EXPECT_EQ(relation_cycles({{1, {2}}, {2, {1}}, {7, {8}}, {8, {7}}, {2000, {1, 7}}}),
+            (Cycles{{1, 2}, {7, 8}}));
 }
 
 TEST(RelationCycles, long_chains_need_no_deep_stack) {
@@ -60,7 +61,8 @@ TEST(RelationCycles, random_relations_have_the_knots_that_following_every_key_fi
       got.insert(cycle.front());
       for (std::size_t i = 0; i < cycle.size(); ++i) {
         const auto& named = relation.at(cycle[i]);
-        EXPECT_NE(std::find(named.begin(), named.end(), cycle[(i + 1) % cycle.size()]), named.end());
+        EXPECT_NE(std::find(named.begin(), named.end(), cycle[(i + 1) % cycle.size()]),
+                  named.end());
       }
     }
     EXPECT_EQ(got, expected);

@@ -13,7 +13,8 @@ constexpr ValueType kTypes[] = {ValueType::u8, ValueType::u16, ValueType::u32};
 TileData random_tile(ValueType type, std::mt19937& random, double share) {
   TileData tile(type);
   std::bernoulli_distribution painted(share);
-  const std::uint32_t mask = bytes_per_texel(type) == 4 ? ~0u : (1u << (8 * bytes_per_texel(type))) - 1;
+  const std::uint32_t mask =
+      bytes_per_texel(type) == 4 ? ~0u : (1u << (8 * bytes_per_texel(type))) - 1;
   for (int i = 0; i < kTexelsPerTile; ++i)
     if (painted(random)) tile.write(i, random() & mask);
   return tile;
@@ -35,7 +36,8 @@ TEST(Revision, goes_forward_and_backward) {
 TEST(Revision, survives_its_storage_form) {
   std::mt19937 random(2);
   for (ValueType type : kTypes) {
-    TileRevision revision = make_revision({7, 9}, random_tile(type, random, 0.1), random_tile(type, random, 0.1), {});
+    TileRevision revision =
+        make_revision({7, 9}, random_tile(type, random, 0.1), random_tile(type, random, 0.1), {});
     for (int i = 0; i < 500; ++i) revision.written.set(static_cast<int>(random() % kTexelsPerTile));
     auto decoded = decode_revision({7, 9}, type, encode_revision(revision));
     ASSERT_TRUE(decoded);
@@ -55,7 +57,8 @@ TEST(Revision, damaged_bytes_are_a_problem_and_never_a_crash) {
   for (int i = 0; i < 300; ++i) {
     auto bad = good;
     bad[random() % bad.size()] ^= static_cast<std::uint8_t>(1u << (random() % 8));
-    (void)decode_tile(ValueType::u16, bad);  // may decode to other texels; must not crash or read outside
+    // may decode to other texels; must not crash or read outside
+    (void)decode_tile(ValueType::u16, bad);
   }
 }
 

@@ -25,21 +25,25 @@ TEST(Roles, of_two_the_higher_one_counts) {
 
 TEST(Roles, a_cap_holds_in_every_project) {
   const Roles roles{Role::annotator, {{1, Role::viewer}, {2, Role::curator}}};
-  EXPECT_EQ(roles.at_most(Role::viewer), (Roles{Role::viewer, {{1, Role::viewer}, {2, Role::viewer}}}));
+  EXPECT_EQ(roles.at_most(Role::viewer),
+            (Roles{Role::viewer, {{1, Role::viewer}, {2, Role::viewer}}}));
   EXPECT_EQ(roles.at_most(Role::owner), roles);
 }
 
 TEST(Visibility, each_is_seen_by_fewer_than_the_one_before) {
-  const std::map<Visibility, Role> least{
-      {Visibility::everyone, Role::viewer}, {Visibility::team, Role::annotator}, {Visibility::curators, Role::curator}};
-  for (const Role role : {Role::guest, Role::viewer, Role::annotator, Role::curator, Role::administrator, Role::owner})
+  const std::map<Visibility, Role> least{{Visibility::everyone, Role::viewer},
+                                         {Visibility::team, Role::annotator},
+                                         {Visibility::curators, Role::curator}};
+  for (const Role role : {Role::guest, Role::viewer, Role::annotator, Role::curator,
+                          Role::administrator, Role::owner})
     for (const auto& [visibility, from] : least) {
       EXPECT_EQ(sees(role, visibility), role >= from) << name(role) << " " << name(visibility);
       EXPECT_EQ(least_role(visibility), from);
       EXPECT_EQ(sight_of(from), visibility);
     }
   EXPECT_EQ(sight_of(Role::owner), Visibility::curators);
-  for (const char* text : {"public", "team", "private"}) EXPECT_EQ(name(parse_visibility(text).value()), text);
+  for (const char* text : {"public", "team", "private"})
+    EXPECT_EQ(name(parse_visibility(text).value()), text);
   for (const char* text : {"", "Public", "everyone"}) EXPECT_FALSE(parse_visibility(text)) << text;
 }
 

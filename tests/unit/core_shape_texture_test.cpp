@@ -29,18 +29,24 @@ int count(const ShapeBits& bits) {
 TEST(ShapeTexture, a_picture_of_the_rasters_size_is_taken_cell_by_cell) {
   std::mt19937 random(3);
   std::vector<int> levels;
-  for (int i = 0; i < kShapeSide * kShapeSide; ++i) levels.push_back(static_cast<int>(random() % 256));
-  const auto bits = shape_of(grey(256, 256, [&](int x, int y) { return levels[std::size_t(y * 256 + x)]; }), {});
+  for (int i = 0; i < kShapeSide * kShapeSide; ++i)
+    levels.push_back(static_cast<int>(random() % 256));
+  const auto bits =
+      shape_of(grey(256, 256, [&](int x, int y) { return levels[std::size_t(y * 256 + x)]; }), {});
   ASSERT_TRUE(bits);
   const ShapeTexture shape(*bits);
   for (int y = 0; y < kShapeSide; ++y)
-    for (int x = 0; x < kShapeSide; ++x) ASSERT_EQ(shape.is_set(x, y), levels[std::size_t(y * 256 + x)] >= 128);
+    for (int x = 0; x < kShapeSide; ++x)
+      ASSERT_EQ(shape.is_set(x, y), levels[std::size_t(y * 256 + x)] >= 128);
 }
 
 TEST(ShapeTexture, larger_and_smaller_pictures_are_scaled_by_the_mean_of_what_a_cell_covers) {
-  const auto half = [](int size) { return grey(size, size, [size](int x, int) { return x * 2 < size ? 255 : 0; }); };
+  const auto half = [](int size) {
+    return grey(size, size, [size](int x, int) { return x * 2 < size ? 255 : 0; });
+  };
   const ShapeBits expected = test::shape_bits([](double x, double) { return x < 0; });
-  for (const int size : {2, 16, 200, 256, 1000, 2048}) EXPECT_EQ(shape_of(half(size), {}).value(), expected) << size;
+  for (const int size : {2, 16, 200, 256, 1000, 2048})
+    EXPECT_EQ(shape_of(half(size), {}).value(), expected) << size;
   // A fine pattern that is light by less than half covers nothing, by more than half everything.
   const auto stripes = [](int light) {
     return grey(1024, 1024, [light](int x, int) { return x % 4 < light ? 255 : 0; });
@@ -63,12 +69,14 @@ TEST(ShapeTexture, the_tool_is_what_is_opaque_or_else_what_is_light_unless_it_is
   const auto right = test::shape_bits([](double x, double) { return x > 0; });
   EXPECT_EQ(shape_of(grey(16, 16, left_white), {}).value(), left);
   EXPECT_EQ(shape_of(grey(16, 16, left_white), ShapePart::dark).value(), right);
-  EXPECT_EQ(count(shape_of(grey(16, 16, left_white), ShapePart::opaque).value()), kShapeSide * kShapeSide);
+  EXPECT_EQ(count(shape_of(grey(16, 16, left_white), ShapePart::opaque).value()),
+            kShapeSide * kShapeSide);
   auto black_left = grey(16, 16, [](int, int) { return 0; });
   for (std::size_t i = 0; i < 256; ++i)
     if (i % 16 >= 8) black_left.rgba[4 * i + 3] = 0;
   EXPECT_EQ(shape_of(black_left, {}).value(), left);
-  EXPECT_EQ(shape_of(black_left, ShapePart::dark).value(), left) << "what is transparent is not dark";
+  EXPECT_EQ(shape_of(black_left, ShapePart::dark).value(), left)
+      << "what is transparent is not dark";
   EXPECT_EQ(shape_of(black_left, ShapePart::light).error().status, 422);
 }
 
@@ -94,7 +102,8 @@ TEST(ShapeTexture, distances_are_those_of_a_chess_king) {
   for (int y = 0; y < kShapeSide; y += 5) {
     for (int x = 0; x < kShapeSide; x += 3) {
       int nearest = 255;
-      for (const auto& [sx, sy] : set) nearest = std::min(nearest, std::max(std::abs(sx - x), std::abs(sy - y)));
+      for (const auto& [sx, sy] : set)
+        nearest = std::min(nearest, std::max(std::abs(sx - x), std::abs(sy - y)));
       ASSERT_EQ(shape.distances()[std::size_t(y * kShapeSide + x)], nearest) << x << ", " << y;
     }
   }
@@ -103,8 +112,9 @@ TEST(ShapeTexture, distances_are_those_of_a_chess_king) {
 TEST(ShapeTexture, the_inner_disc_lies_in_the_tool) {
   EXPECT_EQ(ShapeTexture(test::shape_bits(test::in_ring)).inner_radius(), 0);
   EXPECT_EQ(ShapeTexture(test::shape_bits([](double, double) { return true; })).inner_radius(), 1);
-  const double inner =
-      ShapeTexture(test::shape_bits([](double x, double y) { return std::hypot(x, y) < 0.5; })).inner_radius();
+  const double inner = ShapeTexture(test::shape_bits([](double x, double y) {
+                         return std::hypot(x, y) < 0.5;
+                       })).inner_radius();
   EXPECT_GT(inner, 0.49);
   EXPECT_LT(inner, 0.5);
 }

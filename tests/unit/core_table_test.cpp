@@ -25,7 +25,8 @@ std::int64_t title_of(std::vector<Column> columns, std::optional<std::int64_t> c
 
 TEST(NameColumn, is_the_chosen_one_or_the_one_that_tells_records_apart_best) {
   const Column note = column(1, ColumnKind::text), code = column(2, ColumnKind::text, true, true);
-  const Column term = column(3, ColumnKind::term), number = column(4, ColumnKind::integer, false, true);
+  const Column term = column(3, ColumnKind::term),
+               number = column(4, ColumnKind::integer, false, true);
   const Column cut = column(5, ColumnKind::line);
   EXPECT_EQ(title_of({note, code, term}), code.id);
   EXPECT_EQ(title_of({note, code, term}, term.id), term.id);

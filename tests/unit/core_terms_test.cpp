@@ -38,7 +38,8 @@ const Term* term(const TermList& list, const std::string& code) {
 }
 
 std::string turtle(const std::string& body) {
-  return "@prefix skos: <http://www.w3.org/2004/02/skos/core#> . @prefix t: <https://t.example/> . " + body;
+  return "@prefix skos: <http://www.w3.org/2004/02/skos/core#> . @prefix t: <https://t.example/> . " +
+         body;
 }
 
 TEST(TermsSkos, a_vocabulary_in_turtle_becomes_terms) {
@@ -77,7 +78,8 @@ TEST(TermsSkos, what_is_broken_is_told_with_its_line) {
 }
 
 TEST(TermsSkos, entities_that_grow_are_refused_and_files_are_not_read) {
-  std::string bomb = "<?xml version=\"1.0\"?><!DOCTYPE r [<!ENTITY a \"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\">";
+  std::string bomb =
+      "<?xml version=\"1.0\"?><!DOCTYPE r [<!ENTITY a \"aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\">";
   for (char name = 'b'; name < 'l'; ++name) {
     bomb += std::string("<!ENTITY ") + name + " \"";
     for (int i = 0; i < 10; ++i) bomb += std::string("&") + static_cast<char>(name - 1) + ";";
@@ -100,8 +102,8 @@ TEST(TermsSkos, entities_that_grow_are_refused_and_files_are_not_read) {
 }
 
 TEST(TermsSkos, a_circle_of_broader_terms_is_read_as_it_is) {
-  const auto list =
-      read_terms_skos(turtle("t:a a skos:Concept; skos:broader t:b . t:b skos:broader t:a ."), RdfSyntax::turtle);
+  const auto list = read_terms_skos(
+      turtle("t:a a skos:Concept; skos:broader t:b . t:b skos:broader t:a ."), RdfSyntax::turtle);
   ASSERT_TRUE(list);
   EXPECT_EQ(term(*list, "a")->parent, "b");
   EXPECT_EQ(term(*list, "b")->parent, "a");
@@ -121,7 +123,8 @@ TEST(TermsSkos, missing_and_double_labels_are_no_obstacle) {
 }
 
 TEST(TermsSkos, a_parent_that_is_only_named_is_told_by_its_uri) {
-  const auto list = read_terms_skos(turtle("t:b a skos:Concept; skos:broader t:elsewhere ."), RdfSyntax::turtle);
+  const auto list =
+      read_terms_skos(turtle("t:b a skos:Concept; skos:broader t:elsewhere ."), RdfSyntax::turtle);
   ASSERT_TRUE(list);
   ASSERT_EQ(list->terms.size(), 1u);
   EXPECT_EQ(list->terms[0].parent, "");
@@ -130,15 +133,16 @@ TEST(TermsSkos, a_parent_that_is_only_named_is_told_by_its_uri) {
 
 TEST(TermsSkos, codes_that_are_met_twice_get_numbers) {
   const auto list = read_terms_skos(
-      turtle("t:a a skos:Concept; skos:notation \"1\" . t:b a skos:Concept; skos:notation \"1\" ."), RdfSyntax::turtle);
+      turtle("t:a a skos:Concept; skos:notation \"1\" . t:b a skos:Concept; skos:notation \"1\" ."),
+      RdfSyntax::turtle);
   ASSERT_TRUE(list);
   EXPECT_TRUE(term(*list, "1") && term(*list, "1-2"));
 }
 
 TEST(TermsSkos, a_huge_literal_is_read_or_refused_and_nothing_else) {
   const std::string text(5'000'000, 'x');
-  const auto list =
-      read_terms_skos(turtle("t:a a skos:Concept; skos:definition \"" + text + "\" ."), RdfSyntax::turtle);
+  const auto list = read_terms_skos(
+      turtle("t:a a skos:Concept; skos:definition \"" + text + "\" ."), RdfSyntax::turtle);
   if (list) {
     EXPECT_EQ(list->terms[0].definition.size(), text.size());
   }
@@ -157,12 +161,15 @@ TEST(TermsSkos, deep_nesting_is_refused_or_read) {
 TEST(XmlBounds, tags_are_told_from_what_looks_like_them) {
   std::string text =
       "<?xml version='1.0'?><!DOCTYPE a [<!ENTITY b 'plain > text'><!-- <!ENTITY c '&d;'> -->]><a b='>'>";
-  for (int i = 0; i < 1000; ++i) text += "<c d=\"/\"></c><e f='>'/><!-- <g> --><![CDATA[<h>]]><?i <j>?>";
+  for (int i = 0; i < 1000; ++i)
+    text += "<c d=\"/\"></c><e f='>'/><!-- <g> --><![CDATA[<h>]]><?i <j>?>";
   EXPECT_TRUE(check_xml_bounds(text));
-  for (const char* cut : {"<", "<!", "<!--", "<a '", "<!DOCTYPE a [", "<!ENTITY", "<![CDATA[", "</", "<?"})
+  for (const char* cut :
+       {"<", "<!", "<!--", "<a '", "<!DOCTYPE a [", "<!ENTITY", "<![CDATA[", "</", "<?"})
     EXPECT_TRUE(check_xml_bounds(cut)) << cut;
   for (const char* entity : {"'&b;'", "'<b/>'", "SYSTEM 'b'", "'&#60;b/>'"})
-    EXPECT_FALSE(check_xml_bounds("<!DOCTYPE a [<!ENTITY c " + std::string(entity) + ">]><a/>")) << entity;
+    EXPECT_FALSE(check_xml_bounds("<!DOCTYPE a [<!ENTITY c " + std::string(entity) + ">]><a/>"))
+        << entity;
 }
 
 TEST(TermsSkos, what_is_written_is_read_as_the_same_terms) {
@@ -193,14 +200,16 @@ TEST(TermsSkos, what_is_written_is_read_as_the_same_terms) {
 }
 
 TEST(TermsCsv, columns_stand_in_any_order_and_colours_get_one_form) {
-  const auto list = read_terms_csv("Parent;Label-ES;CODE;color;pattern\n;Pérdida;loss;#ABC;solid\nloss;;worn;;\n");
+  const auto list = read_terms_csv(
+      "Parent;Label-ES;CODE;color;pattern\n;Pérdida;loss;#ABC;solid\nloss;;worn;;\n");
   ASSERT_TRUE(list) << list.error().detail;
   ASSERT_EQ(list->terms.size(), 2u);
   EXPECT_EQ(list->terms[0].color, "#aabbcc");
   EXPECT_EQ(list->terms[0].labels.at("es"), "Pérdida");
   EXPECT_EQ(list->terms[1].parent, "loss");
   EXPECT_EQ(list->terms[1].line, 3);
-  EXPECT_EQ(list->columns, (std::set<std::string>{"parent", "label-es", "code", "color", "pattern"}));
+  EXPECT_EQ(list->columns,
+            (std::set<std::string>{"parent", "label-es", "code", "color", "pattern"}));
 }
 
 TEST(TermsCsv, every_wrong_line_is_told) {
@@ -208,8 +217,8 @@ TEST(TermsCsv, every_wrong_line_is_told) {
   ASSERT_TRUE(list);
   std::vector<std::pair<int, std::string>> told;
   for (const TermMistake& mistake : list->mistakes) told.emplace_back(mistake.line, mistake.column);
-  EXPECT_THAT(told, ElementsAre(std::pair(2, "color"), std::pair(3, "code"), std::pair(4, "pattern"), std::pair(5, ""),
-                                std::pair(7, "code")));
+  EXPECT_THAT(told, ElementsAre(std::pair(2, "color"), std::pair(3, "code"),
+                                std::pair(4, "pattern"), std::pair(5, ""), std::pair(7, "code")));
   EXPECT_EQ(list->terms.size(), 1u);
   EXPECT_EQ(list->rows, 6u);
 }
@@ -300,8 +309,9 @@ TEST_F(List, terms_stand_before_those_below_them) {
   add(3, "loss", {});
   add(4, "hairline", 2);
   add(5, "lost-one", 99);
-  EXPECT_THAT(tree(listed()), ElementsAre(std::pair("cracks", 0), std::pair("hairline", 1), std::pair("loss", 0),
-                                          std::pair("worn", 1), std::pair("lost-one", 0)));
+  EXPECT_THAT(tree(listed()),
+              ElementsAre(std::pair("cracks", 0), std::pair("hairline", 1), std::pair("loss", 0),
+                          std::pair("worn", 1), std::pair("lost-one", 0)));
 }
 
 TEST_F(List, terms_in_a_circle_are_listed_once) {

@@ -15,16 +15,20 @@ using Bytes = std::vector<std::uint8_t>;
 
 // An APP1 segment with one entry, behind the start of the picture.
 Bytes with_orientation(const Bytes& jpeg, int orientation, bool little = true) {
-  Bytes tiff = little ? Bytes{'I', 'I', 42, 0, 8, 0, 0, 0, 1, 0, 0x12, 1, 3, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
-                      : Bytes{'M', 'M', 0, 42, 0, 0, 0, 8, 0, 1, 1, 0x12, 0, 3, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0};
+  Bytes tiff = little ? Bytes{'I', 'I', 42, 0, 8, 0, 0, 0, 1, 0, 0x12, 1, 3,
+                              0,   1,   0,  0, 0, 0, 0, 0, 0, 0, 0,    0, 0}
+                      : Bytes{'M', 'M', 0, 42, 0, 0, 0, 8, 0, 1, 1, 0x12, 0,
+                              3,   0,   0, 0,  1, 0, 0, 0, 0, 0, 0, 0,    0};
   tiff[little ? 18 : 19] = static_cast<std::uint8_t>(orientation);
-  Bytes out{0xff, 0xd8, 0xff, 0xe1, 0, static_cast<std::uint8_t>(8 + tiff.size()), 'E', 'x', 'i', 'f', 0, 0};
+  Bytes out{0xff, 0xd8, 0xff, 0xe1, 0, static_cast<std::uint8_t>(8 + tiff.size()),
+            'E',  'x',  'i',  'f',  0, 0};
   out.insert(out.end(), tiff.begin(), tiff.end());
   out.insert(out.end(), jpeg.begin() + 2, jpeg.end());
   return out;
 }
 
-// Red left half and green right half in its upper part, blue and white below: each corner has a colour of its own.
+// Red left half and green right half in its upper part, blue and white below: each corner has a
+// colour of its own.
 Bytes corners(int width, int height) {
   Bytes rgba;
   for (int y = 0; y < height; ++y)
@@ -42,7 +46,8 @@ std::string corners_of(const Picture& picture) {
   std::string found;
   for (const int y : {picture.height / 8, picture.height * 7 / 8})
     for (const int x : {picture.width / 8, picture.width * 7 / 8}) {
-      const std::uint8_t* pixel = &picture.rgba[4 * (std::size_t(y) * std::size_t(picture.width) + std::size_t(x))];
+      const std::uint8_t* pixel =
+          &picture.rgba[4 * (std::size_t(y) * std::size_t(picture.width) + std::size_t(x))];
       const bool r = pixel[0] > 127, g = pixel[1] > 127, b = pixel[2] > 127;
       found += r && g && b ? 'w' : r ? 'r' : g ? 'g' : b ? 'b' : '?';
     }
@@ -52,7 +57,8 @@ std::string corners_of(const Picture& picture) {
 TEST(Thumbnail, a_picture_becomes_small_and_keeps_its_shape) {
   for (const bool is_jpeg : {true, false}) {
     const auto rgba = test::gradient(1600, 800);
-    const auto small = make_thumbnail(is_jpeg ? encode_jpeg(rgba, 1600, 800, {}) : encode_png(rgba, 1600, 800), 256);
+    const auto small = make_thumbnail(
+        is_jpeg ? encode_jpeg(rgba, 1600, 800, {}) : encode_png(rgba, 1600, 800), 256);
     ASSERT_TRUE(small) << small.error().detail;
     const auto picture = decode_picture(*small);
     ASSERT_TRUE(picture);
@@ -75,7 +81,8 @@ TEST(Thumbnail, a_small_picture_stays_as_small_as_it_is) {
 
 TEST(Thumbnail, photographs_are_turned_as_exif_says) {
   const auto jpeg = encode_jpeg(corners(320, 160), 320, 160, {95, true});
-  const std::array<const char*, 8> kSeen = {"rgbw", "grwb", "wbgr", "bwrg", "rbgw", "brwg", "wgbr", "gwrb"};
+  const std::array<const char*, 8> kSeen = {"rgbw", "grwb", "wbgr", "bwrg",
+                                            "rbgw", "brwg", "wgbr", "gwrb"};
   for (int orientation = 1; orientation <= 8; ++orientation)
     for (const bool little : {true, false}) {
       const auto turned = with_orientation(jpeg, orientation, little);
@@ -99,7 +106,8 @@ TEST(Thumbnail, transparent_places_are_white) {
 TEST(Thumbnail, a_bomb_is_refused_by_its_header) {
   auto png = encode_png(test::gradient(8, 8), 8, 8);
   const auto put = [&](std::size_t at, std::uint32_t value) {
-    for (int i = 0; i < 4; ++i) png[at + std::size_t(i)] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
+    for (int i = 0; i < 4; ++i)
+      png[at + std::size_t(i)] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
   };
   put(16, 16000);
   put(20, 16000);
@@ -115,7 +123,8 @@ TEST(Thumbnail, a_bomb_is_refused_by_its_header) {
   const auto refused = make_thumbnail(png, 256);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 422);
-  EXPECT_NE(refused.error().detail.find("256 million pixels"), std::string::npos) << refused.error().detail;
+  EXPECT_NE(refused.error().detail.find("256 million pixels"), std::string::npos)
+      << refused.error().detail;
 }
 
 TEST(Thumbnail, what_is_no_picture_is_refused) {

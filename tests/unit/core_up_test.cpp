@@ -17,7 +17,8 @@ TEST(Up, every_direction_has_a_right_handed_frame_with_it_on_top) {
     EXPECT_EQ(frame.up, expected) << name;
     EXPECT_TRUE(is_up(name));
   }
-  for (const std::string_view other : {"", "w", "+x", "--x", "zz", "- z", "Z"}) EXPECT_FALSE(is_up(other)) << other;
+  for (const std::string_view other : {"", "w", "+x", "--x", "zz", "- z", "Z"})
+    EXPECT_FALSE(is_up(other)) << other;
 }
 
 TEST(Up, north_and_east_lie_level_and_turn_clockwise_as_seen_from_above) {

@@ -58,9 +58,11 @@ TEST(ValueType, whole_numbers_without_a_sign_widen_with_their_bits) {
     const TileData wide = widened(tile, to);
     EXPECT_EQ(wide.texel_bytes(), bytes_per_texel(to));
     EXPECT_EQ(wide.valid, tile.valid);
-    for (const int texel : {0, 1, 5, 77, kTexelsPerTile - 1}) EXPECT_EQ(wide.bits(texel), tile.bits(texel));
+    for (const int texel : {0, 1, 5, 77, kTexelsPerTile - 1})
+      EXPECT_EQ(wide.bits(texel), tile.bits(texel));
   }
-  for (const auto& [from, to] : {std::pair{u8, u8}, {i8, i16}, {u8, i16}, {u16, f32}, {f16, f32}, {u32, u32}})
+  for (const auto& [from, to] :
+       {std::pair{u8, u8}, {i8, i16}, {u8, i16}, {u16, f32}, {f16, f32}, {u32, u32}})
     EXPECT_FALSE(widens_to(from, to));
 }
 
@@ -75,16 +77,20 @@ TEST(Palette, survives_json) {
 }
 
 TEST(Palette, refuses_bad_points_with_the_field_named) {
-  auto bad = [](const char* text) { return palette_from_json(nlohmann::json::parse(text)).error().field; };
+  auto bad = [](const char* text) {
+    return palette_from_json(nlohmann::json::parse(text)).error().field;
+  };
   EXPECT_EQ(bad(R"({"mode":"rainbow"})"), "palette.mode");
   EXPECT_EQ(bad(R"({"mode":"linear","points":[]})"), "palette.points");
   EXPECT_EQ(bad(R"({"points":[{"at":1,"color":"#12345g"}]})"), "palette.points[0].color");
-  EXPECT_EQ(bad(R"({"points":[{"at":1,"color":"#123456"},{"at":1,"color":"#123456"}]})"), "palette.points[1]");
+  EXPECT_EQ(bad(R"({"points":[{"at":1,"color":"#123456"},{"at":1,"color":"#123456"}]})"),
+            "palette.points[1]");
   EXPECT_EQ(bad(R"({"points":[{"at":1,"color":"#123456"}],"min":3,"max":2})"), "palette.max");
 }
 
 TEST(Palette, linear_mixes_step_holds_categorical_names) {
-  Palette palette{PaletteMode::linear, 0, 10, {{0, {0, 0, 0, 255}, ""}, {10, {200, 100, 0, 255}, ""}}, ""};
+  Palette palette{
+      PaletteMode::linear, 0, 10, {{0, {0, 0, 0, 255}, ""}, {10, {200, 100, 0, 255}, ""}}, ""};
   EXPECT_EQ(color_of(palette, 5), (Rgba{100, 50, 0, 255}));
   EXPECT_EQ(color_of(palette, -3), (Rgba{0, 0, 0, 255}));
   EXPECT_EQ(color_of(palette, 99), (Rgba{200, 100, 0, 255}));
@@ -132,12 +138,13 @@ TEST(Camera, refuses_singular_and_endless_matrices) {
 }
 
 TEST(Camera, the_ray_through_a_pixel_hits_what_projects_there) {
-  const glm::dvec3 eye{500012.5, 4000003.0, 130.0}, target{500010.0, 4000000.0, 128.0};  // site coordinates
+  // site coordinates
+  const glm::dvec3 eye{500012.5, 4000003.0, 130.0}, target{500010.0, 4000000.0, 128.0};
   for (bool orthographic : {false, true}) {
-    const Camera camera{
-        glm::lookAt(eye, target, glm::dvec3(0, 0, 1)),
-        orthographic ? glm::ortho(-4.0, 4.0, -3.0, 3.0, 0.1, 50.0) : glm::perspective(0.8, 4.0 / 3.0, 0.1, 50.0), 800,
-        600};
+    const Camera camera{glm::lookAt(eye, target, glm::dvec3(0, 0, 1)),
+                        orthographic ? glm::ortho(-4.0, 4.0, -3.0, 3.0, 0.1, 50.0)
+                                     : glm::perspective(0.8, 4.0 / 3.0, 0.1, 50.0),
+                        800, 600};
     EXPECT_EQ(is_orthographic(camera), orthographic);
     const Ray ray = ray_through_pixel(camera, 300.5, 200.5);
     const glm::dvec3 point = ray.origin + ray.direction * 3.0;
@@ -145,7 +152,8 @@ TEST(Camera, the_ray_through_a_pixel_hits_what_projects_there) {
     EXPECT_NEAR((clip.x / clip.w * 0.5 + 0.5) * 800, 300.5, 1e-4);
     EXPECT_NEAR((0.5 - clip.y / clip.w * 0.5) * 600, 200.5, 1e-4);
     // In floats about the model's origin the same point lands on the same pixel.
-    const glm::vec4 near_origin = clip_from_model(camera, target) * glm::vec4(glm::vec3(point - target), 1);
+    const glm::vec4 near_origin =
+        clip_from_model(camera, target) * glm::vec4(glm::vec3(point - target), 1);
     EXPECT_NEAR((near_origin.x / near_origin.w * 0.5 + 0.5) * 800, 300.5, 1e-2);
   }
 }
@@ -162,7 +170,8 @@ TEST(Uuid, reads_what_it_writes_and_nothing_else) {
   const Uuid uuid = random_uuid();
   EXPECT_EQ(parse_uuid(to_string(uuid)), uuid);
   EXPECT_NE(random_uuid(), uuid);
-  for (const char* bad : {"", "123", "00000000-0000-0000-0000-00000000000g", "000000000000-0000-0000-0000-00000000"})
+  for (const char* bad :
+       {"", "123", "00000000-0000-0000-0000-00000000000g", "000000000000-0000-0000-0000-00000000"})
     EXPECT_FALSE(parse_uuid(bad)) << bad;
 }
 
@@ -170,7 +179,8 @@ TEST(Filename, loses_its_folders) {
   EXPECT_EQ(base_filename("../../etc/pot.ply"), "pot.ply");
   EXPECT_EQ(base_filename("C:\\scans\\pot.ply"), "pot.ply");
   EXPECT_EQ(base_filename(".."), "");
-  EXPECT_EQ(base_filename("photo\u202egpj.exe"), "photogpj.exe") << "marks that turn what follows are left out";
+  EXPECT_EQ(base_filename("photo\u202egpj.exe"), "photogpj.exe")
+      << "marks that turn what follows are left out";
   EXPECT_EQ(base_filename(".\u200b."), "") << "also where they hide what is left";
   EXPECT_EQ(base_filename("\ufeffSU\u00a012 \u00e9t\u00e9 \u4e2d\U0001f3fa\u0085.jpg"),
             "SU\u00a012 \u00e9t\u00e9 \u4e2d\U0001f3fa.jpg");
@@ -195,8 +205,9 @@ TEST(Utf8, is_what_the_rfc_says) {
     EXPECT_TRUE(is_utf8(good)) << good;
     EXPECT_EQ(mended_utf8(good), good);
   }
-  for (const std::string_view bad : {"\x80", "\xc3", "\xc0\x80", "\xe0\x9f\xbf", "\xed\xa0\x80", "\xf0\x8f\xbf\xbf",
-                                     "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xe2\x82", "\xff"}) {
+  for (const std::string_view bad :
+       {"\x80", "\xc3", "\xc0\x80", "\xe0\x9f\xbf", "\xed\xa0\x80", "\xf0\x8f\xbf\xbf",
+        "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xe2\x82", "\xff"}) {
     EXPECT_FALSE(is_utf8(bad));
     EXPECT_FALSE(is_utf8("a" + std::string(bad) + "b"));
     EXPECT_TRUE(is_utf8(mended_utf8(bad)));

@@ -1,4 +1,5 @@
-// Drawings to scale: their axes, the parts in which they are rendered, and where places come to lie on paper.
+// Drawings to scale: their axes, the parts in which they are rendered, and where places come to lie
+// on paper.
 #include "figure/drawing.h"
 
 #include <gtest/gtest.h>
@@ -36,13 +37,14 @@ glm::dvec2 on_paper(const Drawing& drawing, const glm::dvec3& world) {
   const glm::dvec3 drawn = drawing.plane.of(world);
   const glm::dvec2 middle_mm = glm::dvec2(drawing.width, drawing.height) * (25.4 / drawing.dpi / 2);
   const double mm_per_unit = drawing.metres_per_unit * 1000 / drawing.scale;
-  return middle_mm + glm::dvec2(drawn.x - drawing.center.x, drawing.center.y - drawn.y) * mm_per_unit;
+  return middle_mm +
+         glm::dvec2(drawn.x - drawing.center.x, drawing.center.y - drawn.y) * mm_per_unit;
 }
 
 TEST(Plane, AxesAreAFrameThatLooksAsItsNameSays) {
   for (const std::string_view up : kUpDirections)
-    for (const Direction direction :
-         {Direction::top, Direction::bottom, Direction::front, Direction::back, Direction::left, Direction::right}) {
+    for (const Direction direction : {Direction::top, Direction::bottom, Direction::front,
+                                      Direction::back, Direction::left, Direction::right}) {
       const Plane plane = plane_from(direction, up);
       EXPECT_EQ(glm::cross(plane.right, plane.up), -plane.into);
       const glm::dvec3 above = up_frame(up).up;
@@ -65,15 +67,17 @@ TEST(Plane, AxesAreAFrameThatLooksAsItsNameSays) {
 }
 
 TEST(Plane, OfAFaceSeesItSquareAndUpright) {
-  for (const glm::dvec3 normal :
-       {glm::dvec3(1, 2, 0.5), glm::dvec3(0, -3, 0), glm::dvec3(0, 0, 7), glm::dvec3(1e-9, 0, -1)}) {
+  for (const glm::dvec3 normal : {glm::dvec3(1, 2, 0.5), glm::dvec3(0, -3, 0), glm::dvec3(0, 0, 7),
+                                  glm::dvec3(1e-9, 0, -1)}) {
     const Plane plane = plane_square_to(normal, "z");
     EXPECT_LT(glm::distance(plane.into, -glm::normalize(normal)), 1e-12);
     EXPECT_LT(glm::distance(glm::cross(plane.right, plane.up), -plane.into), 1e-12);
     EXPECT_NEAR(glm::length(plane.up), 1, 1e-12);
   }
-  EXPECT_LT(glm::distance(plane_square_to({0, 0, 2}, "z").up, glm::dvec3(0, 1, 0)), 1e-12);      // the plan
-  EXPECT_LT(glm::distance(plane_square_to({0, -1, 0}, "z").right, glm::dvec3(1, 0, 0)), 1e-12);  // the front
+  // the plan
+  EXPECT_LT(glm::distance(plane_square_to({0, 0, 2}, "z").up, glm::dvec3(0, 1, 0)), 1e-12);
+  // the front
+  EXPECT_LT(glm::distance(plane_square_to({0, -1, 0}, "z").right, glm::dvec3(1, 0, 0)), 1e-12);
 }
 
 TEST(Plane, OfACameraIsItsOwn) {
@@ -118,8 +122,9 @@ TEST(Parts, CoverTheDrawingOnceWithOneScale) {
       EXPECT_TRUE(validate(part.camera));
       EXPECT_TRUE(is_orthographic(part.camera));
       EXPECT_EQ((part.width + 2 * part.margin) * kCameraDpi,
-                part.camera.width * drawing.dpi);            // whole pixels to the inch
-      EXPECT_GE(part.margin * kCameraDpi, 8 * drawing.dpi);  // symbols reach so far from their places
+                part.camera.width * drawing.dpi);  // whole pixels to the inch
+      // symbols reach so far from their places
+      EXPECT_GE(part.margin * kCameraDpi, 8 * drawing.dpi);
       EXPECT_EQ(part.margin % 2, 0);
       for (int y = part.y; y < std::min(drawing.height, part.y + part.height); ++y)
         for (int x = part.x; x < std::min(drawing.width, part.x + part.width); ++x)
@@ -129,11 +134,13 @@ TEST(Parts, CoverTheDrawingOnceWithOneScale) {
     // A place has the same pixel by each part's camera, and that is where the paper has it.
     const glm::dvec3 place = drawing.plane.in_world({2.1, -1.4, 3});
     for (const Part& part : parts) {
-      const glm::dvec2 pixel = pixel_of(part, place), paper = on_paper(drawing, place) / 25.4 * 300.0;
+      const glm::dvec2 pixel = pixel_of(part, place),
+                       paper = on_paper(drawing, place) / 25.4 * 300.0;
       EXPECT_LT(glm::distance(pixel, paper), 1e-6) << part.x << " " << part.y;
     }
     // 20 mm of the world are one on paper: a unit is a centimetre.
-    const glm::dvec2 moved = on_paper(drawing, place + 2.0 * drawing.plane.right) - on_paper(drawing, place);
+    const glm::dvec2 moved =
+        on_paper(drawing, place + 2.0 * drawing.plane.right) - on_paper(drawing, place);
     EXPECT_LT(glm::distance(moved, glm::dvec2(1, 0)), 1e-9);
   }
 }
@@ -146,7 +153,9 @@ TEST(Parts, JoinAtEveryResolution) {
     for (const Part& part : parts_of(drawing, 1000)) {
       EXPECT_TRUE(validate(part.camera));
       EXPECT_EQ((part.width + 2 * part.margin) * kCameraDpi, part.camera.width * dpi);
-      EXPECT_LT(glm::distance(pixel_of(part, place), on_paper(drawing, place) / 25.4 * (1.0 * dpi)), 1e-6) << dpi;
+      EXPECT_LT(glm::distance(pixel_of(part, place), on_paper(drawing, place) / 25.4 * (1.0 * dpi)),
+                1e-6)
+          << dpi;
     }
   }
 }

@@ -19,13 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const Captions kCaptions{"Sherd 14 <rim> & handle", "Front, in raking light.", "Museum of Everything, CC BY"};
+const Captions kCaptions{"Sherd 14 <rim> & handle", "Front, in raking light.",
+                         "Museum of Everything, CC BY"};
 
 std::vector<Legend> legends(int entries) {
   Legend classes{"Damage", {}, {}, {}, {}};
   for (int i = 0; i < entries; ++i)
-    classes.entries.push_back(
-        {"Class " + std::to_string(i), Rgba{200, std::uint8_t(i), 30, 255}, static_cast<Pattern>(i % 4), 30.0 * i});
+    classes.entries.push_back({"Class " + std::to_string(i), Rgba{200, std::uint8_t(i), 30, 255},
+                               static_cast<Pattern>(i % 4), 30.0 * i});
   classes.entries.push_back({"", Rgba{1, 2, 3, 255}});  // a class without words
   Legend moisture{"Moisture [%]", {}, std::vector<Rgba>(64, Rgba{0, 0, 255, 255}), "0", "100"};
   return {classes, moisture};
@@ -57,27 +58,32 @@ TEST(SheetLayout, EverythingIsOnThePaperAndBesideTheDrawing) {
     for (const bool landscape : {false, true})
       for (const int entries : {0, 5, 200}) {
         const glm::dvec2 size = paper_mm(paper, landscape);
-        const SheetLayout layout(size, kCaptions, entries == 0 ? std::vector<Legend>{} : legends(entries), 300);
+        const SheetLayout layout(size, kCaptions,
+                                 entries == 0 ? std::vector<Legend>{} : legends(entries), 300);
         const Sheet sheet = layout.finish(20, glm::dvec2(0, -1), {});
         const glm::dvec2 end = sheet.drawing.corner + sheet.drawing.size;
         EXPECT_GT(sheet.drawing.size.x, size.x / 3);
         EXPECT_GT(sheet.drawing.size.y, size.y / 3);
         EXPECT_NEAR(layout.drawing_width() * 25.4 / 300, sheet.drawing.size.x, 1e-9);
-        const auto inside = [&](const glm::dvec2& p) { return p.x >= 0 && p.y >= 0 && p.x <= size.x && p.y <= size.y; };
+        const auto inside = [&](const glm::dvec2& p) {
+          return p.x >= 0 && p.y >= 0 && p.x <= size.x && p.y <= size.y;
+        };
         EXPECT_TRUE(inside(sheet.drawing.corner) && inside(end));
         for (const Path& path : all<Path>(sheet))
-          for (const glm::dvec2& point : path.points) EXPECT_TRUE(inside(point)) << point.x << " " << point.y;
+          for (const glm::dvec2& point : path.points)
+            EXPECT_TRUE(inside(point)) << point.x << " " << point.y;
         for (const Words& words : all<Words>(sheet)) {
           const double width = width_mm(words.text, words.size_mm, words.bold);
           const double left = words.at.x - (words.anchor == Anchor::start    ? 0
                                             : words.anchor == Anchor::middle ? width / 2
                                                                              : width);
-          EXPECT_TRUE(inside({left, words.at.y}) && inside({left + width, words.at.y})) << words.text;
+          EXPECT_TRUE(inside({left, words.at.y}) && inside({left + width, words.at.y}))
+              << words.text;
           const bool below = words.at.y - words.size_mm >= end.y, beside = left >= end.x;
           EXPECT_TRUE(below || beside) << words.text << " lies over the drawing";
         }
-        const bool cut =
-            std::ranges::any_of(all<Words>(sheet), [](const Words& words) { return words.text.starts_with("… + "); });
+        const bool cut = std::ranges::any_of(
+            all<Words>(sheet), [](const Words& words) { return words.text.starts_with("… + "); });
         EXPECT_EQ(cut, entries == 200) << "what has no room is counted";
       }
 }
@@ -91,11 +97,13 @@ TEST(SheetLayout, AListOfTheLegendStaysTogetherOrHasItsTitleInEachColumn) {
         for (int list = 0; list < 3; ++list) {
           lists.push_back({"List " + std::to_string(list), {}, {}, {}, {}});
           for (int i = 0; i < (list == 1 ? entries : 4); ++i)
-            lists.back().entries.push_back({std::to_string(list) + "-" + std::to_string(i), Rgba{200, 90, 30, 255}});
+            lists.back().entries.push_back(
+                {std::to_string(list) + "-" + std::to_string(i), Rgba{200, 90, 30, 255}});
         }
         Captions captions = kCaptions;
         captions.continued = "(goes on)";
-        const Sheet sheet = SheetLayout(paper_mm(paper, landscape), captions, lists, 300).finish(20, std::nullopt, {});
+        const Sheet sheet = SheetLayout(paper_mm(paper, landscape), captions, lists, 300)
+                                .finish(20, std::nullopt, {});
         const auto group = std::ranges::find(sheet.groups, "legend", &Group::id);
         ASSERT_NE(group, sheet.groups.end());
         std::string title;  // in force where the next entry stands
@@ -110,14 +118,16 @@ TEST(SheetLayout, AListOfTheLegendStaysTogetherOrHasItsTitleInEachColumn) {
             continue;
           }
           if (words->bold) {
-            EXPECT_EQ(words->text.ends_with(" (goes on)"), words->text.substr(0, 6) == title) << words->text;
+            EXPECT_EQ(words->text.ends_with(" (goes on)"), words->text.substr(0, 6) == title)
+                << words->text;
             title = words->text.substr(0, 6);
             shown.insert(title);
             column = words->at.x;
             ++titles;
           } else {
             EXPECT_EQ(words->text[0], title[5]) << words->text << " below " << title;
-            EXPECT_NEAR(words->at.x - column, 8, 1e-9) << words->text << " stands in a column without its title";
+            EXPECT_NEAR(words->at.x - column, 8, 1e-9)
+                << words->text << " stands in a column without its title";
             EXPECT_GT(words->at.y, y);
             ++told;
           }
@@ -133,20 +143,22 @@ TEST(SheetLayout, ASwatchIsTintedAndHasABorderAsTheDrawing) {
   for (const Pattern pattern : {Pattern::hatch, Pattern::dots})
     for (const bool bare : {false, true}) {
       legend.entries = {{"Loss", Rgba{200, 0, 100, 255}, pattern, 45, bare}};
-      const Sheet sheet =
-          SheetLayout(paper_mm(Paper::a4, false), kCaptions, {legend}, 300).finish(20, std::nullopt, {});
+      const Sheet sheet = SheetLayout(paper_mm(Paper::a4, false), kCaptions, {legend}, 300)
+                              .finish(20, std::nullopt, {});
       const auto group = std::ranges::find(sheet.groups, "legend", &Group::id);
       int tints = 0, inks = 0;
       glm::dvec2 low(1e9), high(-1e9);
       for (const Item& item : group->items)
         if (const auto* path = std::get_if<Path>(&item); path && path->fill) {
-          for (const glm::dvec2& point : path->points) low = glm::min(low, point), high = glm::max(high, point);
+          for (const glm::dvec2& point : path->points)
+            low = glm::min(low, point), high = glm::max(high, point);
           tints += *path->fill == Rgba{239, 179, 209, 255};  // 30 % of the colour on white
           inks += *path->fill == Rgba{200, 0, 100, 255};
         }
       EXPECT_EQ(tints, bare ? 0 : 1);
       EXPECT_GT(inks, bare ? 2 : 6);  // lines or dots, and four sides
-      EXPECT_TRUE(high.x - low.x <= 6 + 1e-9 && high.y - low.y <= 3 + 1e-9) << "nothing of it leaves the swatch";
+      EXPECT_TRUE(high.x - low.x <= 6 + 1e-9 && high.y - low.y <= 3 + 1e-9)
+          << "nothing of it leaves the swatch";
     }
 }
 
@@ -186,7 +198,8 @@ TEST(ScaleBar, IsRoundAndHasRoom) {
 TEST(Labels, LieOverNoOtherAndWithinTheDrawing) {
   std::vector<LabelWish> wishes;
   for (int i = 0; i < 300; ++i)
-    wishes.push_back({"Unit " + std::to_string(i), {{5.0 + i % 17 * 6, 3.0 + i % 23 * 4}, {60, 50}}});
+    wishes.push_back(
+        {"Unit " + std::to_string(i), {{5.0 + i % 17 * 6, 3.0 + i % 23 * 4}, {60, 50}}});
   wishes.push_back({"", {{10, 90}}});
   wishes.push_back({"outside", {{-3, 10}, {119, 99}}});
   const auto labels = place_labels(wishes, {120, 100});
@@ -208,22 +221,29 @@ TEST(Labels, LieOverNoOtherAndWithinTheDrawing) {
 TEST(LegendOf, TellsClassesAndRamps) {
   Layer layer;
   layer.name = "Damage";
-  Palette classes{PaletteMode::categorical, 0, 1, {{1, {255, 0, 0, 255}, "Loss"}, {2.5, {0, 255, 0, 255}}}, "", {}};
+  Palette classes{PaletteMode::categorical,
+                  0,
+                  1,
+                  {{1, {255, 0, 0, 255}, "Loss"}, {2.5, {0, 255, 0, 255}}},
+                  "",
+                  {}};
   const Legend legend = legend_of(layer, classes);
   EXPECT_EQ(legend.title, "Damage");
   ASSERT_EQ(legend.entries.size(), 2u);
   EXPECT_EQ(legend.entries[0].label, "Loss");
   EXPECT_EQ(legend.entries[1].label, "2.5");
   const std::set<double> there{2.5, 7};
-  ASSERT_EQ(legend_of(layer, classes, &there).entries.size(), 1u) << "of classes that are not there nothing is told";
+  ASSERT_EQ(legend_of(layer, classes, &there).entries.size(), 1u)
+      << "of classes that are not there nothing is told";
   layer.labels = {{"de", "Schäden"}, {"pt-BR", "Danos"}};
   EXPECT_EQ(legend_of(layer, classes, nullptr, "de-at").title, "Schäden");
   EXPECT_EQ(legend_of(layer, classes, nullptr, "pt-br").title, "Danos");
   EXPECT_EQ(legend_of(layer, classes, nullptr, "fr").title, "Damage") << "it has no name in it";
   layer.unit = "%";
   EXPECT_EQ(legend_of(layer, classes, nullptr, "de").title, "Schäden [%]");
-  const Legend ramp =
-      legend_of(layer, {PaletteMode::linear, 0, 40, {{0, {0, 0, 0, 255}}, {40, {255, 255, 255, 255}}}, "", {}});
+  const Legend ramp = legend_of(
+      layer,
+      {PaletteMode::linear, 0, 40, {{0, {0, 0, 0, 255}}, {40, {255, 255, 255, 255}}}, "", {}});
   EXPECT_EQ(ramp.title, "Damage [%]");
   EXPECT_EQ(ramp.low + "…" + ramp.high, "0…40");
   EXPECT_LT(ramp.ramp.front()[0], 5);
@@ -238,9 +258,9 @@ class Files : public ::testing::Test {
   fs::path write(Format format, int dpi) {
     const SheetLayout layout(paper_mm(Paper::a5, true), kCaptions, legends(3), dpi);
     const fs::path file = folder_ / ("sheet" + std::string(extension(format)));
-    const auto written =
-        write_figure(layout.finish(2, glm::dvec2(0.6, -0.8), {{{50, 40}, "Ünit 7 — Ψ"}}), drawing_of(layout), dpi,
-                     format, {kCaptions.title, kCaptions.credit}, file, progress_);
+    const auto written = write_figure(
+        layout.finish(2, glm::dvec2(0.6, -0.8), {{{50, 40}, "Ünit 7 — Ψ"}}), drawing_of(layout),
+        dpi, format, {kCaptions.title, kCaptions.credit}, file, progress_);
     EXPECT_TRUE(written) << (written ? "" : written.error().detail);
     return file;
   }
@@ -250,19 +270,23 @@ class Files : public ::testing::Test {
     return text.str();
   }
 
-  const fs::path folder_ = fs::temp_directory_path() / ("strata-figure-test-" + std::to_string(::getpid()));
+  const fs::path folder_ =
+      fs::temp_directory_path() / ("strata-figure-test-" + std::to_string(::getpid()));
   Progress progress_;
 };
 
 TEST_F(Files, PngHasItsResolutionAndTheDrawingPixelByPixel) {
   const std::string bytes = text_of(write(Format::png, 200));
-  const auto picture = decode_picture({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  const auto picture =
+      decode_picture({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
   ASSERT_TRUE(picture);
   EXPECT_EQ(picture->width, 1654);  // 210 mm
   EXPECT_EQ(picture->height, 1165);
-  EXPECT_NE(bytes.find(std::string("pHYs\0\0\x1e\xc2\0\0\x1e\xc2\x01", 13)), std::string::npos);  // 7874 a metre
+  // 7874 a metre
+  EXPECT_NE(bytes.find(std::string("pHYs\0\0\x1e\xc2\0\0\x1e\xc2\x01", 13)), std::string::npos);
   const auto at = [&](double x_mm, double y_mm) {
-    return &picture->rgba[4 * (std::size_t(y_mm / 25.4 * 200) * picture->width + std::size_t(x_mm / 25.4 * 200))];
+    return &picture->rgba[4 * (std::size_t(y_mm / 25.4 * 200) * picture->width +
+                               std::size_t(x_mm / 25.4 * 200))];
   };
   EXPECT_EQ(at(20, 60)[0], 220);
   EXPECT_EQ(at(20, 60)[2], 20);
@@ -295,9 +319,9 @@ TEST_F(Files, TiffHasItsResolutionAndTheSamePixels) {
 
 TEST_F(Files, SvgHasWordsAndNamedGroups) {
   const std::string text = text_of(write(Format::svg, 100));
-  for (const char* part :
-       {"width=\"210mm\"", "id=\"legend\"", "id=\"scale-bar\"", "id=\"north\"", "id=\"labels\"", ">Ünit 7 — Ψ</text>",
-        ">1 : 2</text>", "Sherd 14 &lt;rim&gt; &amp; handle", "data:image/jpeg;base64,/9j/"})
+  for (const char* part : {"width=\"210mm\"", "id=\"legend\"", "id=\"scale-bar\"", "id=\"north\"",
+                           "id=\"labels\"", ">Ünit 7 — Ψ</text>", ">1 : 2</text>",
+                           "Sherd 14 &lt;rim&gt; &amp; handle", "data:image/jpeg;base64,/9j/"})
     EXPECT_NE(text.find(part), std::string::npos) << part;
   EXPECT_EQ(text.find("<rim>"), std::string::npos);
 }
@@ -306,8 +330,8 @@ TEST_F(Files, CharactersThatFilesDoNotHaveAreLeftOut) {
   const std::string odd = "W\x01st \uFFFEwall\uFFFF";
   const SheetLayout layout(paper_mm(Paper::a5, true), {odd, odd, odd}, {}, 100);
   for (const Format format : {Format::png, Format::tiff, Format::svg, Format::pdf}) {
-    const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format, {odd, odd},
-                                      folder_ / extension(format), progress_);
+    const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format,
+                                      {odd, odd}, folder_ / extension(format), progress_);
     EXPECT_TRUE(written) << extension(format) << ": " << written.error().detail;
   }
   const std::string svg = text_of(folder_ / ".svg");
@@ -327,8 +351,8 @@ TEST_F(Files, CancelledWritesEnd) {
   progress_.cancel();
   const SheetLayout layout(paper_mm(Paper::a5, true), kCaptions, {}, 100);
   for (const Format format : {Format::png, Format::tiff, Format::svg, Format::pdf}) {
-    const auto written =
-        write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format, {}, folder_ / "none", progress_);
+    const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format, {},
+                                      folder_ / "none", progress_);
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().status, 499);
   }
@@ -339,7 +363,8 @@ TEST_F(Files, ADiskThatTakesNothingIsSaid) {
   for (const Format format : {Format::png, Format::tiff, Format::svg, Format::pdf})
     for (const fs::path& file : {fs::path("/dev/full"), folder_ / "no" / "folder"}) {
       if (format == Format::tiff && file == "/dev/full") continue;  // libtiff wants to seek
-      const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format, {}, file, progress_);
+      const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format,
+                                        {}, file, progress_);
       ASSERT_FALSE(written) << file << " " << static_cast<int>(format);
       EXPECT_EQ(written.error().status, 507);
     }

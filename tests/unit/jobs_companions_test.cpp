@@ -26,24 +26,32 @@ class Companions : public testing::Test {
     }
     return names;
   }
-  const fs::path folder_ = fs::temp_directory_path() / ("strata-companions-" + std::to_string(::getpid()));
+  const fs::path folder_ =
+      fs::temp_directory_path() / ("strata-companions-" + std::to_string(::getpid()));
 };
 
 TEST_F(Companions, an_obj_brings_its_libraries_and_their_textures) {
   write("scan.obj", "# x\nmtllib my scan.mtl\r\nv 0 0 0\n");
-  write("my scan.mtl", "newmtl a\n  map_Kd -s 1 1 1 C:\\work\\tex 1.jpg\nmap_Bump sub/normal.png\nmap_d lost.png\n");
+  write(
+      "my scan.mtl",
+      "newmtl a\n  map_Kd -s 1 1 1 C:\\work\\tex 1.jpg\nmap_Bump sub/normal.png\nmap_d lost.png\n");
   write("tex 1.jpg", "x");
   write("sub/normal.png", "x");
-  EXPECT_THAT(found("scan.obj"), testing::ElementsAre("scan.obj", "my scan.mtl", "tex 1.jpg", "sub/normal.png"));
+  EXPECT_THAT(found("scan.obj"),
+              testing::ElementsAre("scan.obj", "my scan.mtl", "tex 1.jpg", "sub/normal.png"));
 }
 
 TEST_F(Companions, a_ply_brings_its_texture_files_and_a_gltf_its_buffers) {
-  write("a.ply", "ply\ncomment TextureFile a b.png\ncomment other.png\nend_header\ncomment TextureFile no.png\n");
+  write(
+      "a.ply",
+      "ply\ncomment TextureFile a b.png\ncomment other.png\nend_header\ncomment TextureFile no.png\n");
   write("a b.png", "x");
   write("other.png", "x");
   write("no.png", "x");
   EXPECT_THAT(found("a.ply"), testing::ElementsAre("a.ply", "a b.png"));
-  write("b.gltf", R"({"buffers":[{"uri":"b%20c.bin"},{"uri":"data:,x"},{}],"images":[{"uri":"a b.png"},{"uri":7}]})");
+  write(
+      "b.gltf",
+      R"({"buffers":[{"uri":"b%20c.bin"},{"uri":"data:,x"},{}],"images":[{"uri":"a b.png"},{"uri":7}]})");
   write("b c.bin", "x");
   EXPECT_THAT(found("b.gltf"), testing::ElementsAre("b.gltf", "b c.bin", "a b.png"));
 }
@@ -59,7 +67,8 @@ TEST_F(Companions, damaged_files_bring_nothing) {
   write("b.gltf", R"({"buffers":{},"images":[1,{"uri":"%"},{"uri":"%zz"},{"uri":""}]})");
   write("c.obj", "mtllib");
   write("d.stl", "mtllib c.obj");
-  for (const char* name : {"a.gltf", "b.gltf", "c.obj", "d.stl"}) EXPECT_THAT(found(name), testing::ElementsAre(name));
+  for (const char* name : {"a.gltf", "b.gltf", "c.obj", "d.stl"})
+    EXPECT_THAT(found(name), testing::ElementsAre(name));
   EXPECT_EQ(with_companions(folder_ / "missing.obj").size(), 1u);
 }
 

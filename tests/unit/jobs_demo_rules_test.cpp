@@ -31,7 +31,8 @@ TEST(JobsDemoRules, every_point_belongs_to_a_sherd_and_all_sherds_are_there) {
     ASSERT_LE(sherd, DemoRules::kSherds);
     ++count[sherd];
   }
-  for (int i = 1; i <= DemoRules::kSherds; ++i) EXPECT_GT(count[i], 60'000 / DemoRules::kSherds / 6) << "sherd " << i;
+  for (int i = 1; i <= DemoRules::kSherds; ++i)
+    EXPECT_GT(count[i], 60'000 / DemoRules::kSherds / 6) << "sherd " << i;
 }
 
 TEST(JobsDemoRules, cracks_of_all_three_classes_are_thin_and_few) {
@@ -51,7 +52,9 @@ TEST(JobsDemoRules, a_sherd_goes_through_the_wall) {
   const DemoRules rules(outside);
   for (const auto& p : outside) {
     const auto inside = rules.at(p * 0.9f), here = rules.at(p);
-    ASSERT_EQ(inside.sherd == here.sherd || here.crack != DemoRules::none || inside.crack != DemoRules::none, true);
+    ASSERT_EQ(inside.sherd == here.sherd || here.crack != DemoRules::none ||
+                  inside.crack != DemoRules::none,
+              true);
   }
 }
 

@@ -45,8 +45,8 @@ TEST(ImportRequest, what_a_scan_may_be_asked_for_is_checked_without_its_bytes) {
 }
 
 TEST(ImportRequest, the_ending_names_the_format) {
-  for (const char* name :
-       {"pot.PLY", "a.b.obj", "pot.stl", "pot.gltf", "pot.GLB", "pot.zip", "folder/pot.ply", "C:\\scans\\pot.Obj"}) {
+  for (const char* name : {"pot.PLY", "a.b.obj", "pot.stl", "pot.gltf", "pot.GLB", "pot.zip",
+                           "folder/pot.ply", "C:\\scans\\pot.Obj"}) {
     ImportRequest request = good();
     request.files[0].filename = name;
     EXPECT_TRUE(check(request)) << name;

@@ -55,8 +55,9 @@ TEST(JobsQueue, a_job_that_ends_names_its_model) {
 
 TEST(JobsQueue, a_job_that_fails_keeps_its_problem) {
   JobQueue queue;
-  const auto id = queue.add(
-      1, [](Progress&) -> Result<JobResult> { return fail(422, "Mesh file refused", "No triangle.", "file"); });
+  const auto id = queue.add(1, [](Progress&) -> Result<JobResult> {
+    return fail(422, "Mesh file refused", "No triangle.", "file");
+  });
   const auto status = wait_until_over(queue, *id);
   EXPECT_EQ(status.state, JobState::failed);
   ASSERT_TRUE(status.problem);
@@ -66,7 +67,8 @@ TEST(JobsQueue, a_job_that_fails_keeps_its_problem) {
 
 TEST(JobsQueue, a_job_that_throws_fails_and_the_next_one_runs) {
   JobQueue queue;
-  const auto bad = queue.add(1, [](Progress&) -> Result<JobResult> { throw std::runtime_error("planted"); });
+  const auto bad =
+      queue.add(1, [](Progress&) -> Result<JobResult> { throw std::runtime_error("planted"); });
   const auto huge = queue.add(1, [](Progress&) -> Result<JobResult> { throw std::bad_alloc(); });
   const auto good = queue.add(1, [](Progress&) -> Result<JobResult> { return 7; });
   EXPECT_EQ(wait_until_over(queue, *bad).problem->status, 500);
@@ -111,7 +113,8 @@ TEST(JobsQueue, more_than_64_waiting_jobs_are_refused) {
   JobQueue queue;
   ASSERT_TRUE(queue.add(1, gate.work()));
   gate.entered.get_future().wait();
-  for (int i = 0; i < 64; ++i) EXPECT_TRUE(queue.add(1, [](Progress&) -> Result<JobResult> { return 1; }));
+  for (int i = 0; i < 64; ++i)
+    EXPECT_TRUE(queue.add(1, [](Progress&) -> Result<JobResult> { return 1; }));
   const auto refused = queue.add(1, [](Progress&) -> Result<JobResult> { return 1; });
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 503);
@@ -196,7 +199,8 @@ TEST(JobsQueue, what_a_job_freed_in_small_pieces_is_given_back_to_the_system) {
 #endif
   using Pieces = std::vector<std::unique_ptr<std::array<char, 4000>>>;
   const double before = resident_mb();
-  const auto last = std::make_shared<Pieces>();  // lies above all others: what is below it is not given back by itself
+  // lies above all others: what is below it is not given back by itself
+  const auto last = std::make_shared<Pieces>();
   double most = 0;
   JobQueue queue;
   const auto id = queue.add(1, [&](Progress&) -> Result<JobResult> {

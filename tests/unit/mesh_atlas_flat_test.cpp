@@ -34,18 +34,20 @@ std::vector<std::uint32_t> islands_of(const TriangleMesh& mesh, const Atlas& atl
 
 glm::dvec3 normal_of(const TriangleMesh& mesh, std::size_t t) {
   const auto a = mesh.positions[mesh.triangles[3 * t]];
-  return glm::normalize(
-      glm::cross(mesh.positions[mesh.triangles[3 * t + 1]] - a, mesh.positions[mesh.triangles[3 * t + 2]] - a));
+  return glm::normalize(glm::cross(mesh.positions[mesh.triangles[3 * t + 1]] - a,
+                                   mesh.positions[mesh.triangles[3 * t + 2]] - a));
 }
 
-// Triangles that share an edge and lie in one plane must be in one island: of all pairs, without any help.
+// Triangles that share an edge and lie in one plane must be in one island: of all pairs, without
+// any help.
 void expect_planes_in_one_chart(const TriangleMesh& mesh, const Atlas& atlas) {
   const auto islands = islands_of(mesh, atlas);
   int pairs = 0;
   for (std::size_t a = 0; a < mesh.triangle_count(); ++a)
     for (std::size_t b = a + 1; b < mesh.triangle_count(); ++b) {
       int shared = 0;
-      for (int k = 0; k < 9; ++k) shared += mesh.triangles[3 * a + k / 3] == mesh.triangles[3 * b + k % 3];
+      for (int k = 0; k < 9; ++k)
+        shared += mesh.triangles[3 * a + k / 3] == mesh.triangles[3 * b + k % 3];
       if (shared < 2 || glm::dot(normal_of(mesh, a), normal_of(mesh, b)) < 1 - 1e-12) continue;
       ++pairs;
       ASSERT_EQ(islands[a], islands[b]) << "triangles " << a << " and " << b;
@@ -54,7 +56,8 @@ void expect_planes_in_one_chart(const TriangleMesh& mesh, const Atlas& atlas) {
 }
 
 TEST(mesh_atlas_flat, connected_faces_of_one_plane_are_one_chart) {
-  for (const auto& mesh : {test::cubes(20), test::gear(24), test::flat_ring(66), test::strips(9, 30)})
+  for (const auto& mesh :
+       {test::cubes(20), test::gear(24), test::flat_ring(66), test::strips(9, 30)})
     expect_planes_in_one_chart(mesh, unwrapped(mesh));
 }
 
@@ -79,8 +82,10 @@ TEST(mesh_atlas_flat, a_curved_surface_has_no_flat_piece) {
   EXPECT_EQ(flat_pieces_of(test::sphere(400)).count(), 0u);
 }
 
-TEST(mesh_atlas_flat, faces_of_a_coarse_or_noisy_surface_are_flat_pieces_only_where_they_lie_in_one_plane) {
-  // The cells of a coarse sphere are planes between creases: all but the triangles at the poles are in pieces of two.
+TEST(mesh_atlas_flat,
+     faces_of_a_coarse_or_noisy_surface_are_flat_pieces_only_where_they_lie_in_one_plane) {
+  // The cells of a coarse sphere are planes between creases: all but the triangles at the poles are
+  // in pieces of two.
   const FlatPieces coarse = flat_pieces_of(test::sphere(40));
   EXPECT_EQ(coarse.count(), 40u * 18);
   EXPECT_EQ(coarse.faces.size(), 2u * 40 * 18);
@@ -117,7 +122,8 @@ TEST(mesh_atlas_flat, an_atlas_that_uses_little_says_why_and_one_that_uses_much_
     return found;
   };
   EXPECT_THAT(codes(unwrapped(test::flat_ring(66))), testing::Contains("hollow_charts"));
-  EXPECT_THAT(codes(unwrapped(test::separate_triangles(3000), 512)), testing::Contains("many_charts"));
+  EXPECT_THAT(codes(unwrapped(test::separate_triangles(3000), 512)),
+              testing::Contains("many_charts"));
   EXPECT_THAT(codes(unwrapped(test::strips(1, 500))), testing::Contains("long_triangles"));
   const Atlas cubes = unwrapped(test::cubes(20));
   EXPECT_GE(cubes.report.coverage, 0.6);
@@ -148,7 +154,8 @@ TEST(mesh_atlas_flat, files_of_other_projects_use_their_texels) {
     EXPECT_LE(report.charts, most_charts) << file;
     EXPECT_GE(report.coverage, coverage) << file;
     EXPECT_EQ(report.overlap, 0) << file;
-    EXPECT_LE(report.texel_area_max, 3 * surface_area(scan->mesh) / (report.coverage * 2048 * 2048)) << file;
+    EXPECT_LE(report.texel_area_max, 3 * surface_area(scan->mesh) / (report.coverage * 2048 * 2048))
+        << file;
     EXPECT_LE(report.stretch_mean, 1.35) << file;
   }
   if (found == 0) GTEST_SKIP() << "no files at " << peers;

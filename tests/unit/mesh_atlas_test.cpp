@@ -20,8 +20,10 @@ namespace {
 
 constexpr int kLowest = 256;
 
-// How often each texel centre is covered: OpenGL's rule told again, texel by texel, with whole numbers.
-std::vector<int> owners_by_brute_force(const TriangleMesh& mesh, const Atlas& atlas, int resolution) {
+// How often each texel centre is covered: OpenGL's rule told again, texel by texel, with whole
+// numbers.
+std::vector<int> owners_by_brute_force(const TriangleMesh& mesh, const Atlas& atlas,
+                                       int resolution) {
   std::vector<int> owners(std::size_t(resolution) * resolution, 0);
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     std::int64_t x[3], y[3];
@@ -37,7 +39,8 @@ std::vector<int> owners_by_brute_force(const TriangleMesh& mesh, const Atlas& at
     const auto [left, right] = std::minmax({x[0], x[1], x[2]});
     const auto [bottom, top] = std::minmax({y[0], y[1], y[2]});
     for (int row = int(bottom / 256); row <= std::min<int>(int(top / 256), resolution - 1); ++row)
-      for (int column = int(left / 256); column <= std::min<int>(int(right / 256), resolution - 1); ++column) {
+      for (int column = int(left / 256); column <= std::min<int>(int(right / 256), resolution - 1);
+           ++column) {
         const std::int64_t px = column * 256 + 128, py = row * 256 + 128;
         bool covered = true;
         for (int k = 0; k < 3; ++k) {
@@ -59,14 +62,15 @@ std::vector<std::uint32_t> islands_of(const TriangleMesh& mesh, const Atlas& atl
 }
 
 double uv_area(const Atlas& atlas, std::size_t t) {
-  const glm::dvec2 a = atlas.corner_uvs[3 * t], b = atlas.corner_uvs[3 * t + 1], c = atlas.corner_uvs[3 * t + 2];
+  const glm::dvec2 a = atlas.corner_uvs[3 * t], b = atlas.corner_uvs[3 * t + 1],
+                   c = atlas.corner_uvs[3 * t + 2];
   return std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
 }
 
 double area_of(const TriangleMesh& mesh, std::size_t t) {
   const auto a = mesh.positions[mesh.triangles[3 * t]];
-  return glm::length(
-             glm::cross(mesh.positions[mesh.triangles[3 * t + 1]] - a, mesh.positions[mesh.triangles[3 * t + 2]] - a)) /
+  return glm::length(glm::cross(mesh.positions[mesh.triangles[3 * t + 1]] - a,
+                                mesh.positions[mesh.triangles[3 * t + 2]] - a)) /
          2;
 }
 
@@ -100,7 +104,8 @@ TEST_P(EveryMeshClass, has_all_its_corners_inside_the_unit_square) {
 TEST_P(EveryMeshClass, has_no_texel_with_two_owners_up_to_four_times_the_lowest_resolution) {
   const Atlas& atlas = unwrapped();
   for (const int resolution : {kLowest, 2 * kLowest, 4 * kLowest})
-    EXPECT_THAT(owners_by_brute_force(mesh(), atlas, resolution), testing::Each(testing::Le(1))) << resolution;
+    EXPECT_THAT(owners_by_brute_force(mesh(), atlas, resolution), testing::Each(testing::Le(1)))
+        << resolution;
 }
 
 TEST_P(EveryMeshClass, reports_the_coverage_that_a_count_of_texels_finds) {
@@ -116,7 +121,8 @@ TEST_P(EveryMeshClass, reports_the_coverage_that_a_count_of_texels_finds) {
 TEST_P(EveryMeshClass, gives_every_triangle_with_an_area_a_footprint) {
   const Atlas& atlas = unwrapped();
   double total = 0, total_uv = 0;
-  for (std::size_t t = 0; t < mesh().triangle_count(); ++t) total += area_of(mesh(), t), total_uv += uv_area(atlas, t);
+  for (std::size_t t = 0; t < mesh().triangle_count(); ++t)
+    total += area_of(mesh(), t), total_uv += uv_area(atlas, t);
   ASSERT_GT(total_uv, 0);
   for (std::size_t t = 0; t < mesh().triangle_count(); ++t) {
     const double relative = area_of(mesh(), t) / total;
@@ -158,15 +164,18 @@ TEST_P(EveryMeshClass, keeps_two_empty_texels_between_charts) {
     }
 }
 
-TEST_P(EveryMeshClass, is_unwrapped_the_same_every_time) { EXPECT_EQ(unwrap().corner_uvs, unwrapped().corner_uvs); }
+TEST_P(EveryMeshClass, is_unwrapped_the_same_every_time) {
+  EXPECT_EQ(unwrap().corner_uvs, unwrapped().corner_uvs);
+}
 
 TEST(mesh_atlas, does_not_depend_on_scale_or_place) {
   const auto plain = test::sphere(40);
   Progress progress;
   const auto expected = make_atlas(plain, kLowest, progress);
   ASSERT_TRUE(expected);
-  for (const auto& moved : {test::transformed(plain, 1e-9, {0, 0, 0}), test::transformed(plain, 1e9, {0, 0, 0}),
-                            test::transformed(plain, 0.05, {433210.12, 4581234.57, 612.25})}) {
+  for (const auto& moved :
+       {test::transformed(plain, 1e-9, {0, 0, 0}), test::transformed(plain, 1e9, {0, 0, 0}),
+        test::transformed(plain, 0.05, {433210.12, 4581234.57, 612.25})}) {
     const auto atlas = make_atlas(moved, kLowest, progress);
     ASSERT_TRUE(atlas);
     EXPECT_EQ(atlas->report.charts, expected->report.charts);
@@ -178,7 +187,8 @@ TEST(mesh_atlas, does_not_depend_on_scale_or_place) {
 TEST(mesh_atlas, reports_the_largest_texel_in_the_units_of_the_file) {
   Progress progress;
   const auto small = make_atlas(test::sphere(40), kLowest, progress);
-  const auto large = make_atlas(test::transformed(test::sphere(40), 1024, {0, 0, 0}), kLowest, progress);
+  const auto large =
+      make_atlas(test::transformed(test::sphere(40), 1024, {0, 0, 0}), kLowest, progress);
   ASSERT_TRUE(small && large);
   EXPECT_NEAR(large->report.texel_area_max / small->report.texel_area_max, 1024.0 * 1024.0, 1024);
   const double mean = 4 * M_PI / (small->report.coverage * kLowest * kLowest);

@@ -15,15 +15,16 @@ using mesh::Material;
 using mesh::TriangleMesh;
 
 // A picture of one colour.
-mesh::Texture plain(const std::string& name, int size, glm::u8vec3 color, PictureFormat format = PictureFormat::png) {
+mesh::Texture plain(const std::string& name, int size, glm::u8vec3 color,
+                    PictureFormat format = PictureFormat::png) {
   std::vector<std::uint8_t> rgba;
   for (int i = 0; i < size * size; ++i) rgba.insert(rgba.end(), {color.r, color.g, color.b, 255});
-  return {name,
-          format == PictureFormat::png ? encode_png(rgba, size, size) : encode_jpeg(rgba, size, size, {95, true})};
+  return {name, format == PictureFormat::png ? encode_png(rgba, size, size)
+                                             : encode_jpeg(rgba, size, size, {95, true})};
 }
 
-// Two squares side by side, each of two triangles that fill their texture's [0,1]²; in the atlas the lower left and the upper
-// right quarter.
+// Two squares side by side, each of two triangles that fill their texture's [0,1]²; in the atlas
+// the lower left and the upper right quarter.
 struct Squares {
   TriangleMesh mesh;
   mesh::Atlas atlas;
@@ -39,7 +40,8 @@ struct Squares {
         atlas.corner_uvs.push_back(uv * 0.5f + glm::vec2(i * 0.5f));
       }
     mesh.triangle_materials = {0, 0, 1, 1};
-    mesh.materials = {Material{.name = "left", .texture = 0}, Material{.name = "right", .texture = 1}};
+    mesh.materials = {Material{.name = "left", .texture = 0},
+                      Material{.name = "right", .texture = 1}};
     mesh.textures = {plain("left", 1024, {200, 0, 0}), plain("right", 1024, {0, 0, 200})};
     atlas.report.source = "made";
   }
@@ -117,8 +119,8 @@ TEST(BaseColor, a_colour_or_a_tint_on_the_texture_is_multiplied_in_as_light) {
   squares.mesh.vertex_colors.assign(6, 0xff000080u);
   squares.mesh.colors_tint_materials = true;
   const auto picture = decode_picture(squares.bake()->bytes);
-  const double light =
-      mesh::linear_of_srgb(200 / 255.0) * mesh::linear_of_srgb(0.5) * mesh::linear_of_srgb(128 / 255.0);
+  const double light = mesh::linear_of_srgb(200 / 255.0) * mesh::linear_of_srgb(0.5) *
+                       mesh::linear_of_srgb(128 / 255.0);
   EXPECT_NEAR(color_at(*picture, 0.25, 0.25).r, 255 * mesh::srgb_of_linear(light), 1.5);
 }
 
@@ -175,25 +177,29 @@ TEST(BaseColor, textures_of_which_none_can_be_read_are_no_look) {
   for (auto& texture : coloured.mesh.textures) texture.bytes.resize(texture.bytes.size() / 2);
   for (auto& material : coloured.mesh.materials) material.color = {1, 0, 0, 1};
   EXPECT_FALSE(coloured.bake());
-  EXPECT_EQ(coloured.mesh.vertex_colors, std::vector<std::uint32_t>(6, 0xff0000ffu)) << "the materials' colour";
+  EXPECT_EQ(coloured.mesh.vertex_colors, std::vector<std::uint32_t>(6, 0xff0000ffu))
+      << "the materials' colour";
 }
 
 TEST(BaseColor, pixels_that_are_lost_are_said_with_the_sizes) {
   Squares squares;
   MemoryLedger memory("memory", "--memory", 12 << 20);  // enough for 1024² and no more
-  const auto baked = mesh::bake_base_color(squares.mesh, squares.atlas, squares.repairs, squares.progress, &memory);
+  const auto baked = mesh::bake_base_color(squares.mesh, squares.atlas, squares.repairs,
+                                           squares.progress, &memory);
   ASSERT_TRUE(baked && *baked);
   EXPECT_EQ((*baked)->width, 1024);
   ASSERT_EQ(squares.repairs.size(), 1u);
-  EXPECT_EQ(squares.repairs[0].what,
-            "textures made smaller: 2 of 1024 × 1024 pixels became one picture of 1024 × 1024, which keeps 25 % of the "
-            "pixels that the surface uses");
+  EXPECT_EQ(
+      squares.repairs[0].what,
+      "textures made smaller: 2 of 1024 × 1024 pixels became one picture of 1024 × 1024, which keeps 25 % of the "
+      "pixels that the surface uses");
   EXPECT_EQ(squares.repairs[0].count, 2u);
   EXPECT_EQ(memory.used(), 0u);
 
   Squares poor;
   MemoryLedger little("memory", "--memory", 1 << 20);
-  const auto refused = mesh::bake_base_color(poor.mesh, poor.atlas, poor.repairs, poor.progress, &little);
+  const auto refused =
+      mesh::bake_base_color(poor.mesh, poor.atlas, poor.repairs, poor.progress, &little);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, 503);
 }
@@ -220,7 +226,8 @@ TEST(BaseColor, a_triangle_that_was_moved_takes_its_pixels_along_and_the_others_
   Squares squares;
   squares.mesh.materials[1].texture = 0;
   squares.atlas.report.source = "file";
-  // The texture is the atlas, but for the second triangle: the lower half of the picture is red, the upper half blue.
+  // The texture is the atlas, but for the second triangle: the lower half of the picture is red,
+  // the upper half blue.
   squares.mesh.corner_uvs = squares.atlas.corner_uvs;
   std::vector<std::uint8_t> rgba(512 * 512 * 4, 255);
   for (std::size_t i = 0; i < rgba.size(); i += 4) {
@@ -245,7 +252,8 @@ TEST(BaseColor, a_triangle_that_was_moved_takes_its_pixels_along_and_the_others_
   for (std::size_t i = 0; i < rgba.size(); i += 4) changed += rgba[i] != picture->rgba[i];
   EXPECT_NEAR(double(changed), 512 * 512 * 0.045, 800) << "nothing else";
 
-  // Without coordinates it takes the colours that its corners have beside it: the first one is red there.
+  // Without coordinates it takes the colours that its corners have beside it: the first one is red
+  // there.
   squares.mesh.textures[0].bytes = encode_png(rgba, 512, 512);
   const float none = NAN;
   own({{none, none}, {none, none}, {none, none}});
@@ -259,14 +267,20 @@ TEST(BaseColor, a_triangle_that_was_moved_takes_its_pixels_along_and_the_others_
 TEST(BaseColor, a_cancelled_bake_stops) {
   Squares squares;
   squares.progress.cancel();
-  EXPECT_EQ(mesh::bake_base_color(squares.mesh, squares.atlas, squares.repairs, squares.progress).error().status, 499);
+  EXPECT_EQ(mesh::bake_base_color(squares.mesh, squares.atlas, squares.repairs, squares.progress)
+                .error()
+                .status,
+            499);
 }
 
 TEST(TextureSampler, textures_go_on_outside_as_their_wrap_says) {
   Picture picture{4, 1, {}};
-  for (int i = 0; i < 4; ++i) picture.rgba.insert(picture.rgba.end(), {std::uint8_t(10 * i), 0, 0, 255});
+  for (int i = 0; i < 4; ++i)
+    picture.rgba.insert(picture.rgba.end(), {std::uint8_t(10 * i), 0, 0, 255});
   const mesh::TextureSampler sampler(picture);
-  const auto at = [&](double pixel, mesh::Wrap wrap) { return sampler.sample({pixel / 4, 0.5}, wrap, wrap).r; };
+  const auto at = [&](double pixel, mesh::Wrap wrap) {
+    return sampler.sample({pixel / 4, 0.5}, wrap, wrap).r;
+  };
   EXPECT_FLOAT_EQ(at(1.5, mesh::Wrap::clamp), 10);
   EXPECT_FLOAT_EQ(at(2.0, mesh::Wrap::clamp), 15);
   EXPECT_FLOAT_EQ(at(-3.5, mesh::Wrap::clamp), 0);

@@ -17,7 +17,8 @@ constexpr float kGap = 4 * kTexel;
 // Texels of a flat block at a corner in space.
 std::array<glm::vec3, 64> flat_block(const glm::vec3& corner) {
   std::array<glm::vec3, 64> positions;
-  for (int i = 0; i < 64; ++i) positions[static_cast<std::size_t>(i)] = corner + kTexel * glm::vec3(i % 8, i / 8, 0);
+  for (int i = 0; i < 64; ++i)
+    positions[static_cast<std::size_t>(i)] = corner + kTexel * glm::vec3(i % 8, i / 8, 0);
   return positions;
 }
 
@@ -30,7 +31,8 @@ std::vector<BoundedPart> parts_of(const std::array<glm::vec3, 64>& positions, st
 
 TEST(PartsOfABlock, are_one_where_the_surface_is_one) {
   const auto block = flat_block({3, 4, 5});
-  for (const std::uint64_t owned : {~std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{0x0303}, std::uint64_t{0xff}}) {
+  for (const std::uint64_t owned :
+       {~std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{0x0303}, std::uint64_t{0xff}}) {
     const auto parts = parts_of(block, owned);
     ASSERT_EQ(parts.size(), 1u);
     EXPECT_EQ(parts[0].part.slot, 7u);
@@ -95,7 +97,8 @@ TEST_P(TreeOfMany, holds_every_part_once_under_bounds_that_hold_it) {
     EXPECT_EQ(tree.levels[0][i].center, leaf.center);
     std::size_t node = i;
     for (const auto& level : tree.levels) {
-      ASSERT_LE(glm::length(leaf.center - level[node].center) + leaf.radius, level[node].radius + 1e-4f);
+      ASSERT_LE(glm::length(leaf.center - level[node].center) + leaf.radius,
+                level[node].radius + 1e-4f);
       node /= BlockTree::kChildren;
     }
     EXPECT_EQ(node, i >> (3 * tree.levels.size()));
@@ -108,7 +111,8 @@ TEST_P(TreeOfMany, holds_every_part_once_under_bounds_that_hold_it) {
 }
 INSTANTIATE_TEST_SUITE_P(Sizes, TreeOfMany, testing::Values(0, 1, 7, 8, 9, 64, 65, 513, 5000));
 
-// Of points in a cube of 16³ a run of eight neighbours fills about a cube of 2³, not a slice of the whole.
+// Of points in a cube of 16³ a run of eight neighbours fills about a cube of 2³, not a slice of the
+// whole.
 TEST(BlockTree, keeps_neighbours_in_space_together) {
   std::vector<BoundedPart> parts;
   for (std::uint32_t i = 0; i < 4096; ++i)

@@ -18,10 +18,12 @@ TEST_P(DemoPot, is_closed_manifold_and_oriented_outward) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   double volume = 0;
   for (std::size_t i = 0; i < pot.triangles.size(); i += 3) {
-    for (std::size_t k = 0; k < 3; ++k) ++edges[{pot.triangles[i + k], pot.triangles[i + (k + 1) % 3]}];
-    volume += glm::dot(pot.positions[pot.triangles[i]],
-                       glm::cross(pot.positions[pot.triangles[i + 1]], pot.positions[pot.triangles[i + 2]])) /
-              6;
+    for (std::size_t k = 0; k < 3; ++k)
+      ++edges[{pot.triangles[i + k], pot.triangles[i + (k + 1) % 3]}];
+    volume +=
+        glm::dot(pot.positions[pot.triangles[i]], glm::cross(pot.positions[pot.triangles[i + 1]],
+                                                             pot.positions[pot.triangles[i + 2]])) /
+        6;
   }
   for (const auto& [edge, count] : edges) {
     ASSERT_EQ(count, 1);
@@ -31,13 +33,15 @@ TEST_P(DemoPot, is_closed_manifold_and_oriented_outward) {
   EXPECT_EQ(static_cast<long>(pot.positions.size()) - static_cast<long>(edges.size() / 2) +
                 static_cast<long>(pot.triangle_count()),
             2);
-  EXPECT_GT(volume, 80000);   // mm³ of clay
-  EXPECT_LT(volume, 250000);  // a solid pot would have far more: the wall is thin and the inside open
+  EXPECT_GT(volume, 80000);  // mm³ of clay
+  // a solid pot would have far more: the wall is thin and the inside open
+  EXPECT_LT(volume, 250000);
 }
 
 TEST_P(DemoPot, loses_nothing_to_repair) {
   mesh::LoadedMesh loaded{mesh::make_demo_pot(GetParam()), {}};
-  const std::size_t triangles = loaded.mesh.triangle_count(), vertices = loaded.mesh.positions.size();
+  const std::size_t triangles = loaded.mesh.triangle_count(),
+                    vertices = loaded.mesh.positions.size();
   Progress progress;
   ASSERT_TRUE(mesh::repair(loaded, progress));
   EXPECT_EQ(loaded.mesh.triangle_count(), triangles);

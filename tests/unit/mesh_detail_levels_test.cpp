@@ -31,14 +31,16 @@ class DetailLevels : public testing::Test {
 };
 
 TEST_F(DetailLevels, have_a_quarter_of_the_triangles_each_down_to_the_coarsest) {
-  ASSERT_GE(full_->triangle_count(), 2 * mesh::kCoarsestLevelTriangles) << "the test needs a larger mesh";
+  ASSERT_GE(full_->triangle_count(), 2 * mesh::kCoarsestLevelTriangles)
+      << "the test needs a larger mesh";
   ASSERT_FALSE(levels_.empty());
   std::size_t finer = full_->triangle_count();
   for (const auto& level : levels_) {
     EXPECT_LE(level.triangle_count(), finer * 7 / 10);
     finer = level.triangle_count();
   }
-  EXPECT_NEAR(static_cast<double>(finer), mesh::kCoarsestLevelTriangles, 0.05 * mesh::kCoarsestLevelTriangles);
+  EXPECT_NEAR(static_cast<double>(finer), mesh::kCoarsestLevelTriangles,
+              0.05 * mesh::kCoarsestLevelTriangles);
 }
 
 TEST_F(DetailLevels, have_no_vertex_that_the_model_has_not) {
@@ -98,7 +100,8 @@ TEST(DetailLevelsOfSoup, are_none_since_nothing_can_be_collapsed) {
   const auto soup = test::separate_triangles(210'000);
   mesh::Atlas atlas;
   Progress progress;
-  EXPECT_TRUE(mesh::make_detail_levels(mesh::build_geometry(soup, atlas), progress).value().empty());
+  EXPECT_TRUE(
+      mesh::make_detail_levels(mesh::build_geometry(soup, atlas), progress).value().empty());
 }
 
 TEST(DetailLevelsThatAreCancelled, are_refused) {
@@ -117,7 +120,8 @@ TEST(ClusterBoxes, hold_their_triangles_and_make_up_the_box) {
   for (std::size_t i = 0; i < geometry.indices.size(); ++i) {
     const auto& box = geometry.clusters[i / (3 * kTriangles)];
     const auto& p = geometry.vertices[geometry.indices[i]].position;
-    ASSERT_TRUE(glm::all(glm::lessThanEqual(box.min, p)) && glm::all(glm::lessThanEqual(p, box.max)));
+    ASSERT_TRUE(glm::all(glm::lessThanEqual(box.min, p)) &&
+                glm::all(glm::lessThanEqual(p, box.max)));
   }
 }
 

@@ -19,8 +19,8 @@ std::shared_ptr<const Geometry> geometry_of(const TriangleMesh& mesh) {
   return std::make_shared<const Geometry>(build_geometry(mesh, Atlas{}));
 }
 
-// Heights over a square of side 2 around the origin, as a grid that is not aligned with itself: every vertex is moved a little
-// within the square.
+// Heights over a square of side 2 around the origin, as a grid that is not aligned with itself:
+// every vertex is moved a little within the square.
 template <class Height>
 TriangleMesh height_field(int cells, Height height, double noise = 0) {
   TriangleMesh mesh = test::open_grid(cells, 0);
@@ -51,17 +51,20 @@ Curvature curvature_near_origin(const TriangleMesh& mesh, float radius) {
   for (std::uint32_t i = 0; i < geometry->positions.size(); ++i)
     if (distance(i) < distance(nearest)) nearest = i;
   const auto curvature =
-      curvature_at(samples, glm::vec3(geometry->positions[nearest] - geometry->origin), normals.at_position(nearest));
+      curvature_at(samples, glm::vec3(geometry->positions[nearest] - geometry->origin),
+                   normals.at_position(nearest));
   EXPECT_TRUE(curvature.has_value());
   return curvature.value_or(Curvature{});
 }
 
 TEST(Curvature, of_a_sphere_is_one_over_its_radius_everywhere_and_positive) {
-  const auto geometry = geometry_of(test::transformed(test::sphere(160), 5, {100, 0, 0}));  // radius 5
+  // radius 5
+  const auto geometry = geometry_of(test::transformed(test::sphere(160), 5, {100, 0, 0}));
   const SurfaceSamples samples = samples_of(*geometry, 0.8f);
   const SurfaceNormals normals(geometry);
   for (std::uint32_t i = 0; i < geometry->positions.size(); i += 97) {
-    const auto c = curvature_at(samples, glm::vec3(geometry->positions[i] - geometry->origin), normals.at_position(i));
+    const auto c = curvature_at(samples, glm::vec3(geometry->positions[i] - geometry->origin),
+                                normals.at_position(i));
     ASSERT_TRUE(c) << i;
     EXPECT_NEAR(c->mean(), 0.2, 0.004) << i;
     EXPECT_NEAR(c->gaussian(), 0.04, 0.0016) << i;
@@ -70,22 +73,22 @@ TEST(Curvature, of_a_sphere_is_one_over_its_radius_everywhere_and_positive) {
 }
 
 TEST(Curvature, of_a_hollow_is_negative) {
-  const Curvature c =
-      curvature_near_origin(height_field(80, [](double x, double y) { return (x * x + y * y) / 4; }), 0.2f);
+  const Curvature c = curvature_near_origin(
+      height_field(80, [](double x, double y) { return (x * x + y * y) / 4; }), 0.2f);
   EXPECT_NEAR(c.mean(), -0.5, 0.01);
   EXPECT_NEAR(c.gaussian(), 0.25, 0.01);
 }
 
 TEST(Curvature, of_a_cylinder_is_zero_along_it) {
-  const Curvature c =
-      curvature_near_origin(height_field(80, [](double x, double) { return std::sqrt(4 - x * x) - 2; }), 0.2f);
+  const Curvature c = curvature_near_origin(
+      height_field(80, [](double x, double) { return std::sqrt(4 - x * x) - 2; }), 0.2f);
   EXPECT_NEAR(c.max, 0.5, 0.01);
   EXPECT_NEAR(c.min, 0, 0.01);
 }
 
 TEST(Curvature, of_a_saddle_has_both_signs) {
-  const Curvature c =
-      curvature_near_origin(height_field(80, [](double x, double y) { return (x * x - y * y) / 2; }), 0.2f);
+  const Curvature c = curvature_near_origin(
+      height_field(80, [](double x, double y) { return (x * x - y * y) / 2; }), 0.2f);
   EXPECT_NEAR(c.max, 1, 0.02);
   EXPECT_NEAR(c.min, -1, 0.02);
   EXPECT_NEAR(c.mean(), 0, 0.01);
@@ -117,7 +120,8 @@ TEST(Curvature, of_a_thin_wall_is_not_disturbed_by_its_other_side) {
   TriangleMesh wall = height_field(60, [](double x, double y) { return -(x * x + y * y) / 4; });
   const auto count = static_cast<std::uint32_t>(wall.positions.size());
   const std::size_t corners = wall.triangles.size();
-  for (std::uint32_t i = 0; i < count; ++i) wall.positions.push_back(wall.positions[i] - glm::dvec3(0, 0, 0.05));
+  for (std::uint32_t i = 0; i < count; ++i)
+    wall.positions.push_back(wall.positions[i] - glm::dvec3(0, 0, 0.05));
   for (std::size_t i = 0; i < corners; i += 3)
     for (const std::size_t k : {0, 2, 1}) wall.triangles.push_back(wall.triangles[i + k] + count);
   EXPECT_NEAR(curvature_near_origin(wall, 0.2f).mean(), 0.5, 0.01);
@@ -135,7 +139,8 @@ TEST(Curvature, is_none_where_a_strip_has_no_width) {
 }
 
 // Every sample that is near one of the points, once.
-std::vector<std::array<float, 7>> samples_near(const SurfaceSamples& samples, const std::vector<glm::vec3>& points) {
+std::vector<std::array<float, 7>> samples_near(const SurfaceSamples& samples,
+                                               const std::vector<glm::vec3>& points) {
   std::vector<std::array<float, 7>> all;
   for (const glm::vec3& point : points)
     for (const float sign : {1.0f, -1.0f})
@@ -143,7 +148,8 @@ std::vector<std::array<float, 7>> samples_near(const SurfaceSamples& samples, co
         glm::vec3 way(0);
         way[axis] = sign;
         samples.near(point, way, [&](const SurfaceSamples::Sample& s, float) {
-          all.push_back({s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y, s.normal.z, s.area});
+          all.push_back({s.position.x, s.position.y, s.position.z, s.normal.x, s.normal.y,
+                         s.normal.z, s.area});
         });
       }
   std::sort(all.begin(), all.end());
@@ -159,14 +165,18 @@ TEST(SurfaceSamples, stand_for_all_of_the_surface_however_long_its_triangles_are
       for (auto& p : sheet.positions) p = {p.y, p.z, p.x};
       TriangleMesh mesh = sheet;
       for (auto& p : mesh.positions)
-        p = {std::cos(turned) * p.x - std::sin(turned) * p.y, std::sin(turned) * p.x + std::cos(turned) * p.y, p.z};
+        p = {std::cos(turned) * p.x - std::sin(turned) * p.y,
+             std::sin(turned) * p.x + std::cos(turned) * p.y, p.z};
       const auto geometry = geometry_of(mesh);
       std::vector<glm::vec3> points;
       for (std::size_t t = 0; t < geometry->triangle_count(); ++t)
         for (int i = 0; i <= 40; ++i)
           for (int j = 0; i + j <= 40; ++j) {
-            const auto at = [&](int k) { return geometry->vertices[geometry->indices[3 * t + k]].position; };
-            points.push_back(at(0) + (at(1) - at(0)) * (float(i) / 40) + (at(2) - at(0)) * (float(j) / 40));
+            const auto at = [&](int k) {
+              return geometry->vertices[geometry->indices[3 * t + k]].position;
+            };
+            points.push_back(at(0) + (at(1) - at(0)) * (float(i) / 40) +
+                             (at(2) - at(0)) * (float(j) / 40));
           }
       double area = 0;
       const auto all = samples_near(samples_of(*geometry, 0.1f), points);
@@ -210,8 +220,9 @@ TEST(Roughness, does_not_see_the_slope_of_a_plane) {
   const SurfaceSamples samples = samples_of(*geometry, 0.3f);
   const glm::vec3 normal = glm::normalize(glm::vec3(-3, 1, 1));
   for (std::size_t i = 0; i < geometry->positions.size(); i += 37)
-    EXPECT_NEAR(roughness_at(samples, glm::vec3(geometry->positions[i] - geometry->origin), normal).value_or(-1), 0,
-                1e-5);
+    EXPECT_NEAR(roughness_at(samples, glm::vec3(geometry->positions[i] - geometry->origin), normal)
+                    .value_or(-1),
+                0, 1e-5);
 }
 
 TEST(Openness, is_one_on_a_ball_and_none_inside_it) {
@@ -236,14 +247,16 @@ TEST(Openness, can_be_cancelled_while_its_tree_is_made) {
 
 TEST(Openness, at_the_foot_of_a_wall_is_a_half) {
   TriangleMesh corner;  // a floor and a wall that meet along y, both far larger than the distance
-  corner.positions = {{0, -100, 0}, {100, -100, 0}, {100, 100, 0}, {0, 100, 0}, {0, -100, 100}, {0, 100, 100}};
+  corner.positions = {{0, -100, 0}, {100, -100, 0}, {100, 100, 0},
+                      {0, 100, 0},  {0, -100, 100}, {0, 100, 100}};
   corner.triangles = {0, 1, 2, 0, 2, 3, 0, 3, 5, 0, 5, 4};
   Progress progress;
   const auto openness = Openness::make(geometry_of(corner), 50, 1024, progress);
   ASSERT_TRUE(openness);
   const glm::vec3 origin = geometry_of(corner)->origin;
   EXPECT_NEAR((*openness)->at(glm::vec3(0.01f, 0, 0) - origin, {0, 0, 1}), 0.5, 0.02);
-  EXPECT_NEAR((*openness)->at(glm::vec3(60, 0, 0) - origin, {0, 0, 1}), 1, 0.001);  // beyond the distance
+  // beyond the distance
+  EXPECT_NEAR((*openness)->at(glm::vec3(60, 0, 0) - origin, {0, 0, 1}), 1, 0.001);
 }
 
 TEST(Boundary, is_the_rim_of_a_sheet_and_nothing_of_a_ball) {
@@ -257,7 +270,9 @@ TEST(Boundary, of_three_triangles_at_one_edge_is_none) {
   for (const auto& edge : boundary_edges(*geometry)) {
     int uses = 0;
     for (std::size_t c = 0; c < geometry->indices.size(); ++c) {
-      const auto at = [&](std::size_t corner) { return geometry->vertices[geometry->indices[corner]].position_index; };
+      const auto at = [&](std::size_t corner) {
+        return geometry->vertices[geometry->indices[corner]].position_index;
+      };
       const auto a = at(c), b = at(c % 3 == 2 ? c - 2 : c + 1);
       uses += (a == edge[0] && b == edge[1]) || (a == edge[1] && b == edge[0]);
     }
@@ -269,7 +284,8 @@ TEST(Boundary, distance_is_that_to_the_nearest_side_of_a_square) {
   const auto geometry = geometry_of(test::open_grid(20, 0));
   const BoundaryDistance distance(*geometry);
   for (const auto& p : geometry->positions)
-    EXPECT_NEAR(distance.at(glm::vec3(p - geometry->origin)), std::min({p.x, 1 - p.x, p.y, 1 - p.y}), 1e-6);
+    EXPECT_NEAR(distance.at(glm::vec3(p - geometry->origin)),
+                std::min({p.x, 1 - p.x, p.y, 1 - p.y}), 1e-6);
 }
 
 TEST(ModelDistance, of_two_balls_has_the_sign_of_the_side_and_the_unit_of_the_first) {
@@ -277,10 +293,12 @@ TEST(ModelDistance, of_two_balls_has_the_sign_of_the_side_and_the_unit_of_the_fi
   const auto there = geometry_of(test::transformed(test::sphere(200), 1, {5, 0, 0}));
   const auto here = geometry_of(test::transformed(test::sphere(40), 1200, {5000, 0, 0}));
   const ModelDistance distance(here->origin, 0.001, there, 1, 400);
-  for (const auto& p : here->positions) EXPECT_NEAR(distance.at(glm::vec3(p - here->origin)), 200, 1);
+  for (const auto& p : here->positions)
+    EXPECT_NEAR(distance.at(glm::vec3(p - here->origin)), 200, 1);
   const auto inner = geometry_of(test::transformed(test::sphere(40), 900, {5000, 0, 0}));
   const ModelDistance inside(inner->origin, 0.001, there, 1, 400);
-  for (const auto& p : inner->positions) EXPECT_NEAR(inside.at(glm::vec3(p - inner->origin)), -100, 1);
+  for (const auto& p : inner->positions)
+    EXPECT_NEAR(inside.at(glm::vec3(p - inner->origin)), -100, 1);
   const ModelDistance near_only(here->origin, 0.001, there, 1, 150);
   EXPECT_TRUE(std::isnan(near_only.at(glm::vec3(here->positions[0] - here->origin))));
 }
@@ -295,11 +313,13 @@ TEST(SampledField, interpolates_a_linear_function_exactly_on_small_and_large_tri
       const auto field = SampledField::make(geometry, normals, spacing, plane, progress);
       ASSERT_TRUE(field) << name;
       for (std::uint32_t t = 0; t < geometry->triangle_count(); t += 5)
-        for (const glm::vec3 w :
-             {glm::vec3(0.2f, 0.5f, 0.3f), glm::vec3(1, 0, 0), glm::vec3(0, 0, 1), glm::vec3(0, 0.5f, 0.5f)}) {
+        for (const glm::vec3 w : {glm::vec3(0.2f, 0.5f, 0.3f), glm::vec3(1, 0, 0),
+                                  glm::vec3(0, 0, 1), glm::vec3(0, 0.5f, 0.5f)}) {
           glm::vec3 p(0);
-          for (int k = 0; k < 3; ++k) p += w[k] * geometry->vertices[geometry->indices[3 * t + k]].position;
-          EXPECT_NEAR(field->at(t, w), plane(p, {}), 1e-4 * (1 + glm::length(geometry->box_max))) << name;
+          for (int k = 0; k < 3; ++k)
+            p += w[k] * geometry->vertices[geometry->indices[3 * t + k]].position;
+          EXPECT_NEAR(field->at(t, w), plane(p, {}), 1e-4 * (1 + glm::length(geometry->box_max)))
+              << name;
         }
     }
   }
@@ -327,7 +347,8 @@ TEST(SampledField, leaves_out_corners_without_a_value_and_can_be_cancelled) {
   Progress progress;
   const float none = std::nanf("");
   const auto half = SampledField::make(
-      geometry, normals, 10, [&](const glm::vec3& p, const glm::vec3&) { return p.x < 0 ? none : 7.0f; }, progress);
+      geometry, normals, 10,
+      [&](const glm::vec3& p, const glm::vec3&) { return p.x < 0 ? none : 7.0f; }, progress);
   ASSERT_TRUE(half);
   int defined = 0;
   for (std::uint32_t t = 0; t < geometry->triangle_count(); ++t) {

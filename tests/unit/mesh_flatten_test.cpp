@@ -17,7 +17,8 @@ RelaxPatch hexagon() {
   RelaxPatch patch;
   patch.points.push_back({0, 0});
   for (int i = 0; i < 6; ++i)
-    patch.points.push_back({std::cos(float(M_PI) / 3 * float(i)), std::sin(float(M_PI) / 3 * float(i))});
+    patch.points.push_back(
+        {std::cos(float(M_PI) / 3 * float(i)), std::sin(float(M_PI) / 3 * float(i))});
   patch.is_fixed = {0, 1, 1, 1, 1, 1, 1};
   for (std::uint32_t i = 0; i < 6; ++i)
     patch.faces.push_back({{0, 1 + i, 1 + (i + 1) % 6}, {1, 0}, {0.5f, std::sqrt(3.f) / 2}});
@@ -85,7 +86,8 @@ TEST(mesh_flatten, gives_room_to_what_a_projection_squeezes) {
   for (std::uint32_t f = 0; f < mesh.triangle_count(); ++f) {
     glm::vec2 p[3];
     for (int k = 0; k < 3; ++k) p[k] = one.charts[0].project(one.unit.corner(f, k));
-    least_projected = std::min(least_projected, area_in_plane(p, 0) / one.surface.original_frames.areas[f]);
+    least_projected =
+        std::min(least_projected, area_in_plane(p, 0) / one.surface.original_frames.areas[f]);
   }
   ASSERT_LT(least_projected, 0.35);
   std::vector<glm::vec2> plane;
@@ -93,7 +95,9 @@ TEST(mesh_flatten, gives_room_to_what_a_projection_squeezes) {
   double sum = 0;
   for (std::size_t f = 0; f < mesh.triangle_count(); ++f) {
     EXPECT_GT(area_in_plane(plane, f), 0) << f;
-    EXPECT_GT(area_in_plane(plane, f), 1.15 * least_projected * one.surface.original_frames.areas[f]) << f;
+    EXPECT_GT(area_in_plane(plane, f),
+              1.15 * least_projected * one.surface.original_frames.areas[f])
+        << f;
     sum += area_in_plane(plane, f);
   }
   EXPECT_NEAR(sum / one.surface.original_frames.total_area, 1, 0.01);
@@ -107,7 +111,8 @@ TEST(mesh_flatten, names_the_faces_that_stay_squeezed) {
     for (int k = 0; k < 3; ++k) plane[3 * f + k] = one.charts[0].project(one.unit.corner(f, k));
   const auto faces = squeezed_faces(one.surface, plane, 2, 0);
   EXPECT_GT(faces.size(), 10u);
-  for (const auto f : faces) EXPECT_LT(area_in_plane(plane, f), 0.501 * one.surface.original_frames.areas[f]);
+  for (const auto f : faces)
+    EXPECT_LT(area_in_plane(plane, f), 0.501 * one.surface.original_frames.areas[f]);
   EXPECT_THAT(squeezed_faces(one.surface, plane, 2, 1), testing::IsEmpty()) << "none is so large";
 }
 
@@ -131,12 +136,14 @@ TEST(mesh_chart_conflicts, finds_the_later_of_two_faces_that_share_a_texel) {
   Chart chart;
   chart.faces = {0, 1, 2};
   // 1 beside 0, 2 over both.
-  const std::vector<glm::vec2> uvs{{0.1f, 0.1f}, {0.5f, 0.1f}, {0.1f, 0.5f}, {0.5f, 0.1f}, {0.5f, 0.5f},
-                                   {0.1f, 0.5f}, {0.2f, 0.2f}, {0.4f, 0.2f}, {0.3f, 0.4f}};
+  const std::vector<glm::vec2> uvs{{0.1f, 0.1f}, {0.5f, 0.1f}, {0.1f, 0.5f},
+                                   {0.5f, 0.1f}, {0.5f, 0.5f}, {0.1f, 0.5f},
+                                   {0.2f, 0.2f}, {0.4f, 0.2f}, {0.3f, 0.4f}};
   const std::vector<Chart> charts{chart};
   const std::array resolutions{64, 128};
   EXPECT_THAT(faces_in_conflict(charts, uvs, resolutions), testing::ElementsAre(2));
-  EXPECT_THAT(faces_in_conflict({charts.data(), 1}, std::span(uvs).first(6 + 3), std::array{1}), testing::IsEmpty())
+  EXPECT_THAT(faces_in_conflict({charts.data(), 1}, std::span(uvs).first(6 + 3), std::array{1}),
+              testing::IsEmpty())
       << "no centre of a texel is covered twice there";
 }
 

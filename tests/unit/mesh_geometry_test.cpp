@@ -45,7 +45,9 @@ void expect_equal(const Geometry& a, const Geometry& b) {
   EXPECT_EQ(a.box_min, b.box_min);
   EXPECT_EQ(a.box_max, b.box_max);
   ASSERT_EQ(a.vertices.size(), b.vertices.size());
-  const auto same = [](const mesh::Vertex& v, const mesh::Vertex& w) { return std::memcmp(&v, &w, sizeof v) == 0; };
+  const auto same = [](const mesh::Vertex& v, const mesh::Vertex& w) {
+    return std::memcmp(&v, &w, sizeof v) == 0;
+  };
   EXPECT_TRUE(std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin(), same));
 }
 
@@ -58,14 +60,16 @@ TEST(MeshGeometry, vertices_split_where_texture_coordinates_differ_and_share_the
   std::map<std::uint32_t, int> at;
   for (const auto& vertex : geometry.vertices) {
     ++at[vertex.position_index];
-    EXPECT_EQ(vertex.position, glm::vec3(geometry.positions[vertex.position_index] - geometry.origin));
+    EXPECT_EQ(vertex.position,
+              glm::vec3(geometry.positions[vertex.position_index] - geometry.origin));
     EXPECT_EQ(vertex.color, 0xffcfd3d6u);
   }
   EXPECT_EQ(at.size(), 4u);
 }
 
 TEST(MeshGeometry, the_origin_is_the_centre_rounded_for_large_boxes_only) {
-  EXPECT_EQ(build_geometry(square({433210.25, 4581234.5, 612}, 2), {}).origin, glm::dvec3(433211.25, 4581235.5, 612));
+  EXPECT_EQ(build_geometry(square({433210.25, 4581234.5, 612}, 2), {}).origin,
+            glm::dvec3(433211.25, 4581235.5, 612));
   const Geometry large = build_geometry(square({433210.25, 4581234.5, 612.25}, 20), {});
   EXPECT_EQ(large.origin, glm::dvec3(433220, 4581245, 612));
   EXPECT_EQ(large.box_min, glm::vec3(-9.75f, -10.5f, 0.25f));
@@ -103,22 +107,29 @@ TEST(MeshGeometry, triangles_are_the_same_as_those_of_the_mesh_in_a_local_order)
   }
   const Geometry geometry = build_geometry(mixed, {});
   using Key = std::array<std::array<double, 3>, 3>;
-  const auto key = [](const std::vector<glm::dvec3>& positions, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  const auto key = [](const std::vector<glm::dvec3>& positions, std::uint32_t a, std::uint32_t b,
+                      std::uint32_t c) {
     Key result;
     int k = 0;
-    for (std::uint32_t i : {a, b, c}) result[k++] = {positions[i].x, positions[i].y, positions[i].z};
+    for (std::uint32_t i : {a, b, c})
+      result[k++] = {positions[i].x, positions[i].y, positions[i].z};
     return result;
   };
   std::multiset<Key> before, after;
   double step = 0, step_mixed = 0;
   for (std::size_t i = 0; i < mixed.triangles.size(); i += 3) {
-    const auto index = [&](std::size_t k) { return geometry.vertices[geometry.indices[i + k]].position_index; };
-    before.insert(key(mixed.positions, mixed.triangles[i], mixed.triangles[i + 1], mixed.triangles[i + 2]));
+    const auto index = [&](std::size_t k) {
+      return geometry.vertices[geometry.indices[i + k]].position_index;
+    };
+    before.insert(
+        key(mixed.positions, mixed.triangles[i], mixed.triangles[i + 1], mixed.triangles[i + 2]));
     after.insert(key(geometry.positions, index(0), index(1), index(2)));
     if (i == 0) continue;
-    step += glm::distance(geometry.positions[index(0)],
-                          geometry.positions[geometry.vertices[geometry.indices[i - 3]].position_index]);
-    step_mixed += glm::distance(mixed.positions[mixed.triangles[i]], mixed.positions[mixed.triangles[i - 3]]);
+    step += glm::distance(
+        geometry.positions[index(0)],
+        geometry.positions[geometry.vertices[geometry.indices[i - 3]].position_index]);
+    step_mixed +=
+        glm::distance(mixed.positions[mixed.triangles[i]], mixed.positions[mixed.triangles[i - 3]]);
   }
   EXPECT_EQ(before, after);
   EXPECT_LT(step, step_mixed / 10);
@@ -132,11 +143,14 @@ TEST(MeshGeometry, the_order_of_the_triangles_never_jumps) {
       for (int x = 0; x < kSide; ++x) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
         const glm::dvec3 at(x, y, z);
-        mesh.positions.insert(mesh.positions.end(), {at, at + glm::dvec3(1e-3, 0, 0), at + glm::dvec3(0, 1e-3, 0)});
+        mesh.positions.insert(mesh.positions.end(),
+                              {at, at + glm::dvec3(1e-3, 0, 0), at + glm::dvec3(0, 1e-3, 0)});
         mesh.triangles.insert(mesh.triangles.end(), {first, first + 1, first + 2});
       }
   const Geometry geometry = build_geometry(mesh, {});
-  const auto place = [&](std::size_t triangle) { return geometry.vertices[geometry.indices[3 * triangle]].position; };
+  const auto place = [&](std::size_t triangle) {
+    return geometry.vertices[geometry.indices[3 * triangle]].position;
+  };
   for (std::size_t t = 1; t < geometry.triangle_count(); ++t)
     EXPECT_NEAR(glm::distance(place(t - 1), place(t)), 1, 0.01) << "triangle " << t;
 }
@@ -147,7 +161,8 @@ TEST(MeshGeometry, what_is_encoded_is_decoded_bit_for_bit) {
   Atlas atlas;
   std::mt19937 random(3);
   std::uniform_real_distribution<float> unit(0, 1);
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) atlas.corner_uvs.emplace_back(unit(random), unit(random));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    atlas.corner_uvs.emplace_back(unit(random), unit(random));
   const Geometry geometry = build_geometry(mesh, atlas);
   const auto bytes = encode_geometry(geometry);
   const auto decoded = decode_geometry(bytes);
@@ -164,8 +179,8 @@ TEST(MeshGeometry, damaged_bytes_are_refused) {
   const auto good = encode_geometry(build_geometry(square({0, 0, 0}, 1), {}));
   ASSERT_TRUE(decode_geometry(good));
   for (std::size_t size = 0; size < good.size(); ++size) {
-    EXPECT_FALSE(
-        decode_geometry(std::vector<std::uint8_t>(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size))))
+    EXPECT_FALSE(decode_geometry(
+        std::vector<std::uint8_t>(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size))))
         << size;
   }
   for (std::size_t i = 0; i < good.size(); ++i) {
@@ -192,9 +207,11 @@ TEST(MeshGeometry, indices_out_of_range_and_infinite_numbers_are_refused_behind_
   EXPECT_TRUE(refused([](Geometry& g) { g.indices[2] = 4; }));
   EXPECT_TRUE(refused([](Geometry& g) { g.indices.push_back(0); }));
   EXPECT_TRUE(refused([](Geometry& g) { g.vertices[1].position_index = 0xffffffffu; }));
-  EXPECT_TRUE(refused([](Geometry& g) { g.positions[0].x = std::numeric_limits<double>::quiet_NaN(); }));
+  EXPECT_TRUE(
+      refused([](Geometry& g) { g.positions[0].x = std::numeric_limits<double>::quiet_NaN(); }));
   EXPECT_TRUE(refused([](Geometry& g) { g.positions[0].x = 1e300; }));
-  EXPECT_TRUE(refused([](Geometry& g) { g.vertices[0].uv.x = std::numeric_limits<float>::infinity(); }));
+  EXPECT_TRUE(
+      refused([](Geometry& g) { g.vertices[0].uv.x = std::numeric_limits<float>::infinity(); }));
   EXPECT_TRUE(refused([](Geometry& g) { g.origin.y = std::numeric_limits<double>::infinity(); }));
 }
 

@@ -1,6 +1,7 @@
-// Every form in which a glTF may keep an attribute, against what the specification says that its numbers mean: glTF 2.0, 3.6.2
-// and 3.7.2.1, KHR_mesh_quantization, KHR_draco_mesh_compression, EXT_meshopt_compression and KHR_meshopt_compression. The
-// expected values are worked out here, in double, from the stored numbers.
+// Every form in which a glTF may keep an attribute, against what the specification says that its
+// numbers mean: glTF 2.0, 3.6.2 and 3.7.2.1, KHR_mesh_quantization, KHR_draco_mesh_compression,
+// EXT_meshopt_compression and KHR_meshopt_compression. The expected values are worked out here, in
+// double, from the stored numbers.
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 #include <gmock/gmock.h>
@@ -24,8 +25,8 @@ using nlohmann::json;
 using test::count_of;
 using testing::HasSubstr;
 
-constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
-              kFloat = 5126;
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
+              kUnsignedInt = 5125, kFloat = 5126;
 constexpr std::array kTypes{kByte, kUnsignedByte, kShort, kUnsignedShort, kUnsignedInt, kFloat};
 constexpr int kVertices = 5;
 // A pyramid without its base.
@@ -39,7 +40,8 @@ double largest(int type) {
     case kUnsignedByte: return 255;
     case kShort: return 32767;
     case kUnsignedShort: return 65535;
-    case kUnsignedInt: return 1 << 16;  // the encoder of Draco has a table as long as the largest value
+    // the encoder of Draco has a table as long as the largest value
+    case kUnsignedInt: return 1 << 16;
     default: return 1;
   }
 }
@@ -64,7 +66,8 @@ struct Attribute {
     std::vector<std::uint8_t> out(static_cast<std::size_t>(stride * kVertices));
     for (int i = 0; i < kVertices; ++i)
       for (int k = 0; k < components; ++k)
-        put(stored[static_cast<std::size_t>(i * components + k)], &out[i * stride + k * size_of(type)]);
+        put(stored[static_cast<std::size_t>(i * components + k)],
+            &out[i * stride + k * size_of(type)]);
     return out;
   }
   void put(double value, std::uint8_t* at) const {
@@ -82,7 +85,8 @@ struct Attribute {
   std::string shape() const { return "VEC" + std::to_string(components); }
 };
 
-// Of shares 0…1: the whole range of the type, the lowest number of signed ones included, which is normalised to −1 like the next.
+// Of shares 0…1: the whole range of the type, the lowest number of signed ones included, which is
+// normalised to −1 like the next.
 Attribute attribute(const std::string& name, int type, int components, bool normalized) {
   static constexpr double kShares[kVertices][4] = {
       {0, 0, 0.2, 1}, {1, 0, 0.25, 0.5}, {0, 1, 0.5, 0.75}, {1, 1, 0.125, 0.25}, {0.5, 0.6, 1, 0}};
@@ -108,10 +112,18 @@ enum class Store {
   sparse_on_zeros,
   sparse_on_meshopt
 };
-constexpr std::array kStores{
-    Store::plain,       Store::interleaved, Store::draco_sequential, Store::draco_edgebreaker, Store::meshopt_ext,
-    Store::meshopt_khr, Store::sparse,      Store::sparse_on_zeros,  Store::sparse_on_meshopt};
-bool is_draco(Store store) { return store == Store::draco_sequential || store == Store::draco_edgebreaker; }
+constexpr std::array kStores{Store::plain,
+                             Store::interleaved,
+                             Store::draco_sequential,
+                             Store::draco_edgebreaker,
+                             Store::meshopt_ext,
+                             Store::meshopt_khr,
+                             Store::sparse,
+                             Store::sparse_on_zeros,
+                             Store::sparse_on_meshopt};
+bool is_draco(Store store) {
+  return store == Store::draco_sequential || store == Store::draco_edgebreaker;
+}
 bool is_sparse(Store store) { return store >= Store::sparse; }
 std::string name_of(Store store) {
   static const std::array<std::string, 9> names{
@@ -122,22 +134,25 @@ std::string name_of(Store store) {
 
 class File {
  public:
-  // Attributes of which the last is stored as told, the others plainly; with Draco all are in the stream, which contradicts
-  // their accessors about what is normalised.
-  File(const std::vector<Attribute>& attributes, Store store, int index_type, bool quantization_named) {
+  // Attributes of which the last is stored as told, the others plainly; with Draco all are in the
+  // stream, which contradicts their accessors about what is normalised.
+  File(const std::vector<Attribute>& attributes, Store store, int index_type,
+       bool quantization_named) {
     json primitive = {{"attributes", json::object()}};
-    const bool second_uvs =
-        std::any_of(attributes.begin(), attributes.end(), [](const auto& a) { return a.name == "TEXCOORD_1"; });
+    const bool second_uvs = std::any_of(attributes.begin(), attributes.end(),
+                                        [](const auto& a) { return a.name == "TEXCOORD_1"; });
     if (second_uvs) primitive["material"] = material();
     for (const Attribute& a : attributes) {
       const bool told = is_draco(store) ? !a.beside_draco : &a == &attributes.back();
       const Store how = told ? store : Store::plain;
       primitive["attributes"][a.name] = add(a, how);
     }
-    const bool last_is_indices = store != Store::plain && !is_draco(store) && index_type != 0 && attributes.size() == 1;
+    const bool last_is_indices =
+        store != Store::plain && !is_draco(store) && index_type != 0 && attributes.size() == 1;
     primitive["indices"] = add_indices(index_type == 0 ? kUnsignedShort : index_type,
                                        last_is_indices || is_draco(store) ? store : Store::plain);
-    if (is_draco(store)) primitive["extensions"]["KHR_draco_mesh_compression"] = draco(attributes, store);
+    if (is_draco(store))
+      primitive["extensions"]["KHR_draco_mesh_compression"] = draco(attributes, store);
     if (quantization_named) require("KHR_mesh_quantization");
     builder_.json["meshes"] = json::array({{{"primitives", json::array({primitive})}}});
   }
@@ -154,9 +169,11 @@ class File {
   int material() {
     const std::vector<std::uint8_t> rgba{200, 100, 50, 255};
     const auto png = encode_png(rgba, 1, 1);
-    builder_.json["images"] = {{{"bufferView", builder_.add_view(png.data(), png.size())}, {"mimeType", "image/png"}}};
+    builder_.json["images"] = {
+        {{"bufferView", builder_.add_view(png.data(), png.size())}, {"mimeType", "image/png"}}};
     builder_.json["textures"] = {{{"source", 0}}};
-    builder_.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}}};
+    builder_.json["materials"] = {
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}}};
     return 0;
   }
 
@@ -166,8 +183,10 @@ class File {
   }
 
   int add(const Attribute& a, Store store) {
-    json accessor = {
-        {"componentType", a.type}, {"count", kVertices}, {"type", a.shape()}, {"normalized", a.normalized}};
+    json accessor = {{"componentType", a.type},
+                     {"count", kVertices},
+                     {"type", a.shape()},
+                     {"normalized", a.normalized}};
     if (is_draco(store)) return add_accessor(accessor);
     Attribute base = a;
     if (is_sparse(store)) {
@@ -181,17 +200,19 @@ class File {
       std::vector<std::uint8_t> values;
       const auto bytes = a.bytes(a.size());
       for (const std::uint8_t i : where)
-        values.insert(values.end(), bytes.begin() + i * a.size(), bytes.begin() + (i + 1) * a.size());
+        values.insert(values.end(), bytes.begin() + i * a.size(),
+                      bytes.begin() + (i + 1) * a.size());
       accessor["sparse"] = {
           {"count", where.size()},
           {"indices",
-           {{"bufferView", builder_.add_view(where.data(), where.size())}, {"componentType", kUnsignedByte}}},
+           {{"bufferView", builder_.add_view(where.data(), where.size())},
+            {"componentType", kUnsignedByte}}},
           {"values", {{"bufferView", builder_.add_view(values.data(), values.size())}}}};
       if (zeros) return add_accessor(accessor);
     }
     // meshopt has strides of whole words, and so have interleaved vertices.
-    const bool meshopt =
-        store == Store::meshopt_ext || store == Store::meshopt_khr || store == Store::sparse_on_meshopt;
+    const bool meshopt = store == Store::meshopt_ext || store == Store::meshopt_khr ||
+                         store == Store::sparse_on_meshopt;
     const int stride = meshopt                       ? (a.size() + 3) / 4 * 4
                        : store == Store::interleaved ? (a.size() + 3) / 4 * 4 + 8
                                                      : a.size();
@@ -199,12 +220,15 @@ class File {
     accessor["bufferView"] =
         meshopt ? add_meshopt(bytes, stride, store) : builder_.add_view(bytes.data(), bytes.size());
     if (stride != a.size() || meshopt)
-      builder_.json["bufferViews"][accessor["bufferView"].get<std::size_t>()]["byteStride"] = stride;
+      builder_.json["bufferViews"][accessor["bufferView"].get<std::size_t>()]["byteStride"] =
+          stride;
     return add_accessor(accessor);
   }
 
-  int add_compressed(const std::vector<unsigned char>& bytes, int stride, int count, const char* mode, Store store) {
-    const char* extension = store == Store::meshopt_khr ? "KHR_meshopt_compression" : "EXT_meshopt_compression";
+  int add_compressed(const std::vector<unsigned char>& bytes, int stride, int count,
+                     const char* mode, Store store) {
+    const char* extension =
+        store == Store::meshopt_khr ? "KHR_meshopt_compression" : "EXT_meshopt_compression";
     require(extension);
     const int view = builder_.add_view(bytes.data(), bytes.size());
     json& shown = builder_.json["bufferViews"][static_cast<std::size_t>(view)];
@@ -220,7 +244,8 @@ class File {
     return view;
   }
   int add_meshopt(const std::vector<std::uint8_t>& bytes, int stride, Store store) {
-    std::vector<unsigned char> packed(meshopt_encodeVertexBufferBound(kVertices, static_cast<std::size_t>(stride)));
+    std::vector<unsigned char> packed(
+        meshopt_encodeVertexBufferBound(kVertices, static_cast<std::size_t>(stride)));
     packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), bytes.data(), kVertices,
                                              static_cast<std::size_t>(stride)));
     return add_compressed(packed, stride, kVertices, "ATTRIBUTES", store);
@@ -241,14 +266,16 @@ class File {
       }
       accessor["sparse"] = {
           {"count", 2},
-          {"indices", {{"bufferView", builder_.add_view(where.data(), 4)}, {"componentType", kUnsignedShort}}},
+          {"indices",
+           {{"bufferView", builder_.add_view(where.data(), 4)}, {"componentType", kUnsignedShort}}},
           {"values", {{"bufferView", builder_.add_view(values.data(), values.size())}}}};
     }
     for (std::size_t i = 0; i < indices.size(); ++i)
       numbers.put(indices[i], &bytes[i * static_cast<std::size_t>(size_of(type))]);
     if (store == Store::meshopt_ext || store == Store::meshopt_khr) {
       std::vector<unsigned char> packed(meshopt_encodeIndexBufferBound(12, kVertices));
-      packed.resize(meshopt_encodeIndexBuffer(packed.data(), packed.size(), kTriangles.data(), kTriangles.size()));
+      packed.resize(meshopt_encodeIndexBuffer(packed.data(), packed.size(), kTriangles.data(),
+                                              kTriangles.size()));
       accessor["bufferView"] = add_compressed(packed, size_of(type), 12, "TRIANGLES", store);
     } else {
       accessor["bufferView"] = builder_.add_view(bytes.data(), bytes.size());
@@ -274,12 +301,14 @@ class File {
                         : a.name == "NORMAL"  ? draco::GeometryAttribute::NORMAL
                         : a.name == "COLOR_0" ? draco::GeometryAttribute::COLOR
                                               : draco::GeometryAttribute::TEX_COORD;
-      shape.Init(kind, nullptr, static_cast<std::uint8_t>(a.components), types.at(a.type), !a.normalized, a.size(), 0);
+      shape.Init(kind, nullptr, static_cast<std::uint8_t>(a.components), types.at(a.type),
+                 !a.normalized, a.size(), 0);
       const int id = mesh.AddAttribute(shape, true, kVertices);
       const auto bytes = a.bytes(a.size());
       for (int i = 0; i < kVertices; ++i)
-        mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(static_cast<std::uint32_t>(i)),
-                                              &bytes[static_cast<std::size_t>(i * a.size())]);
+        mesh.attribute(id)->SetAttributeValue(
+            draco::AttributeValueIndex(static_cast<std::uint32_t>(i)),
+            &bytes[static_cast<std::size_t>(i * a.size())]);
       ids[a.name] = mesh.attribute(id)->unique_id();
     }
     draco::Encoder encoder;
@@ -296,11 +325,12 @@ class File {
 
 int color_byte_of_light(double value) {
   value = std::clamp(value, 0.0, 1.0);
-  return static_cast<int>(
-      std::lround(255 * (value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055)));
+  return static_cast<int>(std::lround(
+      255 * (value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055)));
 }
 
-// What a corner must have, in the order x y z, u v (with v counted from below), r g b a; NaN: nothing is expected.
+// What a corner must have, in the order x y z, u v (with v counted from below), r g b a; NaN:
+// nothing is expected.
 using Corner = std::array<double, 9>;
 
 Corner expected_corner(const std::vector<Attribute>& attributes, int vertex) {
@@ -314,7 +344,8 @@ Corner expected_corner(const std::vector<Attribute>& attributes, int vertex) {
       corner[4] = 1 - a.meaning(vertex, 1);
     }
     if (a.name != "COLOR_0") continue;
-    // Whole numbers that do not say that they are normalised are forbidden, and taken as if they did.
+    // Whole numbers that do not say that they are normalised are forbidden, and taken as if they
+    // did.
     for (int k = 0; k < 3; ++k) corner[5 + k] = color_byte_of_light(a.meaning(vertex, k, true));
     corner[8] = a.components == 4 ? std::round(255 * a.meaning(vertex, 3, true)) : 255;
   }
@@ -349,19 +380,23 @@ void expect_the_pyramid(const mesh::TriangleMesh& mesh, const std::vector<Attrib
   }
   for (std::size_t t = 0; t < 12; t += 3) {
     std::array<Corner, 3> wanted;
-    for (std::size_t k = 0; k < 3; ++k) wanted[k] = expected_corner(attributes, static_cast<int>(kTriangles[t + k]));
+    for (std::size_t k = 0; k < 3; ++k)
+      wanted[k] = expected_corner(attributes, static_cast<int>(kTriangles[t + k]));
     bool is_there = false;
     for (const auto& triangle : found)
       for (std::size_t turn = 0; turn < 3; ++turn)
-        is_there |= alike(wanted[0], triangle[turn]) && alike(wanted[1], triangle[(turn + 1) % 3]) &&
+        is_there |= alike(wanted[0], triangle[turn]) &&
+                    alike(wanted[1], triangle[(turn + 1) % 3]) &&
                     alike(wanted[2], triangle[(turn + 2) % 3]);
-    EXPECT_TRUE(is_there) << "triangle " << t / 3 << " begins at " << testing::PrintToString(wanted[0])
-                          << "; the first found at " << testing::PrintToString(found[0][0]);
+    EXPECT_TRUE(is_there) << "triangle " << t / 3 << " begins at "
+                          << testing::PrintToString(wanted[0]) << "; the first found at "
+                          << testing::PrintToString(found[0][0]);
   }
 }
 
 std::string case_name(const std::string& what, int type, bool normalized, Store store) {
-  return what + " of " + std::to_string(type) + (normalized ? " normalised, " : ", ") + name_of(store);
+  return what + " of " + std::to_string(type) + (normalized ? " normalised, " : ", ") +
+         name_of(store);
 }
 
 struct Kind {
@@ -383,11 +418,14 @@ TEST(MeshGltfForms, every_attribute_in_every_form_means_what_the_specification_s
       for (const bool normalized : {false, true})
         for (const Store store : kStores)
           for (const bool named : {false, true}) {
-            SCOPED_TRACE(case_name(kind.name + " (" + std::to_string(kind.components) + ")", type, normalized, store));
-            const auto attributes = with_positions(attribute(kind.name, type, kind.components, normalized));
+            SCOPED_TRACE(case_name(kind.name + " (" + std::to_string(kind.components) + ")", type,
+                                   normalized, store));
+            const auto attributes =
+                with_positions(attribute(kind.name, type, kind.components, normalized));
             const auto loaded = File(attributes, store, 0, named).load();
             const bool is_color = kind.name == "COLOR_0";
-            // Forbidden, and without a plain meaning. Normals are never read: no form of them is refused.
+            // Forbidden, and without a plain meaning. Normals are never read: no form of them is
+            // refused.
             if (kind.name != "NORMAL" && (type == kUnsignedInt || (is_color && is_signed(type)))) {
               ++refused;
               ASSERT_FALSE(loaded);
@@ -402,7 +440,8 @@ TEST(MeshGltfForms, every_attribute_in_every_form_means_what_the_specification_s
             ASSERT_TRUE(loaded) << loaded.error().detail;
             expect_the_pyramid(loaded->mesh, attributes);
             EXPECT_EQ(loaded->mesh.vertex_colors.empty(), !is_color);
-            EXPECT_EQ(count_of(loaded->repairs, "colours taken as normalised, which their accessors do not say"),
+            EXPECT_EQ(count_of(loaded->repairs,
+                               "colours taken as normalised, which their accessors do not say"),
                       is_color && type != kFloat && !normalized ? 1u : 0u);
           }
   EXPECT_EQ(read, 972);
@@ -412,7 +451,9 @@ TEST(MeshGltfForms, every_attribute_in_every_form_means_what_the_specification_s
 TEST(MeshGltfForms, indices_of_every_unsigned_type_are_read_and_others_refused) {
   for (const int type : kTypes)
     for (const Store store : kStores) {
-      if (store == Store::interleaved || store == Store::sparse_on_zeros || store == Store::sparse_on_meshopt) continue;
+      if (store == Store::interleaved || store == Store::sparse_on_zeros ||
+          store == Store::sparse_on_meshopt)
+        continue;
       SCOPED_TRACE(case_name("indices", type, false, store));
       const std::vector<Attribute> attributes{attribute("POSITION", kFloat, 3, false)};
       const bool meshopt = store == Store::meshopt_ext || store == Store::meshopt_khr;
@@ -427,8 +468,9 @@ TEST(MeshGltfForms, indices_of_every_unsigned_type_are_read_and_others_refused) 
       ASSERT_FALSE(loaded);
       // meshopt has no indices of one byte.
       EXPECT_THAT(loaded.error().detail,
-                  HasSubstr(meshopt && size_of(type) == 1 ? "elements of 1 bytes do not belong to the mode TRIANGLES"
-                                                          : "does not hold unsigned whole numbers"));
+                  HasSubstr(meshopt && size_of(type) == 1
+                                ? "elements of 1 bytes do not belong to the mode TRIANGLES"
+                                : "does not hold unsigned whole numbers"));
     }
 }
 
@@ -440,8 +482,9 @@ TEST(MeshGltfForms, shapes_that_do_not_belong_to_an_attribute_are_refused) {
       {{"COLOR_0", 2}, "(COLOR_0) has 2 numbers a vertex; 3 or 4 belong there"}};
   for (const auto& [kind, says] : wrong)
     for (const Store store : {Store::plain, Store::draco_sequential}) {
-      const auto loaded =
-          File(with_positions(attribute(kind.name, kFloat, kind.components, false)), store, 0, false).load();
+      const auto loaded = File(with_positions(attribute(kind.name, kFloat, kind.components, false)),
+                               store, 0, false)
+                              .load();
       ASSERT_FALSE(loaded) << kind.name;
       EXPECT_THAT(loaded.error().detail, HasSubstr(says));
     }
@@ -464,17 +507,19 @@ TEST(MeshGltfForms, a_draco_stream_that_differs_from_its_accessor_is_read_as_the
   Attribute as_stored = attributes[1];
   as_stored.normalized = false;
   expect_the_pyramid(alone->mesh, {attributes[0], as_stored});
-  // Sparse values of its accessor belong to the uncompressed copy that a file may have beside the stream.
+  // Sparse values of its accessor belong to the uncompressed copy that a file may have beside the
+  // stream.
   file.document()["accessors"][0]["sparse"] = {{"count", 99}};
   EXPECT_TRUE(file.load());
   // The components of the accessor and the stream must be the same.
   File other(attributes, Store::draco_sequential, 0, false);
   other.document()["accessors"][0]["type"] = "VEC3";
-  other.document()["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["attributes"]["POSITION"] =
-      1;
+  other.document()["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]
+                  ["attributes"]["POSITION"] = 1;
   const auto refused = other.load();
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().detail, HasSubstr("has 2 numbers a vertex for POSITION, but its accessor says 3"));
+  EXPECT_THAT(refused.error().detail,
+              HasSubstr("has 2 numbers a vertex for POSITION, but its accessor says 3"));
 }
 
 TEST(MeshGltfForms, what_draco_leaves_out_is_read_beside_the_stream) {

@@ -26,8 +26,10 @@ const std::vector<std::uint16_t> kTwoTriangles{0, 1, 2, 0, 2, 3};
 
 test::GltfBuilder square() {
   test::GltfBuilder builder;
-  const int positions = builder.add(kSquare, kFloat, "VEC3"), indices = builder.add(kTwoTriangles, kShort, "SCALAR");
-  builder.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
+  const int positions = builder.add(kSquare, kFloat, "VEC3"),
+            indices = builder.add(kTwoTriangles, kShort, "SCALAR");
+  builder.json["meshes"] = {
+      {{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
   return builder;
 }
 
@@ -49,27 +51,31 @@ TEST(MeshGltf, a_glb_is_in_metres_with_y_up) {
 
 TEST(MeshGltf, data_may_lie_beside_the_file_or_in_a_uri) {
   const auto builder = square();
-  const auto beside =
-      load_texts({{"scan/a.gltf", builder.gltf("data%20of%20a.bin")}, {"scan/data of a.bin", builder.binary()}});
+  const auto beside = load_texts({{"scan/a.gltf", builder.gltf("data%20of%20a.bin")},
+                                  {"scan/data of a.bin", builder.binary()}});
   ASSERT_TRUE(beside) << beside.error().detail;
   EXPECT_EQ(beside->mesh.triangle_count(), 2u);
   const auto missing = load_texts({{"a.gltf", builder.gltf("a.bin")}});
   ASSERT_FALSE(missing);
   EXPECT_THAT(missing.error().detail, HasSubstr("\"a.bin\", which is not among the files"));
-  const auto cut = load_texts({{"a.gltf", builder.gltf("a.bin")}, {"a.bin", builder.binary().substr(0, 30)}});
+  const auto cut =
+      load_texts({{"a.gltf", builder.gltf("a.bin")}, {"a.bin", builder.binary().substr(0, 30)}});
   ASSERT_FALSE(cut);
   EXPECT_THAT(cut.error().detail, HasSubstr("60 bytes, but has 30"));
 
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string base64;
   for (std::size_t i = 0; i < builder.binary().size(); i += 3) {
     const auto byte = [&](std::size_t k) {
-      return i + k < builder.binary().size() ? static_cast<std::uint8_t>(builder.binary()[i + k]) : 0u;
+      return i + k < builder.binary().size() ? static_cast<std::uint8_t>(builder.binary()[i + k])
+                                             : 0u;
     };
     const std::uint32_t bits = byte(0) << 16 | byte(1) << 8 | byte(2);
     for (int k = 3; k >= 0; --k) base64 += kDigits[bits >> (6 * k) & 63];
   }
-  const auto inside = load_text(builder.gltf("data:application/octet-stream;base64," + base64), "a.gltf");
+  const auto inside =
+      load_text(builder.gltf("data:application/octet-stream;base64," + base64), "a.gltf");
   ASSERT_TRUE(inside) << inside.error().detail;
   EXPECT_EQ(inside->mesh.positions, beside->mesh.positions);
 }
@@ -85,8 +91,9 @@ TEST(MeshGltf, base64_and_percent_encoding_are_decoded) {
 
 TEST(MeshGltf, transforms_of_nodes_are_applied_in_double) {
   auto builder = square();
-  builder.json["nodes"] = {{{"translation", {433210.123456, 4581234.567891, 612.25}}, {"children", {1}}},
-                           {{"mesh", 0}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}, {"scale", {2, 1, 1}}}};
+  builder.json["nodes"] = {
+      {{"translation", {433210.123456, 4581234.567891, 612.25}}, {"children", {1}}},
+      {{"mesh", 0}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}, {"scale", {2, 1, 1}}}};
   const auto loaded = load_text(builder.glb(), "a.glb");
   ASSERT_TRUE(loaded) << loaded.error().detail;
   // (1, 0, 0) doubled along x, turned to y.
@@ -98,7 +105,8 @@ TEST(MeshGltf, transforms_of_nodes_are_applied_in_double) {
 TEST(MeshGltf, a_mirrored_instance_turns_its_triangles) {
   auto builder = square();
   builder.json["scenes"][0]["nodes"] = {0, 1};
-  builder.json["nodes"] = {{{"mesh", 0}}, {{"mesh", 0}, {"scale", {-1, 1, 1}}, {"translation", {-5, 0, 0}}}};
+  builder.json["nodes"] = {{{"mesh", 0}},
+                           {{"mesh", 0}, {"scale", {-1, 1, 1}}, {"translation", {-5, 0, 0}}}};
   const auto loaded = load_text(builder.glb(), "a.glb");
   ASSERT_TRUE(loaded);
   ASSERT_EQ(loaded->mesh.triangle_count(), 4u);
@@ -110,8 +118,8 @@ TEST(MeshGltf, a_mirrored_instance_turns_its_triangles) {
 }
 
 TEST(MeshGltf, strips_and_fans_and_plain_lists_make_the_same_square) {
-  for (const auto& [mode, indices] :
-       std::map<int, std::vector<std::uint32_t>>{{4, {0, 1, 3, 1, 2, 3}}, {5, {0, 1, 3, 2}}, {6, {0, 1, 2, 3}}}) {
+  for (const auto& [mode, indices] : std::map<int, std::vector<std::uint32_t>>{
+           {4, {0, 1, 3, 1, 2, 3}}, {5, {0, 1, 3, 2}}, {6, {0, 1, 2, 3}}}) {
     auto builder = square();
     auto& primitive = builder.json["meshes"][0]["primitives"][0];
     primitive["mode"] = mode;
@@ -126,7 +134,8 @@ TEST(MeshGltf, strips_and_fans_and_plain_lists_make_the_same_square) {
 
 TEST(MeshGltf, whole_numbers_are_normalised_and_strides_and_sparse_values_followed) {
   auto builder = square();
-  const std::vector<std::uint8_t> interleaved{0, 0, 0, 9, 255, 0, 0, 9, 255, 255, 0, 9, 0, 255, 0, 9};
+  const std::vector<std::uint8_t> interleaved{0,   0,   0, 9, 255, 0,   0, 9,
+                                              255, 255, 0, 9, 0,   255, 0, 9};
   const int positions = builder.add(interleaved, kByte, "SCALAR", true);
   builder.json["bufferViews"].back()["byteStride"] = 4;
   auto& accessor = builder.json["accessors"][positions];
@@ -134,9 +143,10 @@ TEST(MeshGltf, whole_numbers_are_normalised_and_strides_and_sparse_values_follow
   accessor["count"] = 4;
   const std::vector<std::uint16_t> where{2};
   const std::vector<std::uint8_t> what{255, 255, 255};
-  accessor["sparse"] = {{"count", 1},
-                        {"indices", {{"bufferView", builder.add_view(where.data(), 2)}, {"componentType", kShort}}},
-                        {"values", {{"bufferView", builder.add_view(what.data(), 3)}}}};
+  accessor["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", builder.add_view(where.data(), 2)}, {"componentType", kShort}}},
+      {"values", {{"bufferView", builder.add_view(what.data(), 3)}}}};
   builder.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = positions;
   const auto loaded = load_text(builder.glb(), "a.glb");
   ASSERT_TRUE(loaded) << loaded.error().detail;
@@ -150,17 +160,21 @@ TEST(MeshGltf, a_material_chooses_its_texture_coordinates_and_transforms_them) {
   const int image = builder.add_view(png.data(), png.size());
   auto& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["TEXCOORD_0"] = builder.add(std::vector<float>(8, 0.25f), kFloat, "VEC2");
-  attributes["TEXCOORD_1"] = builder.add(std::vector<float>{0, 0, 1, 0, 1, 1, 0, 1}, kFloat, "VEC2");
+  attributes["TEXCOORD_1"] =
+      builder.add(std::vector<float>{0, 0, 1, 0, 1, 1, 0, 1}, kFloat, "VEC2");
   builder.json["meshes"][0]["primitives"][0]["material"] = 0;
   builder.json["images"] = {{{"bufferView", image}, {"mimeType", "image/png"}, {"name", "photo"}}};
   builder.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
   builder.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
-  const nlohmann::json transform = {
-      {"offset", {0.5, 0.25}}, {"scale", {2, 4}}, {"rotation", 1.5707963267948966}, {"texCoord", 1}};
+  const nlohmann::json transform = {{"offset", {0.5, 0.25}},
+                                    {"scale", {2, 4}},
+                                    {"rotation", 1.5707963267948966},
+                                    {"texCoord", 1}};
   builder.json["materials"] = {
       {{"pbrMetallicRoughness",
         {{"baseColorFactor", {1, 0.5, 0, 1}},
-         {"baseColorTexture", {{"index", 0}, {"extensions", {{"KHR_texture_transform", transform}}}}}}}}};
+         {"baseColorTexture",
+          {{"index", 0}, {"extensions", {{"KHR_texture_transform", transform}}}}}}}}};
   const auto loaded = load_text(builder.glb(), "a.glb");
   ASSERT_TRUE(loaded) << loaded.error().detail;
   const auto& mesh = loaded->mesh;
@@ -177,7 +191,8 @@ TEST(MeshGltf, a_material_chooses_its_texture_coordinates_and_transforms_them) {
 TEST(MeshGltf, colours_are_turned_from_light_to_what_pictures_store) {
   auto builder = square();
   builder.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = builder.add(
-      std::vector<std::uint16_t>{65535, 32768, 0, 0, 0, 0, 65535, 65535, 65535, 0, 0, 0}, kShort, "VEC3", true);
+      std::vector<std::uint16_t>{65535, 32768, 0, 0, 0, 0, 65535, 65535, 65535, 0, 0, 0}, kShort,
+      "VEC3", true);
   const auto loaded = load_text(builder.glb(), "a.glb");
   ASSERT_TRUE(loaded) << loaded.error().detail;
   EXPECT_EQ(loaded->mesh.vertex_colors[0], 0xff00bcffu);
@@ -188,22 +203,27 @@ TEST(MeshGltf, colours_are_turned_from_light_to_what_pictures_store) {
 TEST(MeshGltf, meshopt_views_are_decoded_and_need_no_fallback) {
   auto builder = square();
   std::vector<float> padded;
-  for (int i = 0; i < 4; ++i) padded.insert(padded.end(), kSquare.begin() + 3 * i, kSquare.begin() + 3 * i + 3);
+  for (int i = 0; i < 4; ++i)
+    padded.insert(padded.end(), kSquare.begin() + 3 * i, kSquare.begin() + 3 * i + 3);
   std::vector<unsigned char> vertices(meshopt_encodeVertexBufferBound(4, 12)),
       triangles(meshopt_encodeIndexBufferBound(6, 4));
   const std::vector<unsigned> indices{0, 1, 2, 0, 2, 3};
-  vertices.resize(meshopt_encodeVertexBuffer(vertices.data(), vertices.size(), padded.data(), 4, 12));
-  triangles.resize(meshopt_encodeIndexBuffer(triangles.data(), triangles.size(), indices.data(), 6));
-  const auto compress = [&](int accessor, const std::vector<unsigned char>& bytes, int stride, int count,
-                            const char* mode) {
+  vertices.resize(
+      meshopt_encodeVertexBuffer(vertices.data(), vertices.size(), padded.data(), 4, 12));
+  triangles.resize(
+      meshopt_encodeIndexBuffer(triangles.data(), triangles.size(), indices.data(), 6));
+  const auto compress = [&](int accessor, const std::vector<unsigned char>& bytes, int stride,
+                            int count, const char* mode) {
     const int raw = builder.add_view(bytes.data(), bytes.size());
-    auto& view = builder.json["bufferViews"][builder.json["accessors"][accessor]["bufferView"].get<int>()];
-    view["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0},
-                                                     {"byteOffset", builder.json["bufferViews"][raw]["byteOffset"]},
-                                                     {"byteLength", bytes.size()},
-                                                     {"byteStride", stride},
-                                                     {"count", count},
-                                                     {"mode", mode}};
+    auto& view =
+        builder.json["bufferViews"][builder.json["accessors"][accessor]["bufferView"].get<int>()];
+    view["extensions"]["EXT_meshopt_compression"] = {
+        {"buffer", 0},
+        {"byteOffset", builder.json["bufferViews"][raw]["byteOffset"]},
+        {"byteLength", bytes.size()},
+        {"byteStride", stride},
+        {"count", count},
+        {"mode", mode}};
     view["buffer"] = 77;  // the fallback that is not there
   };
   compress(0, vertices, 12, 4, "ATTRIBUTES");
@@ -223,13 +243,16 @@ TEST(MeshGltf, meshopt_views_are_decoded_and_need_no_fallback) {
 TEST(MeshGltf, a_texture_without_a_picture_costs_the_look_and_nothing_else) {
   auto builder = square();
   auto& primitive = builder.json["meshes"][0]["primitives"][0];
-  primitive["attributes"]["TEXCOORD_0"] = builder.add(std::vector<float>{0, 0, 1, 0, 1, 1, 0, 1}, kFloat, "VEC2");
+  primitive["attributes"]["TEXCOORD_0"] =
+      builder.add(std::vector<float>{0, 0, 1, 0, 1, 1, 0, 1}, kFloat, "VEC2");
   primitive["material"] = 0;
-  builder.json["textures"] = {{{"extensions", {{"ACME_texture", {{"source", 0}}}}}}, {{"sampler", 0}}};
+  builder.json["textures"] = {{{"extensions", {{"ACME_texture", {{"source", 0}}}}}},
+                              {{"sampler", 0}}};
   builder.json["samplers"] = nlohmann::json::array({nlohmann::json::object()});
   for (const int texture : {0, 1})
     builder.json["materials"].push_back(
-        {{"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 1}}, {"baseColorTexture", {{"index", texture}}}}}});
+        {{"pbrMetallicRoughness",
+          {{"baseColorFactor", {1, 0, 0, 1}}, {"baseColorTexture", {{"index", texture}}}}}});
   const auto loaded = load_text(builder.glb(), "a.glb");
   ASSERT_TRUE(loaded) << loaded.error().detail;
   EXPECT_EQ(loaded->mesh.triangle_count(), 2u);
@@ -258,20 +281,26 @@ nlohmann::json& instanced(test::GltfBuilder& builder, const nlohmann::json& attr
 
 TEST(MeshGltf, instances_stand_where_their_translation_rotation_and_scale_say) {
   auto builder = square();
-  const int translations = builder.add(std::vector<float>{10, 0, 0, 0, 20, 0, 0, 0, 30}, kFloat, "VEC3");
+  const int translations =
+      builder.add(std::vector<float>{10, 0, 0, 0, 20, 0, 0, 0, 30}, kFloat, "VEC3");
   // None, a quarter about z, none; as normalised shorts, as the extension allows.
   const auto half = static_cast<std::int16_t>(std::lround(32767 * std::sqrt(0.5)));
   const int rotations =
-      builder.add(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, half, half, 0, 0, 0, 32767}, 5122, "VEC4", true);
+      builder.add(std::vector<std::int16_t>{0, 0, 0, 32767, 0, 0, half, half, 0, 0, 0, 32767}, 5122,
+                  "VEC4", true);
   const int scales = builder.add(std::vector<float>{1, 1, 1, 2, 1, 1, -1, 1, 1}, kFloat, "VEC3");
-  auto& node = instanced(builder, {{"TRANSLATION", translations}, {"ROTATION", rotations}, {"SCALE", scales}});
+  auto& node = instanced(
+      builder, {{"TRANSLATION", translations}, {"ROTATION", rotations}, {"SCALE", scales}});
   node["translation"] = {433210.123456, 0, 0};
   const auto loaded = load_text(builder.glb(), "a.glb");
   ASSERT_TRUE(loaded) << loaded.error().detail;
   ASSERT_EQ(loaded->mesh.triangle_count(), 6u);
-  const auto corner = [&](std::size_t i) { return loaded->mesh.positions[loaded->mesh.triangles[i]]; };
+  const auto corner = [&](std::size_t i) {
+    return loaded->mesh.positions[loaded->mesh.triangles[i]];
+  };
   const auto expect_near = [](const glm::dvec3& found, const glm::dvec3& wanted) {
-    EXPECT_LT(glm::length(found - wanted - glm::dvec3(433210.123456, 0, 0)), 1e-4) << found.x << ' ' << found.y;
+    EXPECT_LT(glm::length(found - wanted - glm::dvec3(433210.123456, 0, 0)), 1e-4)
+        << found.x << ' ' << found.y;
   };
   expect_near(corner(1), {11, 0, 0});
   expect_near(corner(7), {0, 22, 0});  // (1, 0, 0), doubled along x, turned to y
@@ -301,17 +330,25 @@ TEST(MeshGltf, instances_that_contradict_themselves_or_are_too_many_are_refused)
   const auto attributes = [](test::GltfBuilder& b) -> nlohmann::json& {
     return b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
   };
-  EXPECT_THAT(refusal([&](auto& b) { attributes(b)["SCALE"] = b.add(std::vector<float>(9, 1), kFloat, "VEC3"); }),
-              HasSubstr("SCALE of EXT_mesh_gpu_instancing in the glTF has 3 values, but another attribute has 2"));
-  EXPECT_THAT(refusal([&](auto& b) { attributes(b)["ROTATION"] = b.add(std::vector<float>(6, 1), kFloat, "VEC3"); }),
+  EXPECT_THAT(
+      refusal([&](auto& b) {
+        attributes(b)["SCALE"] = b.add(std::vector<float>(9, 1), kFloat, "VEC3");
+      }),
+      HasSubstr(
+          "SCALE of EXT_mesh_gpu_instancing in the glTF has 3 values, but another attribute has 2"));
+  EXPECT_THAT(refusal([&](auto& b) {
+                attributes(b)["ROTATION"] = b.add(std::vector<float>(6, 1), kFloat, "VEC3");
+              }),
               HasSubstr("ROTATION of EXT_mesh_gpu_instancing in the glTF does not hold 4 numbers"));
   EXPECT_THAT(refusal([&](auto& b) {
-                attributes(b)["ROTATION"] = b.add(std::vector<std::uint8_t>(8, 1), kByte, "VEC4", true);
+                attributes(b)["ROTATION"] =
+                    b.add(std::vector<std::uint8_t>(8, 1), kByte, "VEC4", true);
               }),
               HasSubstr("does not hold 4 numbers of FLOAT, or of BYTE or SHORT"));
   EXPECT_THAT(refusal([&](auto& b) { attributes(b)["TRANSLATION"] = 99; }),
               HasSubstr("number 99 of its \"accessors\""));
-  EXPECT_THAT(refusal([&](auto& b) { attributes(b)["TRANSLATION"] = "here"; }), HasSubstr("\"TRANSLATION\""));
+  EXPECT_THAT(refusal([&](auto& b) { attributes(b)["TRANSLATION"] = "here"; }),
+              HasSubstr("\"TRANSLATION\""));
   EXPECT_THAT(refusal([](auto& b) {
                 b.json["accessors"].back()["count"] = 1'000'001;
                 b.json["accessors"].back().erase("bufferView");
@@ -321,14 +358,16 @@ TEST(MeshGltf, instances_that_contradict_themselves_or_are_too_many_are_refused)
 
 TEST(MeshGltf, more_triangles_than_are_taken_are_refused_before_they_are_made) {
   auto builder = square();
-  instanced(builder, {{"TRANSLATION", builder.add(std::vector<float>{0, 0, 0, 5, 0, 0, 9, 0, 0}, kFloat, "VEC3")}});
+  instanced(builder, {{"TRANSLATION", builder.add(std::vector<float>{0, 0, 0, 5, 0, 0, 9, 0, 0},
+                                                  kFloat, "VEC3")}});
   const std::vector<std::pair<std::string, std::string>> texts{{"a.glb", builder.glb()}};
   const auto files = test::files_of(texts);
   Progress progress;
   EXPECT_TRUE(mesh::parse_gltf(*files, progress, 6));
   const auto more = mesh::parse_gltf(*files, progress, 5);
   ASSERT_FALSE(more);
-  EXPECT_THAT(more.error().detail, HasSubstr("repeats a mesh of 2 triangles 3 times, which makes more than 5"));
+  EXPECT_THAT(more.error().detail,
+              HasSubstr("repeats a mesh of 2 triangles 3 times, which makes more than 5"));
 }
 
 struct BadGltf {
@@ -353,29 +392,43 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadGltf{"no_asset", [](auto& j) { j.erase("asset"); }, "no \"asset\""},
         BadGltf{"old", [](auto& j) { j["asset"]["version"] = "1.0"; }, "another version"},
-        BadGltf{"unknown_extension", [](auto& j) { j["extensionsRequired"] = {"ACME_magic"}; }, "ACME_magic"},
+        BadGltf{"unknown_extension", [](auto& j) { j["extensionsRequired"] = {"ACME_magic"}; },
+                "ACME_magic"},
         BadGltf{"cycle", [](auto& j) { j["nodes"][0]["children"] = {0}; }, "its own ancestor"},
-        BadGltf{"lost_node", [](auto& j) { j["scenes"][0]["nodes"] = {5}; }, "number 5 of its \"nodes\""},
+        BadGltf{"lost_node", [](auto& j) { j["scenes"][0]["nodes"] = {5}; },
+                "number 5 of its \"nodes\""},
         BadGltf{"lost_mesh", [](auto& j) { j["nodes"][0]["mesh"] = 3; }, "\"meshes\""},
-        BadGltf{"lost_material", [](auto& j) { j["meshes"][0]["primitives"][0]["material"] = 0; }, "material 0"},
-        BadGltf{"no_position", [](auto& j) { j["meshes"][0]["primitives"][0]["attributes"].erase("POSITION"); },
+        BadGltf{"lost_material", [](auto& j) { j["meshes"][0]["primitives"][0]["material"] = 0; },
+                "material 0"},
+        BadGltf{"no_position",
+                [](auto& j) { j["meshes"][0]["primitives"][0]["attributes"].erase("POSITION"); },
                 "no POSITION"},
-        BadGltf{"count_lies", [](auto& j) { j["accessors"][0]["count"] = 4000000000u; }, "4000000000 values"},
-        BadGltf{"offset_lies", [](auto& j) { j["accessors"][1]["byteOffset"] = 18446744073709551615u; }, "ends before"},
-        BadGltf{"view_lies", [](auto& j) { j["bufferViews"][0]["byteLength"] = 1000; }, "beyond its buffer"},
-        BadGltf{"negative", [](auto& j) { j["accessors"][0]["count"] = -4; }, "\"count\" is not a whole number"},
+        BadGltf{"count_lies", [](auto& j) { j["accessors"][0]["count"] = 4000000000u; },
+                "4000000000 values"},
+        BadGltf{"offset_lies",
+                [](auto& j) { j["accessors"][1]["byteOffset"] = 18446744073709551615u; },
+                "ends before"},
+        BadGltf{"view_lies", [](auto& j) { j["bufferViews"][0]["byteLength"] = 1000; },
+                "beyond its buffer"},
+        BadGltf{"negative", [](auto& j) { j["accessors"][0]["count"] = -4; },
+                "\"count\" is not a whole number"},
         BadGltf{"small_stride", [](auto& j) { j["bufferViews"][0]["byteStride"] = 4; }, "stride"},
-        BadGltf{"not_indices", [](auto& j) { j["meshes"][0]["primitives"][0]["indices"] = 0; }, "unsigned whole"},
-        BadGltf{"index_out_of_range", [](auto& j) { j["accessors"][0]["count"] = 3; }, "names vertex 3"},
-        BadGltf{"points", [](auto& j) { j["meshes"][0]["primitives"][0]["mode"] = 0; }, "points or lines"},
-        BadGltf{"no_such_mode", [](auto& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; }, "mode 7"},
+        BadGltf{"not_indices", [](auto& j) { j["meshes"][0]["primitives"][0]["indices"] = 0; },
+                "unsigned whole"},
+        BadGltf{"index_out_of_range", [](auto& j) { j["accessors"][0]["count"] = 3; },
+                "names vertex 3"},
+        BadGltf{"points", [](auto& j) { j["meshes"][0]["primitives"][0]["mode"] = 0; },
+                "points or lines"},
+        BadGltf{"no_such_mode", [](auto& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; },
+                "mode 7"},
         BadGltf{"no_meshes",
                 [](auto& j) {
                   j.erase("meshes");
                   j["nodes"][0].erase("mesh");
                 },
                 "holds no meshes"},
-        BadGltf{"not_shown", [](auto& j) { j["nodes"][0].erase("mesh"); }, "no node of its scene shows one"},
+        BadGltf{"not_shown", [](auto& j) { j["nodes"][0].erase("mesh"); },
+                "no node of its scene shows one"},
         BadGltf{"other_numbers", [](auto& j) { j["accessors"][0]["componentType"] = 5130; },
                 "numbers of type 5130, which glTF does not have"},
         BadGltf{"matrices", [](auto& j) { j["accessors"][0]["type"] = "MAT3"; }, "type \"MAT3\""},
@@ -386,7 +439,8 @@ INSTANTIATE_TEST_SUITE_P(
                   j["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 2;
                 },
                 "4 positions, but 3 values of COLOR_0"},
-        BadGltf{"text_for_a_matrix", [](auto& j) { j["nodes"][0]["matrix"] = "unit"; }, "\"matrix\""},
+        BadGltf{"text_for_a_matrix", [](auto& j) { j["nodes"][0]["matrix"] = "unit"; },
+                "\"matrix\""},
         BadGltf{"zeros", [](auto& j) { j["accessors"][0].erase("bufferView"); }, "area"}),
     [](const auto& bad) { return bad.param.name; });
 

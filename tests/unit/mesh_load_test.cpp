@@ -24,7 +24,9 @@ TEST(MeshLoad, equal_positions_are_welded_and_what_is_dropped_is_reported) {
   EXPECT_EQ(count_of(loaded->repairs, "dropped triangles without area"), 1u);
   EXPECT_EQ(count_of(loaded->repairs, "dropped duplicate triangles"), 1u);
   EXPECT_EQ(count_of(loaded->repairs, "dropped unused vertices"), 2u);
-  EXPECT_EQ(count_of(loaded->repairs, "dropped unused vertices with coordinates that are no finite numbers"), 1u);
+  EXPECT_EQ(count_of(loaded->repairs,
+                     "dropped unused vertices with coordinates that are no finite numbers"),
+            1u);
 }
 
 TEST(MeshLoad, corner_coordinates_and_colours_follow_their_triangles_and_vertices) {
@@ -34,7 +36,8 @@ TEST(MeshLoad, corner_coordinates_and_colours_follow_their_triangles_and_vertice
       "a.obj");
   ASSERT_TRUE(loaded);
   EXPECT_EQ(loaded->mesh.corner_uvs, (std::vector<glm::vec2>{{.1f, .2f}, {.3f, .4f}, {.5f, .6f}}));
-  EXPECT_EQ(loaded->mesh.vertex_colors, (std::vector<std::uint32_t>{0xff0000ffu, 0xff00ff00u, 0xffff0000u}));
+  EXPECT_EQ(loaded->mesh.vertex_colors,
+            (std::vector<std::uint32_t>{0xff0000ffu, 0xff00ff00u, 0xffff0000u}));
 }
 
 TEST(MeshLoad, unknown_formats_and_missing_files_are_refused) {
@@ -49,8 +52,8 @@ TEST(MeshLoad, a_cancelled_load_stops) {
   Progress progress;
   progress.cancel();
   const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  const auto loaded =
-      mesh::load_mesh_bytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "a.obj", progress);
+  const auto loaded = mesh::load_mesh_bytes(
+      {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "a.obj", progress);
   ASSERT_FALSE(loaded);
   EXPECT_EQ(loaded.error().status, 499);
 }
@@ -58,8 +61,8 @@ TEST(MeshLoad, a_cancelled_load_stops) {
 TEST(MeshLoad, progress_ends_at_one) {
   Progress progress;
   const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  ASSERT_TRUE(
-      mesh::load_mesh_bytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "a.obj", progress));
+  ASSERT_TRUE(mesh::load_mesh_bytes(
+      {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "a.obj", progress));
   EXPECT_EQ(progress.fraction(), 1.0);
 }
 

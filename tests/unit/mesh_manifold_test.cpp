@@ -23,8 +23,9 @@ void expect_manifold(const mesh::TriangleMesh& mesh) {
 double volume(const mesh::TriangleMesh& mesh) {
   double six = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
-    six += glm::dot(mesh.positions[mesh.triangles[i]],
-                    glm::cross(mesh.positions[mesh.triangles[i + 1]], mesh.positions[mesh.triangles[i + 2]]));
+    six += glm::dot(
+        mesh.positions[mesh.triangles[i]],
+        glm::cross(mesh.positions[mesh.triangles[i + 1]], mesh.positions[mesh.triangles[i + 2]]));
   return six / 6;
 }
 
@@ -92,7 +93,9 @@ TEST(MeshManifold, texture_coordinates_and_materials_follow_a_turned_triangle) {
   expect_manifold(loaded->mesh);
   for (int k = 0; k < 3; ++k) {
     const auto vertex = loaded->mesh.triangles[6 + k];
-    const glm::vec2 expected = vertex == 1 ? glm::vec2(1, 0) : vertex == 2 ? glm::vec2(1, 1) : glm::vec2(0, 1);
+    const glm::vec2 expected = vertex == 1   ? glm::vec2(1, 0)
+                               : vertex == 2 ? glm::vec2(1, 1)
+                                             : glm::vec2(0, 1);
     EXPECT_EQ(loaded->mesh.corner_uvs[6 + k], expected) << vertex;
   }
 }
@@ -143,7 +146,8 @@ TEST(MeshManifold, a_strip_with_one_side_is_cut_once) {
     for (const double across : {-0.3, 0.3}) {
       const double turn = 2 * 3.14159265358979 * i / kSteps, twist = turn / 2;
       const double radius = 1 + across * std::cos(twist);
-      text += "v " + std::to_string(radius * std::cos(turn)) + " " + std::to_string(radius * std::sin(turn)) + " " +
+      text += "v " + std::to_string(radius * std::cos(turn)) + " " +
+              std::to_string(radius * std::sin(turn)) + " " +
               std::to_string(across * std::sin(twist)) + "\n";
     }
   for (int i = 0; i < kSteps; ++i) {
@@ -178,7 +182,8 @@ TEST(MeshWeld, vertices_within_the_distance_are_joined_and_none_moves_farther) {
   const auto joined = load_texts({{"a.obj", text}}, {0.05});
   ASSERT_TRUE(joined);
   EXPECT_EQ(count_of(joined->repairs, "welded vertices within 0.05"), 2u);
-  EXPECT_EQ(joined->mesh.positions.size(), 7u) << "1.08 lies farther than 0.05 from 1, and 1.04 has gone there";
+  EXPECT_EQ(joined->mesh.positions.size(), 7u)
+      << "1.08 lies farther than 0.05 from 1, and 1.04 has gone there";
   for (const auto& repair : joined->repairs) EXPECT_FALSE(mesh::is_fault(repair)) << repair.what;
 }
 

@@ -1,5 +1,6 @@
-// Version 1 of the attribute stream and the COLOR filter of KHR_meshopt_compression, which the library of this system cannot write:
-// the streams below were made by meshoptimizer 1.3 from the values that the tests work out.
+// Version 1 of the attribute stream and the COLOR filter of KHR_meshopt_compression, which the
+// library of this system cannot write: the streams below were made by meshoptimizer 1.3 from the
+// values that the tests work out.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <meshoptimizer.h>
@@ -17,9 +18,12 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint64_t kMost = 1 << 20;
 
-Bytes decoded(const std::string& base64) { return mesh::decode_data_uri("data:;base64," + base64).value(); }
+Bytes decoded(const std::string& base64) {
+  return mesh::decode_data_uri("data:;base64," + base64).value();
+}
 
-// Two blocks, with all modes of bytes (bits of 0 to 8, zeros, literals) and of channels (bytes, shorts, words by exclusive or).
+// Two blocks, with all modes of bytes (bits of 0 to 8, zeros, literals) and of channels (bytes,
+// shorts, words by exclusive or).
 const std::string kStream =
     "oZk5GgBqqqqqqgZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZm"
     "ZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZmZm+v///wACIiRERmZo"
@@ -48,7 +52,9 @@ Bytes expected_elements() {
   std::uint32_t random = 1;
   for (std::uint32_t i = 0; i < kCount; ++i) {
     std::uint8_t* at = &bytes[i * kStride];
-    const auto put = [&](std::size_t offset, auto number) { std::memcpy(at + offset, &number, sizeof number); };
+    const auto put = [&](std::size_t offset, auto number) {
+      std::memcpy(at + offset, &number, sizeof number);
+    };
     put(0, static_cast<std::uint16_t>(i * 3));
     put(2, static_cast<std::uint16_t>(i * i >> 3));
     put(4, static_cast<std::uint8_t>(i & 1));
@@ -64,7 +70,8 @@ Bytes expected_elements() {
 }
 
 TEST(MeshMeshopt, the_second_version_of_attributes_is_decoded) {
-  const auto found = mesh::decode_meshopt(decoded(kStream), {"ATTRIBUTES", "", kCount, kStride}, kMost);
+  const auto found =
+      mesh::decode_meshopt(decoded(kStream), {"ATTRIBUTES", "", kCount, kStride}, kMost);
   ASSERT_TRUE(found) << found.error();
   EXPECT_EQ(*found, expected_elements());
 }
@@ -73,7 +80,8 @@ TEST(MeshMeshopt, a_stream_that_is_cut_or_longer_or_of_an_unknown_channel_is_ref
   const Bytes whole = decoded(kStream);
   const mesh::MeshoptShape shape{"ATTRIBUTES", "", kCount, kStride};
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));  // of exactly this size
+    // of exactly this size
+    const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     EXPECT_FALSE(mesh::decode_meshopt(cut, shape, kMost)) << size;
   }
   Bytes longer = whole;
@@ -87,22 +95,23 @@ TEST(MeshMeshopt, a_stream_that_is_cut_or_longer_or_of_an_unknown_channel_is_ref
 }
 
 TEST(MeshMeshopt, colours_are_turned_from_luma_and_chroma) {
-  const auto bytes =
-      mesh::decode_meshopt(decoded("of8Afn2BAswA/f3+AGUAg4KAAAAAAH1+/cwAAAAAAAAAAAAAAAAAAAAAAAAAQH/B/wA="),
-                           {"ATTRIBUTES", "COLOR", 6, 4}, kMost);
+  const auto bytes = mesh::decode_meshopt(
+      decoded("of8Afn2BAswA/f3+AGUAg4KAAAAAAH1+/cwAAAAAAAAAAAAAAAAAAAAAAAAAQH/B/wA="),
+      {"ATTRIBUTES", "COLOR", 6, 4}, kMost);
   ASSERT_TRUE(bytes) << bytes.error();
-  EXPECT_EQ(*bytes,
-            (Bytes{254, 1, 0, 255, 0, 254, 0, 255, 1, 0, 255, 128, 255, 255, 255, 255, 0, 0, 0, 0, 51, 102, 153, 204}));
-  const auto wide =
-      mesh::decode_meshopt(decoded("of/9AAECAQLMAAYFFh0MAAICAQBlAA0PEAAHAAYAAwIAFhUIAAAAAAIBAswAAAUGDQwAAAAAAAAA"
-                                   "AAAAAAAAAAAE/wcB/P8PAAA="),
-                           {"ATTRIBUTES", "COLOR", 6, 8}, kMost);
+  EXPECT_EQ(*bytes, (Bytes{254, 1,   0,   255, 0, 254, 0, 255, 1,  0,   255, 128,
+                           255, 255, 255, 255, 0, 0,   0, 0,   51, 102, 153, 204}));
+  const auto wide = mesh::decode_meshopt(
+      decoded("of/9AAECAQLMAAYFFh0MAAICAQBlAA0PEAAHAAYAAwIAFhUIAAAAAAIBAswAAAUGDQwAAAAAAAAA"
+              "AAAAAAAAAAAE/wcB/P8PAAA="),
+      {"ATTRIBUTES", "COLOR", 6, 8}, kMost);
   ASSERT_TRUE(wide) << wide.error();
   std::vector<std::uint16_t> numbers(24);
   std::memcpy(numbers.data(), wide->data(), 48);
   EXPECT_EQ(numbers,
-            (std::vector<std::uint16_t>{65519, 16,    0,     65535, 0, 65519, 0, 65535, 16,    0,     65535, 32776,
-                                        65535, 65535, 65535, 65535, 0, 0,     0, 0,     13107, 26214, 39321, 52428}));
+            (std::vector<std::uint16_t>{65519, 16, 0,     65535, 0,     65519, 0,     65535,
+                                        16,    0,  65535, 32776, 65535, 65535, 65535, 65535,
+                                        0,     0,  0,     0,     13107, 26214, 39321, 52428}));
 }
 
 TEST(MeshMeshopt, what_a_view_says_of_itself_must_fit) {
@@ -115,7 +124,8 @@ TEST(MeshMeshopt, what_a_view_says_of_itself_must_fit) {
       {{"INDICES", "", 3, 1}, "elements of 1 bytes do not belong to the mode INDICES"},
       {{"TRIANGLES", "", 4, 2}, "its 4 indices are no whole triangles"},
       {{"TRIANGLES", "OCTAHEDRAL", 3, 4}, "the filter \"OCTAHEDRAL\" does not belong"},
-      {{"ATTRIBUTES", "QUATERNION", 3, 4}, "the filter \"QUATERNION\" does not belong to elements of 4 bytes"},
+      {{"ATTRIBUTES", "QUATERNION", 3, 4},
+       "the filter \"QUATERNION\" does not belong to elements of 4 bytes"},
       {{"ATTRIBUTES", "COLOR", 3, 12}, "the filter \"COLOR\""},
       {{"ATTRIBUTES", "SEPIA", 3, 4}, "the filter \"SEPIA\""},
       {{"ATTRIBUTES", "", 400'000'000, 4}, "cannot hold 400000000 elements"},
@@ -132,7 +142,8 @@ TEST(MeshMeshopt, what_a_view_says_of_itself_must_fit) {
 TEST(MeshMeshopt, every_index_mode_gives_what_was_encoded) {
   const std::vector<unsigned> indices{0, 1, 2, 2, 1, 3, 4, 6, 5, 70'000, 1, 9};
   Bytes sequence(meshopt_encodeIndexSequenceBound(indices.size(), 70'001));
-  sequence.resize(meshopt_encodeIndexSequence(sequence.data(), sequence.size(), indices.data(), indices.size()));
+  sequence.resize(meshopt_encodeIndexSequence(sequence.data(), sequence.size(), indices.data(),
+                                              indices.size()));
   const auto found = mesh::decode_meshopt(sequence, {"INDICES", "NONE", indices.size(), 4}, kMost);
   ASSERT_TRUE(found) << found.error();
   EXPECT_EQ(std::memcmp(found->data(), indices.data(), found->size()), 0);

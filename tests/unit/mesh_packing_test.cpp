@@ -63,16 +63,19 @@ TEST(mesh_packing, a_mask_holds_the_texels_that_the_shape_touches_and_no_hole) {
 // Points on the lines between texels are what quarter turns send to the other side of a line.
 TEST(mesh_packing, a_mask_holds_the_texels_of_the_laid_out_shape_in_every_turn) {
   const double density = 16;
-  const Outline steps = polygon({{0, 0}, {1, 0}, {1, 0.25f}, {0.5f, 0.25f}, {0.5f, 0.75f}, {0, 0.75f}});
+  const Outline steps =
+      polygon({{0, 0}, {1, 0}, {1, 0.25f}, {0.5f, 0.25f}, {0.5f, 0.75f}, {0, 0.75f}});
   const auto shape = make_shape(steps, density);
   for (int turn = 0; turn < 4; ++turn) {
     const Placement placement{turn, {0, 0}, shape.box};
     const auto texels = texels_of(shape.turned[turn]);
     for (std::size_t i = 0; i < steps.segments.size(); i += 2)
       for (int k = 0; k <= 64; ++k) {
-        const auto p = glm::mix(glm::dvec2(steps.segments[i]), glm::dvec2(steps.segments[i + 1]), k / 64.0);
+        const auto p =
+            glm::mix(glm::dvec2(steps.segments[i]), glm::dvec2(steps.segments[i + 1]), k / 64.0);
         const auto at = placement.to_atlas(p * density + kNear);
-        EXPECT_TRUE(texels.at(std::size_t(at.y)).at(std::size_t(at.x))) << turn << ": " << at.x << " " << at.y;
+        EXPECT_TRUE(texels.at(std::size_t(at.y)).at(std::size_t(at.x)))
+            << turn << ": " << at.x << " " << at.y;
       }
   }
 }
@@ -86,7 +89,8 @@ TEST(mesh_packing, a_turned_mask_holds_where_the_turn_sends_each_texel) {
     for (int y = 0; y < shape.box.y; ++y)
       for (int x = 0; x < shape.box.x; ++x) {
         const auto centre = placement.to_atlas({x + 0.5, y + 0.5});
-        EXPECT_EQ(turned.at(int(centre.y)).at(int(centre.x)), upright[y][x]) << turn << ": " << x << " " << y;
+        EXPECT_EQ(turned.at(int(centre.y)).at(int(centre.x)), upright[y][x])
+            << turn << ": " << x << " " << y;
       }
   }
 }
@@ -131,7 +135,8 @@ TEST(mesh_packing, keeps_the_gap_between_all_charts) {
   std::vector<std::vector<int>> owner(kSide, std::vector<int>(kSide, -1));
   for (int c = 0; c < int(outlines.size()); ++c) {
     const auto& placement = packing->placements[c];
-    const auto texels = texels_of(make_shape(outlines[c], packing->texels_per_unit).turned[placement.quarter_turns]);
+    const auto texels = texels_of(
+        make_shape(outlines[c], packing->texels_per_unit).turned[placement.quarter_turns]);
     for (int y = 0; y < int(texels.size()); ++y)
       for (int x = 0; x < int(texels[y].size()); ++x)
         if (texels[y][x]) owner.at(placement.corner.y + y).at(placement.corner.x + x) = c;
@@ -147,7 +152,8 @@ TEST(mesh_packing, keeps_the_gap_between_all_charts) {
 
 TEST(mesh_packing, lays_small_charts_into_the_hole_of_a_large_one) {
   std::vector<Outline> outlines{ring(1.5f, 1.2f)};
-  for (int i = 0; i < 4; ++i) outlines.push_back(polygon({{0, 0}, {0.5f, 0}, {0.5f, 0.5f}, {0, 0.5f}}));
+  for (int i = 0; i < 4; ++i)
+    outlines.push_back(polygon({{0, 0}, {0.5f, 0}, {0.5f, 0.5f}, {0, 0.5f}}));
   const auto packing = pack_densely(outlines, 128, 2, Progress{});
   ASSERT_TRUE(packing);
   EXPECT_GT(packing->texels_per_unit, 128 / (1.5 + 0.5)) << "no denser than beside each other";
@@ -155,7 +161,8 @@ TEST(mesh_packing, lays_small_charts_into_the_hole_of_a_large_one) {
 
 TEST(mesh_packing, does_not_depend_on_the_number_of_threads) {
   const auto outlines = many_shapes();
-  const auto one = pack_densely(outlines, 256, 4, Progress{}, 1), two = pack_densely(outlines, 256, 4, Progress{}, 2);
+  const auto one = pack_densely(outlines, 256, 4, Progress{}, 1),
+             two = pack_densely(outlines, 256, 4, Progress{}, 2);
   ASSERT_TRUE(one && two);
   EXPECT_EQ(one->texels_per_unit, two->texels_per_unit);
   for (std::size_t c = 0; c < outlines.size(); ++c) {
@@ -168,8 +175,10 @@ TEST(mesh_packing, does_not_depend_on_the_number_of_threads) {
 std::vector<Outline> many_triangles(int count) {
   std::vector<Outline> outlines;
   for (int i = 0; i < count; ++i) {
-    const float width = 1 + 0.61803f * float(i % 89) / 40, height = 0.5f + 0.41421f * float(i % 71) / 40;
-    outlines.push_back(polygon({{0, 0}, {width, 0}, {0.73205f * width * float(i % 13) / 13, height}}));
+    const float width = 1 + 0.61803f * float(i % 89) / 40,
+                height = 0.5f + 0.41421f * float(i % 71) / 40;
+    outlines.push_back(
+        polygon({{0, 0}, {width, 0}, {0.73205f * width * float(i % 13) / 13, height}}));
   }
   return outlines;
 }
@@ -196,7 +205,8 @@ TEST(mesh_packing, the_first_step_foretells_the_density_of_the_second) {
 }
 
 TEST(mesh_packing, charts_of_a_single_texel_each_are_packed_or_refused_but_not_shrunk_for_ever) {
-  // 600 would fit by their area with the gaps, but no more than 24 fit beside each other between the rims.
+  // 600 would fit by their area with the gaps, but no more than 24 fit beside each other between
+  // the rims.
   std::vector<Outline> outlines(600);
   for (auto& outline : outlines) {
     outline.segments = {{0, 0}, {1, 1}};

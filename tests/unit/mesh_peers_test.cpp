@@ -1,4 +1,5 @@
-// Files of other projects' test suites on which a reader once failed, beside the source tree; each with what must come out.
+// Files of other projects' test suites on which a reader once failed, beside the source tree; each
+// with what must come out.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -66,7 +67,8 @@ TEST_F(MeshPeers, draco_gives_the_texture_coordinates_and_colours_of_the_plain_f
   const auto mean = [](const mesh::TriangleMesh& mesh) {
     glm::dvec3 sum(0);
     for (const auto color : mesh.vertex_colors)
-      sum += glm::dvec3(color & 255, color >> 8 & 255, color >> 16 & 255) / double(mesh.vertex_colors.size());
+      sum += glm::dvec3(color & 255, color >> 8 & 255, color >> 16 & 255) /
+             double(mesh.vertex_colors.size());
     return sum;
   };
   EXPECT_LT(glm::length(mean(tinted->mesh) - mean(as_plain->mesh)), 0.5);
@@ -100,13 +102,15 @@ TEST_F(MeshPeers, surplus_words_of_a_ply_are_said) {
 }
 
 TEST_F(MeshPeers, faces_of_an_obj_that_name_absent_coordinates_are_said) {
-  for (const std::string name : {"box-missing-attributes.obj", "box-incomplete-uvs.obj", "cubevt.obj"}) {
+  for (const std::string name :
+       {"box-missing-attributes.obj", "box-incomplete-uvs.obj", "cubevt.obj"}) {
     const auto loaded = load({name});
     ASSERT_TRUE(loaded) << name << loaded.error().detail;
     EXPECT_EQ(loaded->mesh.triangle_count(), 12u) << name;
-    EXPECT_GT(count_of(*loaded, "faces that name texture coordinates which the file does not have") +
-                  count_of(*loaded, "faces that name normals which the file does not have"),
-              0u)
+    EXPECT_GT(
+        count_of(*loaded, "faces that name texture coordinates which the file does not have") +
+            count_of(*loaded, "faces that name normals which the file does not have"),
+        0u)
         << name;
   }
 }

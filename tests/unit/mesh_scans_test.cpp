@@ -1,6 +1,6 @@
-// Every scan beside the source tree through all of an import but the database, each in a process of its own, so that what
-// it takes at most is known; against figures measured by a reader that shares no code with this one. Prints a table, which
-// docs/formats.md shows.
+// Every scan beside the source tree through all of an import but the database, each in a process of
+// its own, so that what it takes at most is known; against figures measured by a reader that shares
+// no code with this one. Prints a table, which docs/formats.md shows.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -55,7 +55,8 @@ struct Outcome {
   std::uint64_t count(const std::string& what) const {
     std::uint64_t sum = 0;
     for (const auto& repair : told["repairs"])
-      if (repair["what"].get<std::string>().starts_with(what)) sum += repair["count"].get<std::uint64_t>();
+      if (repair["what"].get<std::string>().starts_with(what))
+        sum += repair["count"].get<std::uint64_t>();
     return sum;
   }
 };
@@ -65,9 +66,10 @@ json import_in_child(const std::vector<mesh::InputFile>& files) {
   Progress progress;
   auto loaded = mesh::load_mesh(files, progress);
   if (!loaded) return {{"problem", loaded.error().detail}, {"status", loaded.error().status}};
-  json told{{"triangles", loaded->mesh.triangle_count()}, {"positions", loaded->mesh.positions.size()},
-            {"area", mesh::surface_area(loaded->mesh)},   {"colors", !loaded->mesh.vertex_colors.empty()},
-            {"textures", loaded->mesh.textures.size()},   {"materials", loaded->mesh.materials.size()}};
+  json told{
+      {"triangles", loaded->mesh.triangle_count()}, {"positions", loaded->mesh.positions.size()},
+      {"area", mesh::surface_area(loaded->mesh)},   {"colors", !loaded->mesh.vertex_colors.empty()},
+      {"textures", loaded->mesh.textures.size()},   {"materials", loaded->mesh.materials.size()}};
   const auto& first = loaded->mesh.positions[0];
   told["first"] = {first.x, first.y, first.z};
   if (loaded->mesh.triangle_count() < 400'000) {
@@ -83,8 +85,9 @@ json import_in_child(const std::vector<mesh::InputFile>& files) {
   auto color = mesh::bake_base_color(loaded->mesh, *atlas, loaded->repairs, progress);
   if (!color) return {{"problem", color.error().detail}, {"status", color.error().status}};
   if (*color)
-    told["look"] = {
-        {"width", (*color)->width}, {"bytes", (*color)->bytes.size()}, {"type", media_type((*color)->format)}};
+    told["look"] = {{"width", (*color)->width},
+                    {"bytes", (*color)->bytes.size()},
+                    {"type", media_type((*color)->format)}};
   told["vertices"] = mesh::build_geometry(loaded->mesh, *atlas).vertices.size();
   told["repairs"] = json::array();
   for (const auto& repair : loaded->repairs)
@@ -127,11 +130,13 @@ class MeshScans : public testing::Test {
   static void SetUpTestSuite() {
     std::ifstream in(kData / "FACTS.json");
     std::string text{std::istreambuf_iterator<char>(in), {}};
-    for (std::size_t at; (at = text.find(": NaN")) != text.npos;) text.replace(at, 5, ": null");  // the area of n05
+    // the area of n05
+    for (std::size_t at; (at = text.find(": NaN")) != text.npos;) text.replace(at, 5, ": null");
     facts_ = json::parse(text, nullptr, false);
   }
   void SetUp() override {
-    if (!facts_.is_object()) GTEST_SKIP() << "NO SCANS in " << kData << ": nothing of real files is tested";
+    if (!facts_.is_object())
+      GTEST_SKIP() << "NO SCANS in " << kData << ": nothing of real files is tested";
   }
 
   // Compressed ones are unpacked first, as a person does.
@@ -144,8 +149,8 @@ class MeshScans : public testing::Test {
     if (packed == ".xz" || packed == ".gz") {
       name = fs::path(name).stem();
       path = fs::temp_directory_path() / ("strata-scan-" + std::to_string(::getpid()) + "-" + name);
-      const std::string command =
-          (packed == ".xz" ? "xz -dc " : "gzip -dc ") + (kData / scan.file).string() + " > " + path.string();
+      const std::string command = (packed == ".xz" ? "xz -dc " : "gzip -dc ") +
+                                  (kData / scan.file).string() + " > " + path.string();
       EXPECT_EQ(std::system(command.c_str()), 0) << command;
     }
     files.push_back({name, path});
@@ -163,10 +168,11 @@ class MeshScans : public testing::Test {
     std::string text = "| `" + scan.file + "` | ";
     if (outcome.imported()) {
       text += std::to_string(told["triangles"].get<std::size_t>()) + " | " +
-              std::to_string(told["positions"].get<std::size_t>()) + " | " + told["atlas"].get<std::string>() + " | ";
+              std::to_string(told["positions"].get<std::size_t>()) + " | " +
+              told["atlas"].get<std::string>() + " | ";
       if (told.contains("look"))
-        text +=
-            std::to_string(told["look"]["width"].get<int>()) + "² " + told["look"]["type"].get<std::string>().substr(6);
+        text += std::to_string(told["look"]["width"].get<int>()) + "² " +
+                told["look"]["type"].get<std::string>().substr(6);
       else
         text += told["colors"] ? "vertex colours" : "—";
       text += " | ";
@@ -179,13 +185,15 @@ class MeshScans : public testing::Test {
       text += "refused | | | | " + told.value("problem", "died");
     }
     char numbers[64];
-    std::snprintf(numbers, sizeof numbers, " | %.2f | %.0f |", told.value("seconds", 0.0), outcome.megabytes);
+    std::snprintf(numbers, sizeof numbers, " | %.2f | %.0f |", told.value("seconds", 0.0),
+                  outcome.megabytes);
     std::printf("%s%s\n", text.c_str(), numbers);
   }
 
   static std::vector<Scan> good() {
     std::vector<Scan> scans{
-        {"mask_bali/mask.gltf", {"mask_bali/Image_0.jpg", "mask_bali/mask-gltf-2.0_separated-valid.bin"}},
+        {"mask_bali/mask.gltf",
+         {"mask_bali/Image_0.jpg", "mask_bali/mask-gltf-2.0_separated-valid.bin"}},
         {"mask_bali/mask.obj", {"mask_bali/mask.mtl", "mask_bali/Image_0.jpg"}},
         {"mask_bali/mask_quantized.glb"},
         {"mask_bali/mask_meshopt.glb"},
@@ -196,9 +204,10 @@ class MeshScans : public testing::Test {
           "nasty/udim.1012.png"}},
         {"nasty/n17_wedge_uv_two_textures.ply", {"nasty/udim.1001.png", "nasty/udim.1002.png"}}};
     for (const auto& [name, fact] : facts_.items()) {
-      const bool known = std::any_of(scans.begin(), scans.end(), [&](const Scan& scan) { return scan.file == name; });
-      const bool bad =
-          std::any_of(refused().begin(), refused().end(), [&](const auto& entry) { return entry.first == name; });
+      const bool known = std::any_of(scans.begin(), scans.end(),
+                                     [&](const Scan& scan) { return scan.file == name; });
+      const bool bad = std::any_of(refused().begin(), refused().end(),
+                                   [&](const auto& entry) { return entry.first == name; });
       if (!known && !bad) scans.push_back({name});
     }
     return scans;
@@ -232,21 +241,26 @@ TEST_F(MeshScans, good_files_have_the_measured_triangles_positions_and_area) {
       continue;
     }
     const json& fact = facts_[scan.file];
-    const json& measured =
-        fact.value("after_exact_weld", json()).is_null() ? fact["as_indexed"] : fact["after_exact_weld"];
-    EXPECT_EQ(outcome.count("dropped degenerate triangles"), measured.value("index_degenerate_faces", 0u));
+    const json& measured = fact.value("after_exact_weld", json()).is_null()
+                               ? fact["as_indexed"]
+                               : fact["after_exact_weld"];
+    EXPECT_EQ(outcome.count("dropped degenerate triangles"),
+              measured.value("index_degenerate_faces", 0u));
     EXPECT_EQ(outcome.count("dropped duplicate triangles"), measured.value("duplicate_faces", 0u));
     EXPECT_EQ(outcome.told["triangles"].get<std::uint64_t>() + outcome.count("dropped degenerate") +
                   outcome.count("dropped duplicate") + outcome.count("dropped triangles") +
                   outcome.count("dropped slivers"),
               fact["triangles"].get<std::uint64_t>());
-    // Both instances of n16 are measured with all vertices of both primitives, and each takes a half.
-    const std::uint64_t repeated =
-        scan.file.find("n16") == scan.file.npos ? fact.value("duplicate_position_vertices", 0u) : 160;
+    // Both instances of n16 are measured with all vertices of both primitives, and each takes a
+    // half.
+    const std::uint64_t repeated = scan.file.find("n16") == scan.file.npos
+                                       ? fact.value("duplicate_position_vertices", 0u)
+                                       : 160;
     EXPECT_EQ(outcome.count("welded vertices at equal positions"), repeated);
     if (outcome.count("cut") == 0) {
-      EXPECT_EQ(outcome.told["positions"].get<std::uint64_t>() + outcome.count("dropped unused vertices"),
-                fact["distinct_positions"].get<std::uint64_t>());
+      EXPECT_EQ(
+          outcome.told["positions"].get<std::uint64_t>() + outcome.count("dropped unused vertices"),
+          fact["distinct_positions"].get<std::uint64_t>());
     }
     EXPECT_EQ(outcome.told.value("faults", 0u), 0u) << "the mesh is a surface now";
     // Draco and quantised files were measured by another decoder.
@@ -280,10 +294,12 @@ TEST_F(MeshScans, the_repairs_of_known_defects_are_counted) {
   EXPECT_EQ(fins.count("cut vertices"), 7u);
   const Outcome flipped = import({"nasty/n03_flipped_degenerate_duplicate.ply"});
   EXPECT_EQ(flipped.told["triangles"], 5616);
-  EXPECT_EQ(flipped.count("dropped triangles without area") + flipped.count("dropped slivers"), 20u);
+  EXPECT_EQ(flipped.count("dropped triangles without area") + flipped.count("dropped slivers"),
+            20u);
   EXPECT_EQ(flipped.count("turned triangles"), 561u);
   EXPECT_EQ(flipped.told["boundary"], 144);
-  EXPECT_EQ(import({"nasty/n04_holes_isolated_vertices.ply"}).count("dropped unused vertices"), 177u);
+  EXPECT_EQ(import({"nasty/n04_holes_isolated_vertices.ply"}).count("dropped unused vertices"),
+            177u);
   const Outcome dragon = import({"dragon_stanford_res4_11k_nonmanifold.ply.gz"});
   EXPECT_EQ(dragon.count("dropped duplicate triangles"), 502u);
   EXPECT_EQ(dragon.count("dropped unused vertices"), 2u);
@@ -336,7 +352,8 @@ TEST_F(MeshScans, the_same_scan_in_several_formats_is_the_same_model) {
     const double cell = std::max(pair.position * 20, 1e-4);
     std::multimap<std::array<long, 3>, std::size_t> grid;
     const auto cell_of = [&](const std::array<double, 5>& key) {
-      return std::array<long, 3>{std::lround(key[0] / cell), std::lround(key[1] / cell), std::lround(key[2] / cell)};
+      return std::array<long, 3>{std::lround(key[0] / cell), std::lround(key[1] / cell),
+                                 std::lround(key[2] / cell)};
     };
     for (std::size_t i = 0; i < of_b.size(); ++i) grid.emplace(cell_of(of_b[i]), i);
     double worst_position = 0, worst_uv = 0;  // of each triangle and its twin
@@ -344,11 +361,12 @@ TEST_F(MeshScans, the_same_scan_in_several_formats_is_the_same_model) {
       double position = 1e300, uv = 1e300;
       const auto at = cell_of(key);
       for (int n = 0; n < 27; ++n) {
-        const auto [begin, end] = grid.equal_range({at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1});
+        const auto [begin, end] =
+            grid.equal_range({at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1});
         for (auto it = begin; it != end; ++it) {
           const auto& other = of_b[it->second];
-          const double far =
-              std::max({std::abs(key[0] - other[0]), std::abs(key[1] - other[1]), std::abs(key[2] - other[2])});
+          const double far = std::max({std::abs(key[0] - other[0]), std::abs(key[1] - other[1]),
+                                       std::abs(key[2] - other[2])});
           const double apart = std::max(std::abs(key[3] - other[3]), std::abs(key[4] - other[4]));
           if (far + apart >= position + uv) continue;
           position = far;
@@ -376,7 +394,8 @@ TEST_F(MeshScans, utm_coordinates_stay_exact_to_the_micrometre) {
   EXPECT_GT(exact[1].get<double>(), 4581234.0);
   for (const char* name : {"nasty/n10c_utm.obj", "nasty/n10d_utm_node_translation.glb"}) {
     const json first = import({name}).told["first"];
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(first[k].get<double>(), exact[k].get<double>(), 1e-6) << name;
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(first[k].get<double>(), exact[k].get<double>(), 1e-6) << name;
   }
 }
 

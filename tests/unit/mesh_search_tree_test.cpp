@@ -24,8 +24,8 @@ std::array<glm::dvec3, 3> corners(const Geometry& geometry, std::size_t triangle
   return {at(0), at(1), at(2)};
 }
 
-// Nearest distance to a triangle by another way than the tree's: the plane if the foot is inside, otherwise the three
-// segments.
+// Nearest distance to a triangle by another way than the tree's: the plane if the foot is inside,
+// otherwise the three segments.
 double oracle_distance(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t) {
   double best = 1e300;
   for (int k = 0; k < 3; ++k) {
@@ -36,15 +36,20 @@ double oracle_distance(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t) 
   const glm::dvec3 n = glm::normalize(glm::cross(t[1] - t[0], t[2] - t[0]));
   const glm::dvec3 foot = p - n * glm::dot(p - t[0], n);
   bool inside = true;
-  for (int k = 0; k < 3; ++k) inside = inside && glm::dot(glm::cross(t[(k + 1) % 3] - t[k], foot - t[k]), n) >= 0;
+  for (int k = 0; k < 3; ++k)
+    inside = inside && glm::dot(glm::cross(t[(k + 1) % 3] - t[k], foot - t[k]), n) >= 0;
   return inside ? std::min(best, std::abs(glm::dot(p - t[0], n))) : best;
 }
 
 // Distance along the ray by Möller and Trumbore, or infinity.
 double oracle_hit(const glm::dvec3& o, const glm::dvec3& d, const std::array<glm::dvec3, 3>& t) {
-  const glm::dvec3 e1 = t[1] - t[0], e2 = t[2] - t[0], p = glm::cross(d, e2), s = o - t[0], q = glm::cross(s, e1);
-  const double det = glm::dot(e1, p), u = glm::dot(s, p) / det, v = glm::dot(d, q) / det, far = glm::dot(e2, q) / det;
-  return u >= -1e-9 && v >= -1e-9 && u + v <= 1 + 1e-9 && far >= 0 ? far : std::numeric_limits<double>::infinity();
+  const glm::dvec3 e1 = t[1] - t[0], e2 = t[2] - t[0], p = glm::cross(d, e2), s = o - t[0],
+                   q = glm::cross(s, e1);
+  const double det = glm::dot(e1, p), u = glm::dot(s, p) / det, v = glm::dot(d, q) / det,
+               far = glm::dot(e2, q) / det;
+  return u >= -1e-9 && v >= -1e-9 && u + v <= 1 + 1e-9 && far >= 0
+             ? far
+             : std::numeric_limits<double>::infinity();
 }
 
 class SearchTreeOracle : public testing::Test {
@@ -54,8 +59,8 @@ class SearchTreeOracle : public testing::Test {
   std::mt19937 random_{11};
   glm::vec3 random_point(float margin) {
     std::uniform_real_distribution<float> unit(-margin, 1 + margin);
-    return geometry_->box_min +
-           (geometry_->box_max - geometry_->box_min) * glm::vec3(unit(random_), unit(random_), unit(random_));
+    return geometry_->box_min + (geometry_->box_max - geometry_->box_min) *
+                                    glm::vec3(unit(random_), unit(random_), unit(random_));
   }
 };
 
@@ -70,10 +75,10 @@ TEST_F(SearchTreeOracle, the_nearest_point_is_the_one_that_every_triangle_agrees
     EXPECT_NEAR(hit->distance, best, 1e-4);
     EXPECT_NEAR(glm::distance(hit->position, p), hit->distance, 1e-4);
     const auto t = corners(*geometry_, hit->triangle);
-    EXPECT_NEAR(
-        glm::distance(glm::dvec3(hit->position), double{hit->barycentric.x} * t[0] + double{hit->barycentric.y} * t[1] +
-                                                     double{hit->barycentric.z} * t[2]),
-        0, 1e-4);
+    EXPECT_NEAR(glm::distance(glm::dvec3(hit->position), double{hit->barycentric.x} * t[0] +
+                                                             double{hit->barycentric.y} * t[1] +
+                                                             double{hit->barycentric.z} * t[2]),
+                0, 1e-4);
     EXPECT_NEAR(hit->barycentric.x + hit->barycentric.y + hit->barycentric.z, 1, 1e-5);
     EXPECT_GE(std::min({hit->barycentric.x, hit->barycentric.y, hit->barycentric.z}), -1e-6f);
     EXPECT_FALSE(tree_.nearest(p, static_cast<float>(best * 0.99)));
@@ -94,8 +99,9 @@ TEST_F(SearchTreeOracle, the_first_hit_of_a_ray_is_the_nearest_of_all_triangles)
     if (!hit) continue;
     ++hits;
     EXPECT_NEAR(hit->distance, best, 1e-3);
-    EXPECT_NEAR(glm::distance(glm::dvec3(hit->position), glm::dvec3(from) + direction * double{hit->distance}), 0,
-                1e-3);
+    EXPECT_NEAR(glm::distance(glm::dvec3(hit->position),
+                              glm::dvec3(from) + direction * double{hit->distance}),
+                0, 1e-3);
   }
   EXPECT_GT(hits, 100);
 }
@@ -146,7 +152,8 @@ TEST(MeshSearchTree, queries_that_mean_nothing_find_nothing) {
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {0, 1, 2};
   const SearchTree tree(geometry_of(mesh));
-  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinity = std::numeric_limits<float>::infinity();
   EXPECT_FALSE(tree.first_hit({0, 0, 1}, {0, 0, 0}));
   EXPECT_FALSE(tree.first_hit({0, nan, 1}, {0, 0, -1}));
   EXPECT_FALSE(tree.first_hit({0, 0, 1}, {0, 0, -infinity}));
@@ -154,7 +161,8 @@ TEST(MeshSearchTree, queries_that_mean_nothing_find_nothing) {
   EXPECT_FALSE(tree.nearest({0, 0, 0}, nan));
   EXPECT_FALSE(tree.nearest({0, 0, 0}, -1));
   EXPECT_TRUE(tree.nearest({0, 0, 0}, infinity));
-  EXPECT_TRUE(tree.nearest({1e30f, 0, 0}, std::numeric_limits<float>::max())) << "its square is no float";
+  EXPECT_TRUE(tree.nearest({1e30f, 0, 0}, std::numeric_limits<float>::max()))
+      << "its square is no float";
   const SearchTree empty(std::make_shared<Geometry>());
   EXPECT_FALSE(empty.nearest({0, 0, 0}, 1e9f));
   EXPECT_FALSE(empty.first_hit({0, 0, 1}, {0, 0, -1}));
@@ -164,7 +172,8 @@ TEST(MeshSearchTree, triangles_that_are_flat_in_float_are_found_without_nan) {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1e-9, 0, 0}, {0, 1e-9, 0}, {1000, 0, 0}, {1000, 1000, 0}};
   mesh.triangles = {0, 1, 2, 0, 3, 4};
-  const SearchTree tree(geometry_of(mesh));  // origin 500 500 0: the first triangle is one point in float
+  // origin 500 500 0: the first triangle is one point in float
+  const SearchTree tree(geometry_of(mesh));
   const auto hit = tree.nearest({-500, -500, 3}, 10);
   ASSERT_TRUE(hit);
   EXPECT_FLOAT_EQ(hit->distance, 3);

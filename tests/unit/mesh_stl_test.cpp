@@ -23,7 +23,8 @@ std::string binary_stl(const std::string& header, std::uint32_t announced, int t
 }
 
 TEST(MeshStl, a_binary_file_is_read_whatever_its_header_begins_with) {
-  for (const std::string header : {"made by a scanner", "solid made by a scanner", "solid facet normal"}) {
+  for (const std::string header :
+       {"made by a scanner", "solid made by a scanner", "solid facet normal"}) {
     const auto loaded = load_text(binary_stl(header, 2, 2), "a.stl");
     ASSERT_TRUE(loaded) << header << loaded.error().detail;
     EXPECT_EQ(loaded->mesh.triangle_count(), 2u);
@@ -43,7 +44,8 @@ TEST(MeshStl, a_text_file_is_read_with_its_polygons_and_names) {
 }
 
 TEST(MeshStl, faults_are_refused_by_name) {
-  std::string other_text = "v 0 0 0\nf 1 1 1\n";  // a binary file would announce 538976288 triangles here
+  // a binary file would announce 538976288 triangles here
+  std::string other_text = "v 0 0 0\nf 1 1 1\n";
   other_text.insert(0, 200, ' ');
   const std::pair<std::string, std::string> bad[] = {
       {binary_stl("scanner", 3, 2), "announces 3 triangles, but has bytes for 2"},
@@ -59,7 +61,8 @@ TEST(MeshStl, faults_are_refused_by_name) {
       {"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "Git LFS"},
       {"PK\3\4" + std::string(200, '\0'), "The file is a zip archive by its content"},
       {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n", "line 4"},
-      {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0", "ends within a facet"},
+      {"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0",
+       "ends within a facet"},
       {"solid a\nfacet\nvertex 0 0 0\nfacet\n", "does not end"},
       {"solid a\nendsolid a\n", "no triangle"}};
   for (const auto& [text, says] : bad) {
@@ -70,7 +73,8 @@ TEST(MeshStl, faults_are_refused_by_name) {
 }
 
 std::string with_ends(std::string text, const std::string& end) {
-  for (std::size_t at = 0; (at = text.find('\n', at)) != text.npos; at += end.size()) text.replace(at, 1, end);
+  for (std::size_t at = 0; (at = text.find('\n', at)) != text.npos; at += end.size())
+    text.replace(at, 1, end);
   return text;
 }
 
@@ -85,7 +89,8 @@ TEST(MeshStl, text_is_known_by_its_words_in_any_case_with_any_ends_of_lines_mark
   std::string commented = "# made by hand, 1 vertex\n// solid\n" + plain;
   for (std::size_t at = 0; (at = commented.find("0\n", at)) != commented.npos; at += 20)
     commented.insert(at + 1, " # vertex 9 9 9");
-  const std::string named = "solid " + std::string(3000, 'x') + plain.substr(5), nameless = "solid" + plain.substr(9);
+  const std::string named = "solid " + std::string(3000, 'x') + plain.substr(5),
+                    nameless = "solid" + plain.substr(9);
   const std::string padded = "solid pot" + std::string(90, '\0') + plain.substr(9);
   const std::string dos = plain + "\x1a";
   std::string utf16 = "\xff\xfe";

@@ -35,8 +35,8 @@ class Oracle {
     for (std::size_t t = 0; t < geometry.triangle_count(); ++t) {
       if (has_texel[t] || area(t) <= 0) continue;
       const glm::dvec2 centre = (uv(t, 0) + uv(t, 1) + uv(t, 2)) / 3.0;
-      const int texel =
-          std::min(int(centre.y), kResolution - 1) * kResolution + std::min(int(centre.x), kResolution - 1);
+      const int texel = std::min(int(centre.y), kResolution - 1) * kResolution +
+                        std::min(int(centre.x), kResolution - 1);
       if (by_coverage[texel] >= 0) continue;
       take(texel, static_cast<int>(t));
     }
@@ -44,7 +44,9 @@ class Oracle {
 
   int owner(int x, int y) const { return inside(x, y) ? owner_[y * kResolution + x] : -1; }
   int owners(int x, int y) const { return covers_[y * kResolution + x]; }
-  static bool inside(int x, int y) { return x >= 0 && y >= 0 && x < kResolution && y < kResolution; }
+  static bool inside(int x, int y) {
+    return x >= 0 && y >= 0 && x < kResolution && y < kResolution;
+  }
 
   // The nearest surface texel within the ring, or (-1, -1).
   glm::ivec2 gutter_owner(int x, int y) const {
@@ -52,7 +54,8 @@ class Oracle {
     int least = 100;
     for (int dy = -2; dy <= 2; ++dy)
       for (int dx = -2; dx <= 2; ++dx)
-        if (owner(x + dx, y + dy) >= 0 && dx * dx + dy * dy < least) least = dx * dx + dy * dy, best = {x + dx, y + dy};
+        if (owner(x + dx, y + dy) >= 0 && dx * dx + dy * dy < least)
+          least = dx * dx + dy * dy, best = {x + dx, y + dy};
     return best;
   }
 
@@ -73,7 +76,8 @@ class Oracle {
     const glm::dvec2 a = uv(t, 0), b = uv(t, 1), c = uv(t, 2), p(x, y);
     const auto cross = [](glm::dvec2 u, glm::dvec2 v) { return u.x * v.y - u.y * v.x; };
     const double whole = cross(b - a, c - a);
-    glm::dvec3 weights(cross(b - p, c - p) / whole, cross(c - p, a - p) / whole, cross(a - p, b - p) / whole);
+    glm::dvec3 weights(cross(b - p, c - p) / whole, cross(c - p, a - p) / whole,
+                       cross(a - p, b - p) / whole);
     weights = glm::max(weights, glm::dvec3(0));
     weights /= weights.x + weights.y + weights.z;
     return weights.x * corner(t, 0) + weights.y * corner(t, 1) + weights.z * corner(t, 2);
@@ -83,7 +87,8 @@ class Oracle {
     return std::abs(e.x * f.y - e.y * f.x) < 1e-6;
   }
 
-  // Surface area of triangle t over the square of one texel, by clipping the polygon at its four sides.
+  // Surface area of triangle t over the square of one texel, by clipping the polygon at its four
+  // sides.
   double piece(std::size_t t, int x, int y) const {
     std::vector<glm::dvec2> polygon{uv(t, 0), uv(t, 1), uv(t, 2)};
     const auto size = [](const std::vector<glm::dvec2>& p) {
@@ -170,7 +175,9 @@ std::uint64_t packed_at(const SurfaceMap& map, int x, int y) {
   const auto [slot, index] = texel_at(map, x, y);
   return slot == kNoSlot ? kNoPosition : map.packed_position[std::size_t{slot} * 64 + index];
 }
-double area_sum(const SurfaceMap& map) { return std::accumulate(map.area.begin(), map.area.end(), 0.0); }
+double area_sum(const SurfaceMap& map) {
+  return std::accumulate(map.area.begin(), map.area.end(), 0.0);
+}
 
 struct Case {
   std::string name;
@@ -203,7 +210,8 @@ class EveryGeometry : public testing::TestWithParam<Case> {
 INSTANTIATE_TEST_SUITE_P(mesh_surface_map, EveryGeometry, testing::ValuesIn(cases()),
                          [](const auto& instance) { return instance.param.name; });
 
-TEST_P(EveryGeometry, owns_exactly_the_texels_that_opengl_covers_and_those_of_triangles_between_centres) {
+TEST_P(EveryGeometry,
+       owns_exactly_the_texels_that_opengl_covers_and_those_of_triangles_between_centres) {
   const Oracle oracle(geometry());
   const SurfaceMap map = bake(geometry());
   std::uint64_t surface = 0, shared = 0;
@@ -226,8 +234,10 @@ TEST_P(EveryGeometry, places_surface_texels_on_their_triangle) {
       const int t = oracle.owner(x, y);
       if (t < 0 || oracle.is_line(t)) continue;
       const auto [slot, index] = texel_at(map, x, y);
-      const glm::dvec3 difference = glm::dvec3(map.position(slot, index)) - oracle.position(t, x + 0.5, y + 0.5);
-      // A texel whose position is borrowed by another block's gutter lies on that block's grid, at most 2^-20 of the model.
+      const glm::dvec3 difference =
+          glm::dvec3(map.position(slot, index)) - oracle.position(t, x + 0.5, y + 0.5);
+      // A texel whose position is borrowed by another block's gutter lies on that block's grid, at
+      // most 2^-20 of the model.
       ASSERT_LT(glm::length(difference), 2e-6 * size) << x << " " << y;
     }
 }
@@ -247,7 +257,8 @@ TEST_P(EveryGeometry, gives_gutter_texels_the_position_of_the_nearest_surface_te
       ++gutter;
       const auto [slot, index] = texel_at(map, x, y);
       const auto [owner_slot, owner_index] = texel_at(map, nearest.x, nearest.y);
-      ASSERT_EQ(map.position(slot, index), map.position(owner_slot, owner_index)) << x << " " << y;  // to the last bit
+      // to the last bit
+      ASSERT_EQ(map.position(slot, index), map.position(owner_slot, owner_index)) << x << " " << y;
       ASSERT_EQ(map.area[std::size_t{slot} * 64 + index], 0);
     }
   EXPECT_EQ(map.gutter_texels, gutter);
@@ -298,7 +309,8 @@ TEST_P(EveryGeometry, credits_each_piece_to_the_texel_it_lies_on_inside_an_islan
       if (!is_deep) continue;
       ++compared;
       const auto [slot, index] = texel_at(map, x, y);
-      ASSERT_NEAR(map.area[std::size_t{slot} * 64 + index], expected[y * kResolution + x], 1e-4 * mean)
+      ASSERT_NEAR(map.area[std::size_t{slot} * 64 + index], expected[y * kResolution + x],
+                  1e-4 * mean)
           << x << " " << y;
     }
   if (GetParam().name != "slivers" && GetParam().name != "separate_triangles") {
@@ -351,8 +363,9 @@ TEST_P(EveryGeometry, bounds_contain_the_positions_of_surface_and_gutter) {
       const glm::vec3 position = map.position(slot, i);
       ASSERT_TRUE(holds(map.bounds_of_slot[slot], position));
       ASSERT_TRUE(holds(map.bounds_of_tile[tile], position));
-      const auto part = std::ranges::find_if(parts_of_slot[slot],
-                                             [&](std::uint32_t p) { return holds(map.tree.levels[0][p], position); });
+      const auto part = std::ranges::find_if(parts_of_slot[slot], [&](std::uint32_t p) {
+        return holds(map.tree.levels[0][p], position);
+      });
       ASSERT_NE(part, parts_of_slot[slot].end());
       std::size_t node = *part;
       for (const auto& level : map.tree.levels) {
@@ -369,14 +382,16 @@ TEST_P(EveryGeometry, tiles_show_what_the_slots_hold) {
   const SurfaceMap map = bake(geometry());
   for (int y = 0; y < kResolution; ++y)
     for (int x = 0; x < kResolution; ++x) {
-      const TileAddress tile{static_cast<std::uint16_t>(x / 128), static_cast<std::uint16_t>(y / 128)};
+      const TileAddress tile{static_cast<std::uint16_t>(x / 128),
+                             static_cast<std::uint16_t>(y / 128)};
       const int texel = y % 128 * 128 + x % 128;
       static thread_local TileMask owned, surface;
       if (texel % 128 == 0) owned = map.owned_in_tile(tile), surface = map.surface_in_tile(tile);
       ASSERT_EQ(owned.test(texel), packed_at(map, x, y) != kNoPosition);
       ASSERT_EQ(surface.test(texel), is_surface(map, x, y));
       const auto [slot, index] = texel_at(map, x, y);
-      ASSERT_EQ(map.area_of(tile, texel), slot == kNoSlot ? 0 : map.area[std::size_t{slot} * 64 + index]);
+      ASSERT_EQ(map.area_of(tile, texel),
+                slot == kNoSlot ? 0 : map.area[std::size_t{slot} * 64 + index]);
     }
 }
 
@@ -398,7 +413,8 @@ TEST_P(EveryGeometry, gutter_texels_get_the_bits_of_the_surface_texels_that_they
       if (is_surface(map, x, y)) {
         expected = (given[slot] >> index) & 1u;
       } else if (packed_at(map, x, y) != kNoPosition) {
-        // Ties are the bake's business: any of the nearest has the position that the gutter texel shows.
+        // Ties are the bake's business: any of the nearest has the position that the gutter texel
+        // shows.
         const auto position = map.position(slot, index);
         for (const TexelOffset o : kGutterRingOffsets) {
           const int ox = x + o.x, oy = y + o.y;
@@ -419,12 +435,13 @@ Geometry overlapping_squares() {
   Atlas atlas;
   for (const double size : {1.0, 2.0}) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-    for (const auto& p :
-         {glm::dvec3(0, 0, size), glm::dvec3(size, 0, size), glm::dvec3(size, size, size), glm::dvec3(0, size, size)})
+    for (const auto& p : {glm::dvec3(0, 0, size), glm::dvec3(size, 0, size),
+                          glm::dvec3(size, size, size), glm::dvec3(0, size, size)})
       mesh.positions.push_back(p);
     for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) {
       mesh.triangles.push_back(first + k);
-      atlas.corner_uvs.push_back(glm::vec2(0.25f) + 0.5f * glm::vec2(mesh.positions[first + k]) / float(size));
+      atlas.corner_uvs.push_back(glm::vec2(0.25f) +
+                                 0.5f * glm::vec2(mesh.positions[first + k]) / float(size));
     }
   }
   return build_geometry(mesh, atlas);
@@ -466,7 +483,8 @@ TEST(mesh_surface_map, refuses_resolutions_that_are_no_whole_tiles) {
 TEST(mesh_surface_map, of_real_scans_credits_their_whole_area_at_every_resolution) {
   const std::filesystem::path data = STRATA_TEST_DATA;
   int found = 0;
-  for (const char* name : {"statue_nefertiti_70k.ply", "mask_bali/mask.obj", "vessel_jug_seavase_35k.ply"}) {
+  for (const char* name :
+       {"statue_nefertiti_70k.ply", "mask_bali/mask.obj", "vessel_jug_seavase_35k.ply"}) {
     if (!std::filesystem::exists(data / name)) continue;
     ++found;
     Progress progress;

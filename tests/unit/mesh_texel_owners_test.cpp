@@ -30,7 +30,8 @@ std::vector<Painted> all_classes() {
     auto map = bake_surface_map(*geometry, kResolution, progress);
     auto owners = bake_texel_owners(*geometry, kResolution, progress);
     EXPECT_TRUE(map && owners) << name;
-    if (map && owners) all.push_back({name, std::move(geometry), std::move(*map), std::move(*owners)});
+    if (map && owners)
+      all.push_back({name, std::move(geometry), std::move(*map), std::move(*owners)});
   }
   return all;
 }
@@ -38,7 +39,8 @@ std::vector<Painted> all_classes() {
 glm::vec3 point_of(const Geometry& geometry, std::uint32_t triangle, const glm::vec3& weights) {
   glm::vec3 point(0);
   for (int k = 0; k < 3; ++k)
-    point += weights[k] * geometry.vertices[geometry.indices[3 * std::size_t{triangle} + k]].position;
+    point +=
+        weights[k] * geometry.vertices[geometry.indices[3 * std::size_t{triangle} + k]].position;
   return point;
 }
 
@@ -53,7 +55,8 @@ TEST(TexelOwners, are_those_texels_and_places_that_the_surface_map_has) {
         const int i = std::countr_zero(left);
         const std::size_t texel = std::size_t{slot} * 64 + i;
         ASSERT_LT(owners.triangle[texel], geometry->triangle_count()) << name;
-        const glm::vec3 there = point_of(*geometry, owners.triangle[texel], owners.weights_of(texel));
+        const glm::vec3 there =
+            point_of(*geometry, owners.triangle[texel], owners.weights_of(texel));
         ASSERT_LT(glm::distance(there, map.position(slot, i)), 5e-5f * diagonal) << name;
       }
   }
@@ -73,11 +76,13 @@ TEST(TexelOwners, paint_every_surface_texel_once_and_the_gutter_like_its_owner) 
     ASSERT_TRUE(tiles) << name;
     std::uint64_t painted = 0, expected = 0;
     for (const auto& [address, tile] : *tiles) painted += tile->valid.count();
-    const auto value_of = [&, &the_tiles = *tiles, &the_map = map](std::size_t texel) -> std::optional<float> {
+    const auto value_of = [&, &the_tiles = *tiles,
+                           &the_map = map](std::size_t texel) -> std::optional<float> {
       const auto block = the_map.block_of_slot[texel / 64];
       const int x = int(block % the_map.blocks_per_side) * 8 + int(texel % 8),
                 y = int(block / the_map.blocks_per_side) * 8 + int(texel % 64 / 8);
-      const auto tile = the_tiles.find({std::uint16_t(x / kTileSize), std::uint16_t(y / kTileSize)});
+      const auto tile =
+          the_tiles.find({std::uint16_t(x / kTileSize), std::uint16_t(y / kTileSize)});
       const int in_tile = y % kTileSize * kTileSize + x % kTileSize;
       if (tile == the_tiles.end() || !tile->second->valid.test(in_tile)) return std::nullopt;
       return std::bit_cast<float>(tile->second->bits(in_tile));

@@ -20,7 +20,8 @@ std::string png_of(std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
 }
 
 const std::string kRed = png_of(200, 0, 0), kBlue = png_of(0, 0, 200);
-const std::string kVertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.1 0.1\nvt 0.9 0.1\nvt 0.9 0.9\nvt 0.1 0.9\n";
+const std::string kVertices =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.1 0.1\nvt 0.9 0.1\nvt 0.9 0.9\nvt 0.1 0.9\n";
 const std::string kTwoFaces = "usemtl left\nf 1/1 2/2 3/3\nusemtl right side\nf 1/1 3/3 4/4\n";
 
 std::vector<mesh::MtlMaterial> parse(const std::string& text) {
@@ -44,12 +45,12 @@ TEST(Mtl, colours_options_and_names_with_blanks_are_read) {
 }
 
 TEST(ObjMaterials, each_triangle_knows_its_texture_wherever_that_lay_on_another_machine) {
-  const auto loaded =
-      load_texts({{"scan/obj/pot.obj", "mtllib my materials.mtl\n" + kVertices + kTwoFaces},
-                  {"scan/obj/My Materials.mtl",
-                   "newmtl left\nmap_Kd C:\\photos\\a\\SKIN.png\nnewmtl right side\nmap_Kd -clamp on ../b/skin.png\n"},
-                  {"scan/b/skin.png", kBlue},
-                  {"scan/a/skin.png", kRed}});
+  const auto loaded = load_texts(
+      {{"scan/obj/pot.obj", "mtllib my materials.mtl\n" + kVertices + kTwoFaces},
+       {"scan/obj/My Materials.mtl",
+        "newmtl left\nmap_Kd C:\\photos\\a\\SKIN.png\nnewmtl right side\nmap_Kd -clamp on ../b/skin.png\n"},
+       {"scan/b/skin.png", kBlue},
+       {"scan/a/skin.png", kRed}});
   ASSERT_TRUE(loaded) << loaded.error().detail;
   const auto& mesh = loaded->mesh;
   EXPECT_TRUE(loaded->repairs.empty());
@@ -61,22 +62,25 @@ TEST(ObjMaterials, each_triangle_knows_its_texture_wherever_that_lay_on_another_
 }
 
 TEST(ObjMaterials, pictures_that_are_missing_or_no_pictures_are_named) {
-  const auto loaded = load_texts({{"pot.obj", kVertices + kTwoFaces},
-                                  {"pot.mtl", "newmtl left\nmap_Kd lost.jpg\nnewmtl right side\nmap_Kd text.png\n"},
-                                  {"text.png", "not a picture"}});
+  const auto loaded =
+      load_texts({{"pot.obj", kVertices + kTwoFaces},
+                  {"pot.mtl", "newmtl left\nmap_Kd lost.jpg\nnewmtl right side\nmap_Kd text.png\n"},
+                  {"text.png", "not a picture"}});
   ASSERT_TRUE(loaded) << loaded.error().detail;
   EXPECT_TRUE(loaded->mesh.textures.empty());
   EXPECT_EQ(count_of(loaded->repairs, "texture not among the files: lost.jpg"), 1u);
   ASSERT_EQ(loaded->repairs.size(), 2u);
-  EXPECT_THAT(loaded->repairs[1].what,
-              HasSubstr("texture not read: text.png: The picture is none of JPEG, PNG, TIFF, WebP, BMP and TGA"));
+  EXPECT_THAT(
+      loaded->repairs[1].what,
+      HasSubstr(
+          "texture not read: text.png: The picture is none of JPEG, PNG, TIFF, WebP, BMP and TGA"));
 }
 
 TEST(ObjMaterials, names_in_another_encoding_are_found_and_told_as_utf8) {
-  const auto loaded =
-      load_texts({{"pot.obj", kVertices + kTwoFaces},
-                  {"pot.mtl", "newmtl left\nmap_Kd Gr\xfcn.png\nnewmtl right side\nmap_Kd Wei\xdf.png\n"},
-                  {"Gr\ufffdn.png", kBlue}});  // as it came through a form
+  const auto loaded = load_texts(
+      {{"pot.obj", kVertices + kTwoFaces},
+       {"pot.mtl", "newmtl left\nmap_Kd Gr\xfcn.png\nnewmtl right side\nmap_Kd Wei\xdf.png\n"},
+       {"Gr\ufffdn.png", kBlue}});  // as it came through a form
   ASSERT_TRUE(loaded) << loaded.error().detail;
   ASSERT_EQ(loaded->mesh.textures.size(), 1u);
   EXPECT_EQ(loaded->mesh.textures[0].name, "Gr\ufffdn.png");
@@ -88,7 +92,8 @@ TEST(ObjMaterials, the_only_picture_is_taken_where_nothing_names_one) {
   ASSERT_TRUE(loaded);
   ASSERT_EQ(loaded->mesh.textures.size(), 1u);
   EXPECT_EQ(loaded->mesh.triangle_materials, (std::vector<std::uint16_t>{0}));
-  EXPECT_EQ(count_of(loaded->repairs, "texture taken because it is the only picture: photo.png"), 1u);
+  EXPECT_EQ(count_of(loaded->repairs, "texture taken because it is the only picture: photo.png"),
+            1u);
 }
 
 TEST(ObjMaterials, udim_tiles_are_found_by_where_triangles_lie) {
@@ -122,14 +127,14 @@ TEST(PlyMaterials, faces_choose_among_the_named_files_by_texnumber) {
 }
 
 TEST(Archive, a_zip_of_a_scan_is_read_with_its_textures) {
-  const auto loaded =
-      load_texts({{"pot.ZIP", test::zip_of({{"__MACOSX/pot/._pot.obj", "v"},
-                                            {"pot/readme.txt", "hello"},
-                                            {"pot/", ""},
-                                            {"pot/.hidden.ply", "x"},
-                                            {"../../pot/pot.obj", "mtllib pot.mtl\n" + kVertices + kTwoFaces},
-                                            {"pot/pot.mtl", "newmtl left\nmap_Kd a/skin.png\n"},
-                                            {"pot/a/skin.png", kRed}})}});
+  const auto loaded = load_texts(
+      {{"pot.ZIP", test::zip_of({{"__MACOSX/pot/._pot.obj", "v"},
+                                 {"pot/readme.txt", "hello"},
+                                 {"pot/", ""},
+                                 {"pot/.hidden.ply", "x"},
+                                 {"../../pot/pot.obj", "mtllib pot.mtl\n" + kVertices + kTwoFaces},
+                                 {"pot/pot.mtl", "newmtl left\nmap_Kd a/skin.png\n"},
+                                 {"pot/a/skin.png", kRed}})}});
   ASSERT_TRUE(loaded) << loaded.error().detail;
   EXPECT_EQ(loaded->mesh.triangle_count(), 2u);
   EXPECT_EQ(loaded->mesh.textures.size(), 1u);

@@ -97,7 +97,8 @@ TEST(mesh_uv_check, refuses_surface_without_area_in_the_texture) {
   EXPECT_THAT(atlas.error().detail, HasSubstr("have no area in the texture"));
 }
 
-// What a faulty face leads to: it alone is moved, at half the size of the rest or more, and all the others stay where they are.
+// What a faulty face leads to: it alone is moved, at half the size of the rest or more, and all the
+// others stay where they are.
 void expect_one_moved(const TriangleMesh& mesh, std::uint32_t face, const std::string& why) {
   const auto atlas = keep(mesh, 1024);
   ASSERT_TRUE(atlas) << atlas.error().detail;
@@ -127,7 +128,8 @@ TEST(mesh_uv_check, one_faulty_face_is_moved_and_the_rest_stays) {
   };
   expect_one_moved(with({{kNone, 0}, {kNone, kNone}, {0, 0}}, 4), 4, "are not finite numbers");
   expect_one_moved(with({{0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}}, 11), 11, "have no area");
-  expect_one_moved(with({{1.5f, 0.5f}, {1.8f, 0.5f}, {1.8f, 0.8f}}, 0), 0, "lie outside the unit square");
+  expect_one_moved(with({{1.5f, 0.5f}, {1.8f, 0.5f}, {1.8f, 0.8f}}, 0), 0,
+                   "lie outside the unit square");
   // Over nearly all others, and the first of the file.
   expect_one_moved(with({{0, 0}, {1, 0}, {0.5f, 1}}, 0), 0, "overlap others");
 }
@@ -136,7 +138,8 @@ TEST(mesh_uv_check, where_no_texel_is_free_the_rest_makes_room) {
   auto grid = test::open_grid(16);
   for (auto& uv : grid.corner_uvs) uv = (uv - 0.05f) / 0.9f;  // all of the square
   grid.positions.push_back({0.03, 0.03, 0.2});
-  grid.triangles.insert(grid.triangles.end(), {0, 1, static_cast<std::uint32_t>(grid.positions.size()) - 1});
+  grid.triangles.insert(grid.triangles.end(),
+                        {0, 1, static_cast<std::uint32_t>(grid.positions.size()) - 1});
   grid.corner_uvs.insert(grid.corner_uvs.end(), 3, glm::vec2(2));
   const auto atlas = keep(grid, 1024);
   ASSERT_TRUE(atlas) << atlas.error().detail;
@@ -151,7 +154,8 @@ TEST(mesh_uv_check, where_no_texel_is_free_the_rest_makes_room) {
 TEST(mesh_uv_check, a_fault_of_a_face_without_surface_costs_nothing) {
   auto cube = test::cube_with_face_charts();
   cube.triangles.insert(cube.triangles.end(), {0, 1, 1});
-  cube.corner_uvs.insert(cube.corner_uvs.end(), 3, glm::vec2(std::numeric_limits<float>::infinity()));
+  cube.corner_uvs.insert(cube.corner_uvs.end(), 3,
+                         glm::vec2(std::numeric_limits<float>::infinity()));
   const auto atlas = keep(cube);
   ASSERT_TRUE(atlas) << atlas.error().detail;
   EXPECT_TRUE(atlas->moved.empty());
@@ -176,7 +180,8 @@ class ScanUvs : public testing::Test {
     return keep_uvs(scan->mesh, 2048, progress);
   }
   void SetUp() override {
-    if (!std::filesystem::exists(STRATA_TEST_DATA)) GTEST_SKIP() << "no scans at " << STRATA_TEST_DATA;
+    if (!std::filesystem::exists(STRATA_TEST_DATA))
+      GTEST_SKIP() << "no scans at " << STRATA_TEST_DATA;
   }
 };
 
@@ -189,8 +194,8 @@ TEST_F(ScanUvs, of_the_mask_are_kept_and_their_overlap_is_reported) {
 }
 
 TEST_F(ScanUvs, that_are_mirrored_tiled_or_spread_over_tiles_are_refused) {
-  for (const char* name :
-       {"nasty/n06_uv_mirrored_overlap.obj", "nasty/n07_uv_tiling_outside.obj", "nasty/n08_udim_4tiles_4materials.obj"})
+  for (const char* name : {"nasty/n06_uv_mirrored_overlap.obj", "nasty/n07_uv_tiling_outside.obj",
+                           "nasty/n08_udim_4tiles_4materials.obj"})
     EXPECT_FALSE(keep_of(name).has_value()) << name;
 }
 

@@ -45,7 +45,8 @@ Geometry triangle() {
 }
 
 TEST(VertexProperties, are_named_without_what_a_mesh_knows_itself) {
-  EXPECT_THAT(vertex_property_names(bytes_of(scan(Encoding::little))), ElementsAre("quality", "confidence"));
+  EXPECT_THAT(vertex_property_names(bytes_of(scan(Encoding::little))),
+              ElementsAre("quality", "confidence"));
   EXPECT_TRUE(vertex_property_names(bytes_of("solid none")).empty());
   EXPECT_TRUE(vertex_property_names({}).empty());
 }
@@ -68,7 +69,8 @@ TEST(VertexProperties, of_a_file_that_ends_early_or_has_none_such_are_refused) {
       if (cut) continue;  // what is cut off comes after the vertices
       EXPECT_EQ(cut.error().status, 422);
     }
-    EXPECT_FALSE(read_vertex_property(bytes_of(whole.substr(0, whole.size() / 2 + 120)), "quality"));
+    EXPECT_FALSE(
+        read_vertex_property(bytes_of(whole.substr(0, whole.size() / 2 + 120)), "quality"));
     EXPECT_EQ(read_vertex_property(bytes_of(whole), "tags").error().field, "compute.property");
     EXPECT_EQ(read_vertex_property(bytes_of(whole), "beauty").error().field, "compute.property");
   }
@@ -95,12 +97,15 @@ TEST(VertexProperties, land_on_the_welded_positions_as_mean_or_as_first_key) {
 TEST(VertexProperties, are_mixed_in_a_triangle_but_keys_are_not) {
   const Geometry geometry = triangle();
   std::vector<double> values(3, std::nan(""));
-  const auto corner = [&](int k) -> double& { return values[geometry.vertices[geometry.indices[k]].position_index]; };
+  const auto corner = [&](int k) -> double& {
+    return values[geometry.vertices[geometry.indices[k]].position_index];
+  };
   corner(0) = 10;
   corner(1) = 20;
   EXPECT_NEAR(value_in_triangle(geometry, values, 0, {0.25f, 0.75f, 0}, false), 17.5, 1e-9);
   EXPECT_EQ(value_in_triangle(geometry, values, 0, {0.25f, 0.75f, 0}, true), 20);
-  EXPECT_NEAR(value_in_triangle(geometry, values, 0, {0.25f, 0.25f, 0.5f}, false), 15, 1e-9);  // a corner without one
+  // a corner without one
+  EXPECT_NEAR(value_in_triangle(geometry, values, 0, {0.25f, 0.25f, 0.5f}, false), 15, 1e-9);
   corner(0) = corner(1) = std::nan("");
   EXPECT_TRUE(std::isnan(value_in_triangle(geometry, values, 0, {0.25f, 0.75f, 0}, true)));
 }
@@ -108,19 +113,23 @@ TEST(VertexProperties, are_mixed_in_a_triangle_but_keys_are_not) {
 TEST(VertexProperties, come_from_a_csv_of_one_column_in_the_order_of_the_file) {
   Progress progress;
   const std::string obj = "v 0 0 0\nv 4 0 0\nv 0 5 0\nf 1 2 3\n";
-  const auto read = [&](const std::string& csv) { return read_vertex_csv(bytes_of(obj), "scan.OBJ", csv, progress); };
+  const auto read = [&](const std::string& csv) {
+    return read_vertex_csv(bytes_of(obj), "scan.OBJ", csv, progress);
+  };
   const auto good = read("moisture\r\n 1.5\r\n\n-3e2\n\n");
   ASSERT_TRUE(good) << good.error().detail;
   EXPECT_EQ(good->values[0], 1.5);
   EXPECT_TRUE(std::isnan(good->values[1]));
   EXPECT_EQ(good->values[2], -300);
   EXPECT_EQ(good->positions[1], glm::dvec3(4, 0, 0));
-  for (const char* bad : {"", "1\n2\n", "1\n2\n3\n4\n", "1\nx\n3\n", "1\ninf\n3\n", "1,2\n3,4\n5,6\n7,8\n"}) {
+  for (const char* bad :
+       {"", "1\n2\n", "1\n2\n3\n4\n", "1\nx\n3\n", "1\ninf\n3\n", "1,2\n3,4\n5,6\n7,8\n"}) {
     const auto refused = read(bad);
     ASSERT_FALSE(refused) << bad;
     EXPECT_EQ(refused.error().field, "body") << bad;
   }
-  EXPECT_EQ(read_vertex_csv(bytes_of("solid"), "scan.stl", "1\n", progress).error().field, "source");
+  EXPECT_EQ(read_vertex_csv(bytes_of("solid"), "scan.stl", "1\n", progress).error().field,
+            "source");
 }
 
 }  // namespace

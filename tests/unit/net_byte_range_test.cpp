@@ -32,8 +32,9 @@ TEST(ByteRange, what_lies_behind_the_end_is_not_there) {
 }
 
 TEST(ByteRange, what_is_not_understood_is_passed_over) {
-  for (const char* header : {"", "bytes", "bytes=", "bytes=-", "bytes=a-b", "bytes=5-1", "bytes=0-1,5-6", "lines=1-2",
-                             "bytes=1-2-3", "bytes= 1-2", "bytes=0x1-2", "bytes=--5"})
+  for (const char* header :
+       {"", "bytes", "bytes=", "bytes=-", "bytes=a-b", "bytes=5-1", "bytes=0-1,5-6", "lines=1-2",
+        "bytes=1-2-3", "bytes= 1-2", "bytes=0x1-2", "bytes=--5"})
     EXPECT_EQ(asked(header), "all") << header;
 }
 

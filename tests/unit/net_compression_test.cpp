@@ -16,7 +16,8 @@ std::string decoded(const std::vector<std::uint8_t>& bytes, std::string_view cod
   std::string text(4 << 20, 0);
   if (coding == "br") {
     std::size_t size = text.size();
-    EXPECT_EQ(BrotliDecoderDecompress(bytes.size(), bytes.data(), &size, reinterpret_cast<std::uint8_t*>(text.data())),
+    EXPECT_EQ(BrotliDecoderDecompress(bytes.size(), bytes.data(), &size,
+                                      reinterpret_cast<std::uint8_t*>(text.data())),
               BROTLI_DECODER_RESULT_SUCCESS);
     text.resize(size);
     return text;
@@ -35,7 +36,8 @@ std::string decoded(const std::vector<std::uint8_t>& bytes, std::string_view cod
 
 std::string table_of(int rows) {
   std::string text = "key,name\r\n";
-  for (int i = 0; i < rows; ++i) text += std::to_string(i * 7919 % 1000) + ",record " + std::to_string(i) + "\r\n";
+  for (int i = 0; i < rows; ++i)
+    text += std::to_string(i * 7919 % 1000) + ",record " + std::to_string(i) + "\r\n";
   return text;
 }
 
@@ -52,8 +54,8 @@ TEST(Compression, takes_the_best_coding_that_the_client_takes) {
   EXPECT_EQ(coding_of("br ; q=1.0 , gzip;q=0.8"), "br");
   EXPECT_EQ(coding_of("*"), "br");
   EXPECT_EQ(coding_of("*;q=0.1, br;q=0"), "gzip");
-  for (const char* none :
-       {"", "identity", "deflate", "br;q=0, gzip;q=0", "*;q=0", "gzip;q=", "gzip;q=x", ";;;,,,", "gzipx"})
+  for (const char* none : {"", "identity", "deflate", "br;q=0, gzip;q=0", "*;q=0",
+                           "gzip;q=", "gzip;q=x", ";;;,,,", "gzipx"})
     EXPECT_EQ(coding_of(none), "none") << none;
 }
 
@@ -76,15 +78,15 @@ TEST(Compression, a_stream_is_coded_piece_by_piece_and_loses_its_length) {
   for (const char* coding : {"gzip", "br"}) {
     const std::string text = table_of(30'000);
     Response response = text_response({}, "text/csv");
-    response.stream =
-        Response::Stream{text.size(), [&](const Response::Sink& sink) {
-                           for (std::size_t at = 0; at < text.size(); at += 777) {
-                             const auto piece = std::string_view(text).substr(at, 777);
-                             if (!sink({reinterpret_cast<const std::uint8_t*>(piece.data()), piece.size()}))
-                               return false;
-                           }
-                           return true;
-                         }};
+    response.stream = Response::Stream{
+        text.size(), [&](const Response::Sink& sink) {
+          for (std::size_t at = 0; at < text.size(); at += 777) {
+            const auto piece = std::string_view(text).substr(at, 777);
+            if (!sink({reinterpret_cast<const std::uint8_t*>(piece.data()), piece.size()}))
+              return false;
+          }
+          return true;
+        }};
     compress(response, coding);
     ASSERT_TRUE(response.stream);
     EXPECT_FALSE(response.stream->length);
@@ -94,7 +96,8 @@ TEST(Compression, a_stream_is_coded_piece_by_piece_and_loses_its_length) {
       return true;
     }));
     EXPECT_EQ(decoded(sent, coding), text);
-    EXPECT_FALSE(response.stream->write([](std::span<const std::uint8_t>) { return false; })) << "the client is gone";
+    EXPECT_FALSE(response.stream->write([](std::span<const std::uint8_t>) { return false; }))
+        << "the client is gone";
   }
 }
 
@@ -102,16 +105,19 @@ TEST(Compression, what_is_small_or_no_text_or_partial_or_secret_stays_as_it_is) 
   const auto untouched = [](Response response) {
     const Response before = response;
     compress(response, "br, gzip");
-    return response.header("Content-Encoding") == before.header("Content-Encoding") && response.body == before.body &&
-           response.bytes == before.bytes;
+    return response.header("Content-Encoding") == before.header("Content-Encoding") &&
+           response.body == before.body && response.bytes == before.bytes;
   };
   EXPECT_TRUE(untouched(text_response("{}", "application/json")));
   EXPECT_TRUE(untouched(bytes_response(std::vector<std::uint8_t>(5000, 7), "image/png")));
-  EXPECT_TRUE(untouched(bytes_response(std::vector<std::uint8_t>(5000, 7), "application/octet-stream")));
+  EXPECT_TRUE(
+      untouched(bytes_response(std::vector<std::uint8_t>(5000, 7), "application/octet-stream")));
   EXPECT_TRUE(untouched(text_response(table_of(500), "text/csv").with("Accept-Ranges", "bytes")));
-  EXPECT_TRUE(untouched(text_response(table_of(500), "text/csv").with("Content-Range", "bytes 0-9/10")));
+  EXPECT_TRUE(
+      untouched(text_response(table_of(500), "text/csv").with("Content-Range", "bytes 0-9/10")));
   EXPECT_TRUE(untouched(text_response(table_of(500), "text/csv").with("Content-Encoding", "gzip")));
-  EXPECT_TRUE(untouched(text_response(table_of(500), "application/json").with("Cache-Control", "no-store")));
+  EXPECT_TRUE(untouched(
+      text_response(table_of(500), "application/json").with("Cache-Control", "no-store")));
   EXPECT_TRUE(untouched(empty_response(304)));
 }
 

@@ -11,17 +11,21 @@ using Record = EditorBook::Record;
 
 struct Editors : testing::Test {
   // What somebody who hears all of it knows: by project and record, who is there.
-  const EditorBook::Tell tell = [this](std::int64_t project, const std::vector<EditorBook::Entry>& entries) {
+  const EditorBook::Tell tell = [this](std::int64_t project,
+                                       const std::vector<EditorBook::Entry>& entries) {
     ++told;
     for (const auto& [record, editor] : entries) {
       known.erase({project, record});
       if (editor) known[{project, record}] = editor->user;
     }
   };
-  bool begin(const Record& record, const EditorBook::Editor& editor, bool take_over = false, std::int64_t project = 1) {
+  bool begin(const Record& record, const EditorBook::Editor& editor, bool take_over = false,
+             std::int64_t project = 1) {
     return book.begin(project, record, editor, take_over, tell).has_value();
   }
-  std::string at(const Record& record, std::int64_t project = 1) { return known[{project, record}]; }
+  std::string at(const Record& record, std::int64_t project = 1) {
+    return known[{project, record}];
+  }
 
   EditorBook book;
   std::map<std::pair<std::int64_t, Record>, std::string> known;

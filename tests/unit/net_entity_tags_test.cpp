@@ -6,7 +6,8 @@
 namespace strata::net {
 namespace {
 
-Request asked(const std::string& target, const std::string& user = "ada", Role role = Role::viewer) {
+Request asked(const std::string& target, const std::string& user = "ada",
+              Role role = Role::viewer) {
   Request request;
   EXPECT_TRUE(parse_target(target, request)) << target;
   request.principal = Principal{.user = user, .role = role};
@@ -14,7 +15,8 @@ Request asked(const std::string& target, const std::string& user = "ada", Role r
 }
 
 TEST(EntityTags, are_named_one_by_one_weakly_or_all_at_once) {
-  for (const char* named : {"\"a\"", "W/\"a\"", "*", "\"x\", \"a\"", "\"x\",W/\"a\" ,\"y\"", " \"a\" "})
+  for (const char* named :
+       {"\"a\"", "W/\"a\"", "*", "\"x\", \"a\"", "\"x\",W/\"a\" ,\"y\"", " \"a\" "})
     EXPECT_TRUE(names_tag(named, "\"a\"")) << named;
   for (const char* named : {"", "a", "\"A\"", "\"ab\"", "\"a", ",", "\"x\", \"y\"", "**"})
     EXPECT_FALSE(names_tag(named, "\"a\"")) << named;
@@ -26,8 +28,9 @@ TEST(EntityTags, of_a_state_are_of_who_asks_for_what_in_which_format) {
   const std::string tag = tag_of_state(asked("/a/b?x=1"), "state");
   EXPECT_EQ(tag, tag_of_state(asked("/a/b?x=1"), "state"));
   EXPECT_EQ(tag.size(), 34u);
-  for (const Request& other : {asked("/a/b?x=2"), asked("/a/b"), asked("/ab?x=1"), asked("/a/b/?x=1"),
-                               asked("/a/b?x=1&y="), asked("/a/b?x=1", "eve"), asked("/a/b?x=1", "ada", Role::curator)})
+  for (const Request& other :
+       {asked("/a/b?x=2"), asked("/a/b"), asked("/ab?x=1"), asked("/a/b/?x=1"),
+        asked("/a/b?x=1&y="), asked("/a/b?x=1", "eve"), asked("/a/b?x=1", "ada", Role::curator)})
     EXPECT_NE(tag, tag_of_state(other, "state")) << other.target;
   Request as_csv = asked("/a/b?x=1");
   as_csv.headers = {{"accept", "text/csv"}};
@@ -43,7 +46,8 @@ TEST(EntityTags, of_a_body_are_of_its_bytes_where_it_may_be_kept) {
   ASSERT_TRUE(tag);
   EXPECT_EQ(tag, tag_of_body(bytes_response({'{', '}'}, "application/json")));
   EXPECT_NE(tag, tag_of_body(text_response("{ }", "application/json")));
-  EXPECT_FALSE(tag_of_body(text_response("{}", "application/json").with("Cache-Control", "no-store")));
+  EXPECT_FALSE(
+      tag_of_body(text_response("{}", "application/json").with("Cache-Control", "no-store")));
   EXPECT_FALSE(tag_of_body(text_response("{}", "application/json").with("ETag", "\"v1\"")));
   EXPECT_FALSE(tag_of_body(empty_response(200)));
   Response stream, file;
@@ -62,12 +66,14 @@ TEST(EntityTags, what_did_not_change_has_no_body_and_says_nothing_of_one) {
   const Response unchanged = not_modified(std::move(response));
   EXPECT_EQ(unchanged.status, 304);
   EXPECT_TRUE(unchanged.body.empty());
-  EXPECT_EQ(unchanged.headers, (Headers{{"ETag", "\"a\""}, {"Strata-Sequence", "7"}, {"Vary", "Accept"}}));
+  EXPECT_EQ(unchanged.headers,
+            (Headers{{"ETag", "\"a\""}, {"Strata-Sequence", "7"}, {"Vary", "Accept"}}));
 }
 
 TEST(EntityTags, a_client_that_knows_a_coding_is_told_the_tag_of_that) {
-  for (const auto& [known, told] : {std::pair("\"a-br\"", "\"a-br\""), std::pair("W/\"a-gzip\"", "\"a-gzip\""),
-                                    std::pair("\"a\", \"a-br\"", "\"a\""), std::pair("*", "\"a\"")}) {
+  for (const auto& [known, told] :
+       {std::pair("\"a-br\"", "\"a-br\""), std::pair("W/\"a-gzip\"", "\"a-gzip\""),
+        std::pair("\"a\", \"a-br\"", "\"a\""), std::pair("*", "\"a\"")}) {
     Request request;
     request.headers = {{"if-none-match", known}};
     forget_codings(request);

@@ -68,8 +68,8 @@ TEST(Target, path_and_query_are_decoded) {
 }
 
 TEST(Target, what_is_not_an_address_is_refused) {
-  for (const char* target :
-       {"", "models", "/a%2", "/a%zz", "/a%00", "/a?b=%", "/a?b=%00", "*", "/a/%ff", "/a?b=%c3", "/a?%80=b"}) {
+  for (const char* target : {"", "models", "/a%2", "/a%zz", "/a%00", "/a?b=%", "/a?b=%00", "*",
+                             "/a/%ff", "/a?b=%c3", "/a?%80=b"}) {
     Request request;
     const auto result = parse_target(target, request);
     ASSERT_FALSE(result) << target;
@@ -161,14 +161,16 @@ Request asking(const std::string& host) {
 
 TEST(Host, is_an_address_or_one_of_the_servers_names) {
   const auto names =
-      own_names("Strata.Local", {"https://museum.example", "http://Find.example:8080/", "https://[2001:db8::7]"});
-  for (const char* host :
-       {"localhost", "localhost:8080", "LOCALHOST:1", "strata.local:8080", "museum.example", "museum.example.",
-        "find.example:99", "127.0.0.1", "192.0.2.7:8080", "[::1]:8080", "[2001:db8::1]"})
+      own_names("Strata.Local",
+                {"https://museum.example", "http://Find.example:8080/", "https://[2001:db8::7]"});
+  for (const char* host : {"localhost", "localhost:8080", "LOCALHOST:1", "strata.local:8080",
+                           "museum.example", "museum.example.", "find.example:99", "127.0.0.1",
+                           "192.0.2.7:8080", "[::1]:8080", "[2001:db8::1]"})
     EXPECT_TRUE(check_host(asking(host), names)) << host;
   for (const char* host :
-       {"evil.example", "evil.example:8080", "museum.example.evil.example", "xmuseum.example", "127.0.0.1.evil.example",
-        "1.2.3", "[::1].evil.example", "[evil.example]", "localhost.evil.example", ":8080", " "}) {
+       {"evil.example", "evil.example:8080", "museum.example.evil.example", "xmuseum.example",
+        "127.0.0.1.evil.example", "1.2.3", "[::1].evil.example", "[evil.example]",
+        "localhost.evil.example", ":8080", " "}) {
     const auto checked = check_host(asking(host), names);
     ASSERT_FALSE(checked) << host;
     EXPECT_EQ(checked.error().status, 421);
@@ -229,8 +231,8 @@ TEST(Accept, takes_a_type_by_its_closest_range) {
 // --- points
 
 TEST(Point, is_read_in_every_spelling) {
-  for (const char* text : {"POINT Z(1 -2.5 3e2)", "POINT Z (1 -2.5 3e2)", "point(1 -2.5 3e2)", "PointZ(1  -2.5\t3e2)",
-                           " POINT Z( +1 -2.5 3e2 ) "}) {
+  for (const char* text : {"POINT Z(1 -2.5 3e2)", "POINT Z (1 -2.5 3e2)", "point(1 -2.5 3e2)",
+                           "PointZ(1  -2.5\t3e2)", " POINT Z( +1 -2.5 3e2 ) "}) {
     const auto point = parse_point(text);
     ASSERT_TRUE(point) << text;
     EXPECT_EQ(*point, glm::dvec3(1, -2.5, 300)) << text;
@@ -238,9 +240,10 @@ TEST(Point, is_read_in_every_spelling) {
 }
 
 TEST(Point, what_is_no_point_is_refused_by_field) {
-  for (const char* text : {"", "POINT", "POINT Z()", "POINT Z(1 2)", "POINT Z(1 2 3 4)", "POINT Z(1,2,3)",
-                           "POINT Z(nan 1 2)", "POINT Z(1 2 inf)", "POINT Z(1 2 1e999)", "POINT Z(1 2 3",
-                           "POINT Z(1 2 3) x", "LINE(1 2 3)", "POINT Z(1 2.3.4)", "POINT M(1 2 3)"}) {
+  for (const char* text :
+       {"", "POINT", "POINT Z()", "POINT Z(1 2)", "POINT Z(1 2 3 4)", "POINT Z(1,2,3)",
+        "POINT Z(nan 1 2)", "POINT Z(1 2 inf)", "POINT Z(1 2 1e999)", "POINT Z(1 2 3",
+        "POINT Z(1 2 3) x", "LINE(1 2 3)", "POINT Z(1 2.3.4)", "POINT M(1 2 3)"}) {
     const auto point = parse_point(text);
     ASSERT_FALSE(point) << text;
     EXPECT_EQ(point.error().field, "coords");
@@ -349,9 +352,10 @@ TEST(StaticFiles, nothing_outside_the_folder_is_served) {
   folder.write(".env", "secret");
   fs::create_symlink(secret, folder.path() / "link.txt");
   const StaticFiles files(folder.path());
-  for (const std::string& target : {std::string("/../") + outside.path().filename().string() + "/secret.txt",
-                                    std::string("/%2e%2e/secret.txt"), std::string("/..%2f..%2fetc%2fpasswd"),
-                                    std::string("/link.txt"), std::string("/.env"), std::string("/a\\..\\b")})
+  for (const std::string& target :
+       {std::string("/../") + outside.path().filename().string() + "/secret.txt",
+        std::string("/%2e%2e/secret.txt"), std::string("/..%2f..%2fetc%2fpasswd"),
+        std::string("/link.txt"), std::string("/.env"), std::string("/a\\..\\b")})
     EXPECT_EQ(files.serve(parsed(target)).status, 404) << target;
 }
 
@@ -381,12 +385,13 @@ TEST(Upload, a_raw_body_is_the_file_itself) {
 TEST(Upload, the_one_file_of_a_form_is_cut_out_bit_for_bit) {
   const Folder folder;
   const std::string content = std::string("ply\r\n--not-the-boundary\r\n\0binary", 32);
-  const auto body =
-      folder.write("1.body",
-                   "--X\r\nContent-Disposition: form-data; name=\"note\"\r\n\r\nhello\r\n"
-                   "--X\r\nContent-Disposition: form-data; name=\"file\"; filename=\"C:\\scans\\pot.ply\"\r\n\r\n" +
-                       content + "\r\n--X--\r\n");
-  const auto upload = take_upload(upload_of(body, "multipart/form-data; boundary=X"), folder.path());
+  const auto body = folder.write(
+      "1.body",
+      "--X\r\nContent-Disposition: form-data; name=\"note\"\r\n\r\nhello\r\n"
+      "--X\r\nContent-Disposition: form-data; name=\"file\"; filename=\"C:\\scans\\pot.ply\"\r\n\r\n" +
+          content + "\r\n--X--\r\n");
+  const auto upload =
+      take_upload(upload_of(body, "multipart/form-data; boundary=X"), folder.path());
   ASSERT_TRUE(upload) << upload.error().detail;
   ASSERT_EQ(upload->size(), 1u);
   EXPECT_EQ(upload->front().filename, "scans/pot.ply");
@@ -396,13 +401,15 @@ TEST(Upload, the_one_file_of_a_form_is_cut_out_bit_for_bit) {
 TEST(Upload, the_files_of_a_scan_come_together_with_their_folders) {
   const Folder folder;
   const auto part = [](const std::string& name, const std::string& content) {
-    return "--X\r\nContent-Disposition: form-data; name=\"f\"; filename=\"" + name + "\"\r\n\r\n" + content + "\r\n";
+    return "--X\r\nContent-Disposition: form-data; name=\"f\"; filename=\"" + name + "\"\r\n\r\n" +
+           content + "\r\n";
   };
   const auto take = [&](const std::string& body) {
-    return take_upload(upload_of(folder.write("1.body", body), "multipart/form-data; boundary=X"), folder.path());
+    return take_upload(upload_of(folder.write("1.body", body), "multipart/form-data; boundary=X"),
+                       folder.path());
   };
-  const auto scan =
-      take(part("scan/a.obj", "v 1") + part("scan/../tex/b.jpg", "") + part("../../c.mtl", "x") + "--X--\r\n");
+  const auto scan = take(part("scan/a.obj", "v 1") + part("scan/../tex/b.jpg", "") +
+                         part("../../c.mtl", "x") + "--X--\r\n");
   ASSERT_TRUE(scan) << scan.error().detail;
   ASSERT_EQ(scan->size(), 3u);
   EXPECT_EQ((*scan)[0].filename, "scan/a.obj");
@@ -417,7 +424,10 @@ TEST(Upload, the_files_of_a_scan_come_together_with_their_folders) {
   std::string many;
   for (std::size_t i = 0; i <= kMostFormFiles; ++i) many += part("f" + std::to_string(i), "x");
   EXPECT_EQ(take(many + "--X--\r\n").error().status, 413);
-  EXPECT_EQ(take("--X\r\nContent-Disposition: form-data; name=\"f\"\r\n\r\nv\r\n--X--\r\n").error().status, 415);
+  EXPECT_EQ(take("--X\r\nContent-Disposition: form-data; name=\"f\"\r\n\r\nv\r\n--X--\r\n")
+                .error()
+                .status,
+            415);
   EXPECT_EQ(files_there(), before) << "what was refused left nothing behind";
 }
 
@@ -431,33 +441,40 @@ TEST(Upload, a_file_is_named_by_its_own_part_alone) {
       for (const auto& file : *files) found.push_back(file.filename);
     return found;
   };
-  const std::string note = "Content-Disposition: form-data; name=\"note\"\r\n", text = "\r\ntext; filename=no.ply\r\n";
-  const std::string file = "content-disposition: form-data ; name=f; FileName = \"a;b.ply\" ; size=3\r\n";
-  EXPECT_THAT(names("--X\r\n" + text + "--X\r\n" + file + text), testing::ElementsAre("a;b.ply")) << "an empty head";
-  EXPECT_THAT(names("--X\r\n" + note + "X-Other: a; filename=\"no.ply\"\r\n" + text), testing::IsEmpty());
-  EXPECT_THAT(names("--X\r\nContent-Disposition: form-data; name=\"a; filename=no.ply\"\r\n" + text),
+  const std::string note = "Content-Disposition: form-data; name=\"note\"\r\n",
+                    text = "\r\ntext; filename=no.ply\r\n";
+  const std::string file =
+      "content-disposition: form-data ; name=f; FileName = \"a;b.ply\" ; size=3\r\n";
+  EXPECT_THAT(names("--X\r\n" + text + "--X\r\n" + file + text), testing::ElementsAre("a;b.ply"))
+      << "an empty head";
+  EXPECT_THAT(names("--X\r\n" + note + "X-Other: a; filename=\"no.ply\"\r\n" + text),
               testing::IsEmpty());
+  EXPECT_THAT(
+      names("--X\r\nContent-Disposition: form-data; name=\"a; filename=no.ply\"\r\n" + text),
+      testing::IsEmpty());
   EXPECT_THAT(names("--X\r\nContent-Disposition: form-data; filename=\"open.ply\r\n" + text),
               testing::ElementsAre("open.ply"));
   EXPECT_THAT(names("--X\r\nContent-Disposition: form-data; filename=Gr\xf6\xdf/a.ply\r\n" + text),
               testing::ElementsAre("Gr\ufffd\ufffd/a.ply"));
-  EXPECT_THAT(names("--X\r\nContent-Disposition: form-data; filename*=UTF-8''a; filename=\r\n" + text),
-              testing::IsEmpty());
+  EXPECT_THAT(
+      names("--X\r\nContent-Disposition: form-data; filename*=UTF-8''a; filename=\r\n" + text),
+      testing::IsEmpty());
 }
 
 TEST(Upload, a_zip_is_known_by_its_type) {
   const Folder folder;
-  const auto zip = take_upload(upload_of(folder.write("1.body", "PK"), "application/zip"), folder.path());
+  const auto zip =
+      take_upload(upload_of(folder.write("1.body", "PK"), "application/zip"), folder.path());
   ASSERT_TRUE(zip);
   EXPECT_EQ(zip->front().filename, "scan.zip");
 }
 
 TEST(Upload, broken_forms_are_refused) {
   const Folder folder;
-  for (const char* body : {"--X", "--X\r\n", "--X\r\nno end of headers", "--X\r\nA: b\r\n\r\nno boundary", "X--",
-                           "--Y\r\n\r\n\r\n--Y--"}) {
-    const auto upload =
-        take_upload(upload_of(folder.write("1.body", body), "multipart/form-data; boundary=X"), folder.path());
+  for (const char* body : {"--X", "--X\r\n", "--X\r\nno end of headers",
+                           "--X\r\nA: b\r\n\r\nno boundary", "X--", "--Y\r\n\r\n\r\n--Y--"}) {
+    const auto upload = take_upload(
+        upload_of(folder.write("1.body", body), "multipart/form-data; boundary=X"), folder.path());
     ASSERT_FALSE(upload) << body;
     EXPECT_EQ(upload.error().status, 400) << body;
   }
@@ -486,14 +503,17 @@ TEST(ByteBudget, what_is_held_bounds_what_may_be_taken) {
 TEST(Docs, text_of_the_contract_cannot_become_markup) {
   const nlohmann::json contract = {
       {"info", {{"title", "<script>alert(1)</script>"}, {"version", "1"}}},
-      {"paths", {{"/a", {{"get", {{"summary", "a & b"}, {"responses", {{"200", {{"description", "ok"}}}}}}}}}}}};
+      {"paths",
+       {{"/a",
+         {{"get", {{"summary", "a & b"}, {"responses", {{"200", {{"description", "ok"}}}}}}}}}}}};
   const std::string page = docs_html(contract);
   EXPECT_EQ(page.find("<script"), std::string::npos);
   EXPECT_NE(page.find("a &amp; b"), std::string::npos);
 }
 
 TEST(Docs, all_of_it_is_the_main_part_and_every_column_has_a_head) {
-  const nlohmann::json contract = nlohmann::json::parse(R"({"info": {"title": "T"}, "components": {"schemas": {"A": {
+  const nlohmann::json contract =
+      nlohmann::json::parse(R"({"info": {"title": "T"}, "components": {"schemas": {"A": {
       "properties": {"b": {"type": "string"}}}}}, "paths": {"/a": {"get": {"parameters": [{"name": "p", "in": "query"}],
       "responses": {"200": {"description": "ok"}}}}}})");
   const std::string page = docs_html(contract);

@@ -102,11 +102,17 @@ class FakeRoom final : public room::Room {
     EXPECT_EQ(receiver, member->session());
     return people;
   }
-  Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>&, std::vector<Column>) override {
+  Result<Layer> create_layer(Layer layer, const store::FirstAnswer<Layer>&,
+                             std::vector<Column>) override {
     return layer;
   }
-  Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>&) override { return layer; }
-  Result<Layer> widen_layer(const Layer& layer, ValueType, const store::FirstAnswer<Layer>&) override { return layer; }
+  Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>&) override {
+    return layer;
+  }
+  Result<Layer> widen_layer(const Layer& layer, ValueType,
+                            const store::FirstAnswer<Layer>&) override {
+    return layer;
+  }
   Result<void> delete_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
   Result<void> bin_layer(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
   Result<store::BinRestored> restore_layer(const store::BinEntry& entry,
@@ -118,39 +124,56 @@ class FakeRoom final : public room::Room {
     return fail(500, "Not here", "");
   }
   void records_changed(std::int64_t) override {}
-  Result<void> check_expression(const Expression&, const std::string&, Visibility) const override { return {}; }
-  Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override { return model; }
-  Result<TileMap> dabs(const Layer&, const std::vector<PlacedValue>&, double, double) override { return TileMap{}; }
-  Result<TileMap> project(const Layer&, const glm::dvec3&, const ValueAt&) override { return TileMap{}; }
-  Result<query::SurfacePoint> position(const glm::dvec3&, const std::vector<std::string>&, At) override {
+  Result<void> check_expression(const Expression&, const std::string&, Visibility) const override {
+    return {};
+  }
+  Result<Model> update_model(Model model, const store::FirstAnswer<Model>&) override {
+    return model;
+  }
+  Result<TileMap> dabs(const Layer&, const std::vector<PlacedValue>&, double, double) override {
+    return TileMap{};
+  }
+  Result<TileMap> project(const Layer&, const glm::dvec3&, const ValueAt&) override {
+    return TileMap{};
+  }
+  Result<query::SurfacePoint> position(const glm::dvec3&, const std::vector<std::string>&,
+                                       At) override {
     return query::SurfacePoint{};
   }
-  Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>&, const std::vector<std::string>&,
-                                                     At) override {
+  Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>&,
+                                                     const std::vector<std::string>&, At) override {
     return std::vector<query::SurfacePoint>{};
   }
-  Result<query::SurfacePoint> pick(const Camera&, double, double, const std::vector<std::string>&, At) override {
+  Result<query::SurfacePoint> pick(const Camera&, double, double, const std::vector<std::string>&,
+                                   At) override {
     return found;
   }
-  Result<query::Statistics> statistics(const std::string&, const room::Selection&, room::StatisticsWanted) override {
+  Result<query::Statistics> statistics(const std::string&, const room::Selection&,
+                                       room::StatisticsWanted) override {
     return query::Statistics{};
   }
   Result<room::SelectedArea> select(const room::Selection&, const std::vector<std::string>&,
                                     room::StatisticsWanted) override {
     return room::SelectedArea{};
   }
-  Result<query::Profile> profile(const room::ProfileLine&, const std::vector<std::string>&, At) override {
+  Result<query::Profile> profile(const room::ProfileLine&, const std::vector<std::string>&,
+                                 At) override {
     return query::Profile{};
   }
-  Result<query::CrossTable> cross_table(const std::string&, const std::string&, const room::Selection&) override {
+  Result<query::CrossTable> cross_table(const std::string&, const std::string&,
+                                        const room::Selection&) override {
     return query::CrossTable{};
   }
   Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string&) override {
     return std::map<std::int64_t, query::KeyArea>();
   }
   Result<void> sum_layer(std::int64_t) override { return {}; }
-  Result<query::Quantities> quantities(const std::string&, At) override { return query::Quantities{}; }
-  Result<room::LayerAreas> layer_areas(const std::string&, At) override { return room::LayerAreas{}; }
+  Result<query::Quantities> quantities(const std::string&, At) override {
+    return query::Quantities{};
+  }
+  Result<room::LayerAreas> layer_areas(const std::string&, At) override {
+    return room::LayerAreas{};
+  }
   Result<query::SurfaceTexels> surface_texels(const std::string&, const room::Selection&) override {
     return query::SurfaceTexels{};
   }
@@ -162,16 +185,17 @@ class FakeRoom final : public room::Room {
   Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int) override {
     return std::shared_ptr<const mesh::SurfaceMap>();
   }
-  Result<void> pictures(const room::PictureRequest&, std::span<const room::PicturePart>, const SeePicture&) override {
+  Result<void> pictures(const room::PictureRequest&, std::span<const room::PicturePart>,
+                        const SeePicture&) override {
     return {};
   }
-  Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string&, const Camera&, int, int,
-                                                              At) override {
+  Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string&, const Camera&,
+                                                              int, int, At) override {
     return {};
   }
   Result<std::vector<query::SeenLayer>> seen_layers(const std::vector<std::string>&,
-                                                    const std::vector<query::LayerCover>&, const Camera&, int, int,
-                                                    At) override {
+                                                    const std::vector<query::LayerCover>&,
+                                                    const Camera&, int, int, At) override {
     return std::vector<query::SeenLayer>{};
   }
   std::vector<Look> looks() const override { return {look_}; }
@@ -179,10 +203,13 @@ class FakeRoom final : public room::Room {
     if (ref == "uv-light" || ref == "9") return look_;
     return fail(404, "No such look", "There is no look '" + ref + "'.");
   }
-  Result<Look> create_look(Look look, std::span<const std::uint8_t>, const store::FirstAnswer<Look>&) override {
+  Result<Look> create_look(Look look, std::span<const std::uint8_t>,
+                           const store::FirstAnswer<Look>&) override {
     return look;
   }
-  Result<Look> update_look(const Look& look, const store::FirstAnswer<Look>&) override { return look; }
+  Result<Look> update_look(const Look& look, const store::FirstAnswer<Look>&) override {
+    return look;
+  }
   Result<void> delete_look(std::int64_t, const store::FirstAnswer<>&) override { return {}; }
 
   struct Held {
@@ -196,11 +223,13 @@ class FakeRoom final : public room::Room {
   std::vector<room::Portrait> portraits;
   query::SurfacePoint found;
   FakeMember* member = nullptr;  // the newest
-  std::vector<room::Presence> people{{random_uuid(), "anna", "", "#112233", room::Pointing{{1, 2, 3}, {}}}};
+  std::vector<room::Presence> people{
+      {random_uuid(), "anna", "", "#112233", room::Pointing{{1, 2, 3}, {}}}};
 
  private:
   Layer layer_;
-  const Look look_{9, 1, "UV light", "uv-light", "", "image/png", 16, 8, 100, std::string(64, 'a'), 1, false, 0, 1};
+  const Look look_{9, 1,   "UV light",           "uv-light", "",    "image/png", 16,
+                   8, 100, std::string(64, 'a'), 1,          false, 0,           1};
 };
 
 json camera_json() {
@@ -216,7 +245,8 @@ struct Live : testing::Test {
     shared->queries = std::make_shared<WorkerPool>(1, 16);
     shared->sockets = std::make_shared<LiveSockets>();
     shared->editors = std::make_shared<EditorBook>();
-    shared->check_record = [](std::int64_t project_id, const EditorBook::Record& record) -> Result<void> {
+    shared->check_record = [](std::int64_t project_id,
+                              const EditorBook::Record& record) -> Result<void> {
       if (project_id == 1 && record.table == 4) return {};
       return fail(404, "No such table", "There is none.", "table");
     };
@@ -231,7 +261,8 @@ struct Live : testing::Test {
     shared->sockets->add(socket, session, "secret");
   }
   // Looks for the record on a worker, where it begins.
-  void edit_record(LiveSession& of, std::int64_t key, bool editing, const json& more = json::object()) {
+  void edit_record(LiveSession& of, std::int64_t key, bool editing,
+                   const json& more = json::object()) {
     json message{{"op", "record.edit"}, {"table", 4}, {"key", key}, {"editing", editing}};
     message.update(more);
     const auto work = of.on_text(message.dump());
@@ -241,11 +272,17 @@ struct Live : testing::Test {
   void say(const json& message) { EXPECT_FALSE(session->on_text(message.dump())); }
   void hello() { say({{"op", "hello"}}); }
   json begin(const std::string& id) {
-    return {{"op", "stroke.begin"}, {"id", to_string(random_uuid())}, {"stroke", id},  {"layer", "cracks"},
-            {"value", 3},           {"camera", camera_json()},        {"radius_px", 8}};
+    return {{"op", "stroke.begin"}, {"id", to_string(random_uuid())},
+            {"stroke", id},         {"layer", "cracks"},
+            {"value", 3},           {"camera", camera_json()},
+            {"radius_px", 8}};
   }
   json extend(const std::string& id, int n, const json& path) {
-    return {{"op", "stroke.extend"}, {"id", to_string(random_uuid())}, {"stroke", id}, {"n", n}, {"path", path}};
+    return {{"op", "stroke.extend"},
+            {"id", to_string(random_uuid())},
+            {"stroke", id},
+            {"n", n},
+            {"path", path}};
   }
   std::shared_ptr<LiveShared> shared;
   std::shared_ptr<FakeRoom> room;
@@ -332,7 +369,8 @@ TEST_F(Live, every_message_it_sends_keeps_the_contract) {
   }
   EXPECT_EQ(socket->of("presence").size(), 1u);
   for (const auto& message : socket->sent) {
-    if (message["op"] == "welcome") continue;  // its model is made up and has no bounds worth checking
+    // its model is made up and has no bounds worth checking
+    if (message["op"] == "welcome") continue;
     const auto parsed = protocol::parse_server_message(message.dump());
     EXPECT_TRUE(parsed) << message.dump() << "\n" << (parsed ? "" : parsed.error().detail);
   }
@@ -358,7 +396,8 @@ TEST_F(Live, the_room_hears_who_edits_and_what_they_may) {
   hello();
   say(begin(stroke));
   say(extend(stroke, 0, {{1, 1}}));
-  for (const char* op : {"undo", "redo"}) say({{"op", op}, {"id", to_string(random_uuid())}, {"layer", "cracks"}});
+  for (const char* op : {"undo", "redo"})
+    say({{"op", op}, {"id", to_string(random_uuid())}, {"layer", "cracks"}});
   const json fill = {{"op", "fill"}, {"value", 1}, {"mode", "where"}, {"where", "true"}};
   say({{"op", "edit"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}, {"edit", fill}});
   ASSERT_EQ(room->edits.size(), 4u);
@@ -372,19 +411,20 @@ TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
   const auto screens_socket = std::make_shared<FakeSocket>();
   Principal kiosk{kiosk_name(3), Role::viewer};
   kiosk.kiosk = KioskPass{3, 1, 2};
-  auto screen =
-      std::make_shared<LiveSession>(shared, room, "default", kiosk, room::Portrait(), std::nullopt, screens_socket);
+  auto screen = std::make_shared<LiveSession>(shared, room, "default", kiosk, room::Portrait(),
+                                              std::nullopt, screens_socket);
   shared->sockets->add(screens_socket, screen, "link");
   screen->on_text(json{{"op", "hello"}}.dump());
   ASSERT_EQ(screens_socket->of("welcome").size(), 1u);
   EXPECT_TRUE(screens_socket->later.empty()) << "presence is not even scheduled";
   hello();
 
-  const std::vector<json> refused{begin(stroke),
-                                  extend(stroke, 0, {{1, 1}}),
-                                  {{"op", "undo"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}},
-                                  {{"op", "presence"}, {"pointer", {1, 1}}},
-                                  {{"op", "record.edit"}, {"table", 4}, {"key", 7}, {"editing", true}}};
+  const std::vector<json> refused{
+      begin(stroke),
+      extend(stroke, 0, {{1, 1}}),
+      {{"op", "undo"}, {"id", to_string(random_uuid())}, {"layer", "cracks"}},
+      {{"op", "presence"}, {"pointer", {1, 1}}},
+      {{"op", "record.edit"}, {"table", 4}, {"key", 7}, {"editing", true}}};
   for (const json& message : refused) EXPECT_FALSE(screen->on_text(message.dump()));
   ASSERT_EQ(screens_socket->of("problem").size(), refused.size());
   for (const json& problem : screens_socket->of("problem")) EXPECT_EQ(problem["status"], 403);
@@ -407,7 +447,8 @@ TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
   EXPECT_TRUE(screens_socket->of("record.editors").empty());
   EXPECT_FALSE(socket->of("record.editors").empty());
 
-  room->people = {{random_uuid(), kiosk.user, "", "#112233"}, {random_uuid(), "bea", "", "#112233"}};
+  room->people = {{random_uuid(), kiosk.user, "", "#112233"},
+                  {random_uuid(), "bea", "", "#112233"}};
   session->presence_changed();
   for (auto work = std::exchange(socket->later, {}); const auto& each : work) each();
   const json told = socket->of("presence").back()["users"];
@@ -419,15 +460,17 @@ TEST_F(Live, a_kiosk_looks_and_hears_of_nobody_and_nobody_of_it) {
 TEST_F(Live, who_writes_into_a_record_is_told_to_all_of_the_project) {
   hello();
   const auto others_socket = std::make_shared<FakeSocket>();
-  auto other = std::make_shared<LiveSession>(shared, room, "default", Principal{"bea", Role::annotator},
-                                             room::Portrait{"Bea"}, std::nullopt, others_socket);
+  auto other =
+      std::make_shared<LiveSession>(shared, room, "default", Principal{"bea", Role::annotator},
+                                    room::Portrait{"Bea"}, std::nullopt, others_socket);
   shared->sockets->add(others_socket, other, "other");
   edit_record(*session, 7, true);
   edit_record(*session, 8, true);
   ASSERT_EQ(socket->of("record.editors").size(), 2u);
   EXPECT_TRUE(others_socket->sent.empty()) << "not welcomed yet";
   other->on_text(json{{"op", "hello"}}.dump());
-  const json own = socket->of("welcome")[0]["session"], others = others_socket->of("welcome")[0]["session"];
+  const json own = socket->of("welcome")[0]["session"],
+             others = others_socket->of("welcome")[0]["session"];
   const json has_7{{"table", 4}, {"key", 7}, {"session", own}, {"user", "anna"}};
   EXPECT_EQ(socket->of("record.editors")[0]["records"], json::array({has_7}));
   ASSERT_EQ(others_socket->of("record.editors").size(), 1u);
@@ -442,9 +485,11 @@ TEST_F(Live, who_writes_into_a_record_is_told_to_all_of_the_project) {
   edit_record(*session, 7, false);  // hers no more
   EXPECT_EQ(socket->of("record.editors").back()["records"], json::array({taken}));
   edit_record(*session, 8, false);
-  EXPECT_EQ(others_socket->of("record.editors").back()["records"], json::parse(R"([{"table": 4, "key": 8}])"));
+  EXPECT_EQ(others_socket->of("record.editors").back()["records"],
+            json::parse(R"([{"table": 4, "key": 8}])"));
   other->on_closed();
-  EXPECT_EQ(socket->of("record.editors").back()["records"], json::parse(R"([{"table": 4, "key": 7}])"));
+  EXPECT_EQ(socket->of("record.editors").back()["records"],
+            json::parse(R"([{"table": 4, "key": 7}])"));
   for (const auto& message : socket->of("record.editors"))
     EXPECT_TRUE(protocol::parse_server_message(message.dump())) << message;
 }

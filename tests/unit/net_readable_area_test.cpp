@@ -33,10 +33,10 @@ Sheet areas() {
 TEST(ReadableArea, each_column_comes_again_in_its_own_unit_and_stays_for_scripts) {
   Sheet sheet = areas();
   add_readable_areas(sheet);
-  EXPECT_EQ(sheet.heads,
-            (std::vector<std::string>{"class", "area_m2", "scan/salt area_m2", "area (m²)", "scan/salt area (mm²)"}));
-  EXPECT_EQ(sheet.number_formats,
-            (std::vector<std::string>{"", "#,##0.0000", "#,##0.000000000", "#,##0.0000", "#,##0.000"}));
+  EXPECT_EQ(sheet.heads, (std::vector<std::string>{"class", "area_m2", "scan/salt area_m2",
+                                                   "area (m²)", "scan/salt area (mm²)"}));
+  EXPECT_EQ(sheet.number_formats, (std::vector<std::string>{"", "#,##0.0000", "#,##0.000000000",
+                                                            "#,##0.0000", "#,##0.000"}));
   EXPECT_EQ(std::get<double>(sheet.rows[0][2]), 2e-6);
   EXPECT_EQ(std::get<double>(sheet.rows[0][3]), 0.25);
   EXPECT_DOUBLE_EQ(std::get<double>(sheet.rows[0][4]), 2);

@@ -29,12 +29,14 @@ Table units() {
 
 TEST(RecordCsv, what_is_written_is_read_again_with_every_separator) {
   const Table table = units();
-  const std::vector<Record> records = {{1, 3, {{10, "=SUM(A1); \"x\"\ny"}, {11, -1.5}, {12, {2, 4294967295}}}},
-                                       {4294967295, 1, {{11, 1e-7}}},
-                                       {7, 1, {}}};
+  const std::vector<Record> records = {
+      {1, 3, {{10, "=SUM(A1); \"x\"\ny"}, {11, -1.5}, {12, {2, 4294967295}}}},
+      {4294967295, 1, {{11, 1e-7}}},
+      {7, 1, {}}};
   for (const char separator : {',', ';', '\t'})
     for (const auto& measured :
-         {MeasuredRecords{}, MeasuredRecords{{"area_m2", "length_m"}, {{0.25, 3}, {1e-9, 0}, {0, 1}}}}) {
+         {MeasuredRecords{},
+          MeasuredRecords{{"area_m2", "length_m"}, {{0.25, 3}, {1e-9, 0}, {0, 1}}}}) {
       const auto text = records_csv(records, table.columns, measured, separator);
       const auto rows = read_records_csv(text, table);
       ASSERT_TRUE(rows.has_value()) << rows.error().detail;
@@ -74,7 +76,8 @@ TEST(RecordCsv, what_records_measure_is_passed_over_unless_a_column_is_called_so
 }
 
 TEST(RecordCsv, a_first_row_that_cannot_be_understood_is_refused) {
-  for (const char* text : {"", "\n\n", "colour\nred\n", "code,Código\na,b\n", "key,key\n1,2\n", "code,\na,b\n"}) {
+  for (const char* text :
+       {"", "\n\n", "colour\nred\n", "code,Código\na,b\n", "key,key\n1,2\n", "code,\na,b\n"}) {
     const auto rows = read_records_csv(text, units());
     ASSERT_FALSE(rows.has_value()) << text;
     EXPECT_EQ(rows.error().status, 422);
@@ -82,7 +85,8 @@ TEST(RecordCsv, a_first_row_that_cannot_be_understood_is_refused) {
 }
 
 TEST(RecordCsv, each_mistake_is_told_by_its_line_and_column) {
-  const auto rows = read_records_csv("key,code,depth\n1,\"a\nb\",x\n-1,a,1\n2,a\n3,a,1,1\n4,a,2\n", units());
+  const auto rows =
+      read_records_csv("key,code,depth\n1,\"a\nb\",x\n-1,a,1\n2,a\n3,a,1,1\n4,a,2\n", units());
   ASSERT_TRUE(rows.has_value()) << rows.error().detail;
   EXPECT_EQ(rows->rows, 5u);
   ASSERT_EQ(rows->records.size(), 1u);

@@ -8,10 +8,14 @@ namespace {
 Router make_router() {
   Router router;
   auto nothing = [](const Request&, const Respond&) {};
-  router.add({.method = Method::get, .pattern = "/api/v1/models", .handler = nothing, .query = {"limit", "offset"}});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models",
+              .handler = nothing,
+              .query = {"limit", "offset"}});
   router.add({.method = Method::post, .pattern = "/api/v1/models", .handler = nothing});
-  router.add(
-      {.method = Method::get, .pattern = "/api/v1/models/{model}/layers/{layer}/texels.{format}", .handler = nothing});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/layers/{layer}/texels.{format}",
+              .handler = nothing});
   router.add({.method = Method::remove, .pattern = "/api/v1/jobs/{job}", .handler = nothing});
   return router;
 }
@@ -24,7 +28,8 @@ std::vector<std::string> segments(const std::string& target) {
 
 TEST(Router, a_pattern_catches_the_parts_of_a_path) {
   const Router router = make_router();
-  const auto match = router.find(Method::get, segments("/api/v1/models/pot/layers/cracks/texels.png"));
+  const auto match =
+      router.find(Method::get, segments("/api/v1/models/pot/layers/cracks/texels.png"));
   ASSERT_NE(match.route, nullptr);
   EXPECT_EQ(match.params.at("model"), "pot");
   EXPECT_EQ(match.params.at("layer"), "cracks");
@@ -33,7 +38,8 @@ TEST(Router, a_pattern_catches_the_parts_of_a_path) {
 
 TEST(Router, a_caught_part_is_never_empty) {
   const Router router = make_router();
-  EXPECT_EQ(router.find(Method::get, segments("/api/v1/models/pot/layers/cracks/texels.")).route, nullptr);
+  EXPECT_EQ(router.find(Method::get, segments("/api/v1/models/pot/layers/cracks/texels.")).route,
+            nullptr);
   EXPECT_EQ(router.find(Method::remove, segments("/api/v1/jobs/")).route, nullptr);
 }
 
@@ -52,7 +58,8 @@ TEST(Router, a_known_path_with_another_method_names_the_allowed_ones) {
 
 TEST(Router, an_unknown_path_allows_nothing) {
   const Router router = make_router();
-  for (const char* target : {"/api/v1/nothing", "/api/v1/models/pot/layers", "/api/v1", "/api/v1/models/"}) {
+  for (const char* target :
+       {"/api/v1/nothing", "/api/v1/models/pot/layers", "/api/v1", "/api/v1/models/"}) {
     const auto match = router.find(Method::get, segments(target));
     EXPECT_EQ(match.route, nullptr) << target;
     EXPECT_TRUE(match.allowed.empty()) << target;

@@ -10,7 +10,9 @@ using std::chrono::seconds;
 struct Gate {
   SignInGate gate;
   SignInGate::Clock::time_point now = SignInGate::Clock::now();
-  bool pass(const std::string& address, const std::string& name) { return gate.pass(address, name, now).has_value(); }
+  bool pass(const std::string& address, const std::string& name) {
+    return gate.pass(address, name, now).has_value();
+  }
   int passed(int tries, const std::string& address, const std::string& name) {
     int count = 0;
     for (int i = 0; i < tries; ++i) {
@@ -27,7 +29,8 @@ TEST(SignInGate, guesses_for_a_name_are_few_from_an_address_and_bounded_from_man
   EXPECT_GE(alone, 60);
   EXPECT_LE(alone, 71);  // in ten minutes
   int count = 0;
-  for (int i = 0; i < 600; ++i) count += at.passed(1, "10.0." + std::to_string(i) + ".1", i % 2 ? "Ada" : "ada");
+  for (int i = 0; i < 600; ++i)
+    count += at.passed(1, "10.0." + std::to_string(i) + ".1", i % 2 ? "Ada" : "ada");
   EXPECT_LE(count, 361);
   for (int i = 0; i < 600; ++i) at.pass("10.1." + std::to_string(i) + ".1", "ada");
   const auto refused = at.gate.pass("10.2.0.1", "ada", at.now);

@@ -44,7 +44,8 @@ TEST_F(Book, a_repeated_batch_gets_the_same_start_and_advances_nothing) {
   EXPECT_EQ(again->path, (Path{{1, 1}}));
   const auto next = book.extend(kAnna, stroke, ids[2], 2, {{3, 3}});
   ASSERT_TRUE(next);
-  EXPECT_EQ(next->path, (Path{{2, 2}, {3, 3}})) << "the repeat must not have become the stroke's end";
+  EXPECT_EQ(next->path, (Path{{2, 2}, {3, 3}}))
+      << "the repeat must not have become the stroke's end";
 }
 
 TEST_F(Book, a_reconnect_begins_the_same_stroke_again) {
@@ -83,7 +84,8 @@ TEST_F(Book, an_ended_stroke_takes_repeats_but_nothing_new) {
   ASSERT_TRUE(book.end(kAnna, stroke));
   EXPECT_TRUE(book.extend(kAnna, stroke, ids[0], 0, {{1, 1}}));
   EXPECT_EQ(book.extend(kAnna, stroke, ids[1], 1, {{2, 2}}).error().status, 409);
-  ASSERT_TRUE(book.begin(kAnna, stroke, tool())) << "a resend after a reconnect begins with the begin";
+  ASSERT_TRUE(book.begin(kAnna, stroke, tool()))
+      << "a resend after a reconnect begins with the begin";
   EXPECT_TRUE(book.extend(kAnna, stroke, ids[1], 1, {{2, 2}}));
 }
 
@@ -133,12 +135,14 @@ TEST_F(Book, a_batch_starts_with_the_width_that_the_one_before_ended_with) {
   ASSERT_TRUE(book.begin(kAnna, stroke, tool()));
   EXPECT_TRUE(book.extend(kAnna, stroke, ids[0], 0, {{1, 1}, {2, 2}})->widths.empty());
   using Widths = std::vector<double>;
-  EXPECT_EQ(book.extend(kAnna, stroke, ids[1], 1, {{3, 3}, {4, 4}}, {0.5, 0.25})->widths, (Widths{1, 0.5, 0.25}));
+  EXPECT_EQ(book.extend(kAnna, stroke, ids[1], 1, {{3, 3}, {4, 4}}, {0.5, 0.25})->widths,
+            (Widths{1, 0.5, 0.25}));
   EXPECT_EQ(book.extend(kAnna, stroke, ids[2], 2, {{5, 5}})->widths, (Widths{0.25, 1}));
   const auto odd = book.extend(kAnna, stroke, random_uuid(), 3, {{6, 6}}, {0.5, 0.5});
   ASSERT_FALSE(odd);
   EXPECT_EQ(odd.error().field, "widths");
-  EXPECT_TRUE(book.extend(kAnna, stroke, random_uuid(), 3, {{6, 6}})) << "what was refused took no number";
+  EXPECT_TRUE(book.extend(kAnna, stroke, random_uuid(), 3, {{6, 6}}))
+      << "what was refused took no number";
 }
 
 TEST_F(Book, the_joining_point_counts_in_the_longest_path) {
@@ -148,20 +152,23 @@ TEST_F(Book, the_joining_point_counts_in_the_longest_path) {
   const auto refused = book.extend(kAnna, stroke, ids[1], 1, longest);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().field, "path");
-  EXPECT_TRUE(book.extend(kAnna, stroke, ids[1], 1, Path(StrokeBook::kMaxPath - 1, glm::dvec2(1, 1))))
+  EXPECT_TRUE(
+      book.extend(kAnna, stroke, ids[1], 1, Path(StrokeBook::kMaxPath - 1, glm::dvec2(1, 1))))
       << "a refused batch takes no number";
 }
 
 TEST_F(Book, old_strokes_are_forgotten) {
   const auto start = StrokeBook::Clock::now();
   ASSERT_TRUE(book.begin(kAnna, stroke, tool(), start));
-  ASSERT_TRUE(book.begin(kAnna, random_uuid(), tool(), start + StrokeBook::kKeepFor + std::chrono::seconds(1)));
+  ASSERT_TRUE(book.begin(kAnna, random_uuid(), tool(),
+                         start + StrokeBook::kKeepFor + std::chrono::seconds(1)));
   EXPECT_FALSE(book.tool(kAnna, stroke));
   EXPECT_EQ(book.open_strokes(kAnna).size(), 1u);
 }
 
 TEST_F(Book, one_person_cannot_fill_the_memory_with_strokes) {
-  for (std::size_t i = 0; i < StrokeBook::kMaxStrokes + 50; ++i) ASSERT_TRUE(book.begin(kAnna, random_uuid(), tool()));
+  for (std::size_t i = 0; i < StrokeBook::kMaxStrokes + 50; ++i)
+    ASSERT_TRUE(book.begin(kAnna, random_uuid(), tool()));
   EXPECT_EQ(book.open_strokes(kAnna).size(), StrokeBook::kMaxStrokes);
 }
 

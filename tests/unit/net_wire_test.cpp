@@ -42,7 +42,8 @@ protocol::Edit stroke(double value) {
 
 TEST(Wire, a_stroke_becomes_an_edit_of_the_layer) {
   const Uuid id = random_uuid();
-  const auto request = edit_request(stroke(7), layer_of(ValueType::u8), model_in(Unit::m), id, kAnna);
+  const auto request =
+      edit_request(stroke(7), layer_of(ValueType::u8), model_in(Unit::m), id, kAnna);
   ASSERT_TRUE(request);
   EXPECT_EQ(request->id, id);
   EXPECT_EQ(request->author.user, "anna");
@@ -60,17 +61,20 @@ TEST(Wire, a_stroke_becomes_an_edit_of_the_layer) {
 
 TEST(Wire, a_value_outside_the_type_is_refused_not_clamped) {
   for (double value : {256.0, -1.0, 1.5}) {
-    const auto request = edit_request(stroke(value), layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna);
+    const auto request = edit_request(stroke(value), layer_of(ValueType::u8), model_in(Unit::m),
+                                      random_uuid(), kAnna);
     ASSERT_FALSE(request) << value;
     EXPECT_EQ(request.error().field, "value");
   }
-  EXPECT_TRUE(edit_request(stroke(1.5), layer_of(ValueType::f16), model_in(Unit::m), random_uuid(), kAnna));
+  EXPECT_TRUE(
+      edit_request(stroke(1.5), layer_of(ValueType::f16), model_in(Unit::m), random_uuid(), kAnna));
 }
 
 TEST(Wire, erasing_needs_no_value_of_the_type) {
   protocol::EditStroke edit = std::get<protocol::EditStroke>(stroke(-400));
   edit.erase = true;
-  const auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna);
+  const auto request =
+      edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna);
   ASSERT_TRUE(request);
   EXPECT_TRUE(std::get<room::StrokeEdit>(request->edit).batch.erase);
 }
@@ -82,7 +86,8 @@ TEST(Wire, millimetres_become_the_models_unit) {
   protocol::EditStroke edit = std::get<protocol::EditStroke>(stroke(1));
   edit.radius_px.reset();
   edit.radius_mm = 10.0;
-  const auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::cm), random_uuid(), kAnna);
+  const auto request =
+      edit_request(edit, layer_of(ValueType::u8), model_in(Unit::cm), random_uuid(), kAnna);
   ASSERT_TRUE(request);
   EXPECT_EQ(std::get<room::StrokeEdit>(request->edit).batch.radius_px, 0);
   EXPECT_DOUBLE_EQ(std::get<room::StrokeEdit>(request->edit).batch.radius_world, 1);
@@ -92,7 +97,8 @@ TEST(Wire, a_fill_carries_the_bits_of_its_value) {
   protocol::EditFill fill;
   fill.value = -1;
   fill.where = "true";
-  const auto request = edit_request(fill, layer_of(ValueType::i8), model_in(Unit::m), random_uuid(), kAnna);
+  const auto request =
+      edit_request(fill, layer_of(ValueType::i8), model_in(Unit::m), random_uuid(), kAnna);
   ASSERT_TRUE(request);
   EXPECT_EQ(std::get<room::FillEdit>(request->edit).value_bits, 0xffu);
   EXPECT_EQ(request->record["op"], "fill");
@@ -106,11 +112,13 @@ TEST(Wire, a_fill_is_of_the_region_that_its_mode_tells) {
   using room::FillEdit;
   protocol::EditFill fill;
   fill.where = "true";
-  EXPECT_TRUE(std::holds_alternative<FillEdit::Everywhere>(std::get<FillEdit>(request_of(fill)->edit).region));
+  EXPECT_TRUE(std::holds_alternative<FillEdit::Everywhere>(
+      std::get<FillEdit>(request_of(fill)->edit).region));
   fill.where = "wet > 3";
   const auto where = request_of(fill);
   ASSERT_TRUE(where);
-  const auto& condition = std::get<FillEdit::Where>(std::get<FillEdit>(where->edit).region).condition;
+  const auto& condition =
+      std::get<FillEdit::Where>(std::get<FillEdit>(where->edit).region).condition;
   EXPECT_EQ(condition.op, Expression::Op::greater);
   EXPECT_EQ(where->record["where"], "wet > 3");
   fill.where.reset();
@@ -118,8 +126,9 @@ TEST(Wire, a_fill_is_of_the_region_that_its_mode_tells) {
   fill.at->point = glm::dvec3(1, 2, 3);
   fill.mode = protocol::EditFillMode::island;
   const auto island = request_of(fill);
-  EXPECT_EQ(std::get<glm::dvec3>(std::get<FillEdit::Island>(std::get<FillEdit>(island->edit).region).at),
-            glm::dvec3(1, 2, 3));
+  EXPECT_EQ(
+      std::get<glm::dvec3>(std::get<FillEdit::Island>(std::get<FillEdit>(island->edit).region).at),
+      glm::dvec3(1, 2, 3));
   fill.at->point.reset();
   fill.at->camera = camera();
   fill.at->x = 4;
@@ -200,9 +209,11 @@ TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {
   auto edit = stroke(1);
   const auto with_shape = [&](const protocol::ToolShape& of) {
     std::get<protocol::EditStroke>(edit).shape = of;
-    return edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna, find);
+    return edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna,
+                        find);
   };
-  for (const protocol::ToolShape& of : {protocol::ToolShape("flag"), protocol::ToolShape(std::int64_t{12})}) {
+  for (const protocol::ToolShape& of :
+       {protocol::ToolShape("flag"), protocol::ToolShape(std::int64_t{12})}) {
     const auto request = with_shape(of);
     ASSERT_TRUE(request);
     EXPECT_TRUE(names_tool(edit));
@@ -235,7 +246,8 @@ TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {
 TEST(Wire, bias_and_angle_of_a_stroke_are_optional) {
   auto edit = stroke(1);
   const auto batch = [&] {
-    auto request = edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna);
+    auto request =
+        edit_request(edit, layer_of(ValueType::u8), model_in(Unit::m), random_uuid(), kAnna);
     return std::pair(std::get<room::StrokeEdit>(request->edit).batch, request->record);
   };
   EXPECT_FALSE(batch().first.fixed_depth_bias || batch().first.max_angle_deg);
@@ -321,7 +333,8 @@ TEST(Wire, statistics_are_as_the_contract_says) {
 
 TEST(Wire, times_are_written_in_utc) {
   using namespace std::chrono;
-  EXPECT_EQ(utc_text(system_clock::time_point(milliseconds(1'700'000'000'123))), "2023-11-14T22:13:20.123Z");
+  EXPECT_EQ(utc_text(system_clock::time_point(milliseconds(1'700'000'000'123))),
+            "2023-11-14T22:13:20.123Z");
   EXPECT_EQ(utc_text(system_clock::time_point(milliseconds(-1))), "1969-12-31T23:59:59.999Z");
 }
 

@@ -1,4 +1,5 @@
-// The rules are numbered in protocol/frame.md; the golden vectors are read by the web client's tests, too.
+// The rules are numbered in protocol/frame.md; the golden vectors are read by the web client's
+// tests, too.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -53,7 +54,8 @@ TEST(FrameHeader, golden_headers_are_read_and_written_byte_for_byte) {
   for (const auto& vector : vectors) {
     const auto bytes = from_hex(vector["hex"]);
     const auto header = decode_frame_header(bytes);
-    ASSERT_TRUE(header) << vector["name"] << ": " << header.error().field << ": " << header.error().detail;
+    ASSERT_TRUE(header) << vector["name"] << ": " << header.error().field << ": "
+                        << header.error().detail;
     EXPECT_EQ(*header, header_of(vector["fields"])) << vector["name"];
     const auto written = encode_frame_header(*header);
     EXPECT_TRUE(std::equal(written.begin(), written.end(), bytes.begin())) << vector["name"];
@@ -75,7 +77,8 @@ TEST(FrameHeader, a_message_cut_anywhere_is_refused) {
   for (const auto& vector : vectors) {
     const auto bytes = from_hex(vector["hex"]);
     for (std::size_t length = 0; length < bytes.size(); ++length)
-      EXPECT_FALSE(decode_frame_header(std::span(bytes).first(length))) << vector["name"] << " cut to " << length;
+      EXPECT_FALSE(decode_frame_header(std::span(bytes).first(length)))
+          << vector["name"] << " cut to " << length;
   }
 }
 

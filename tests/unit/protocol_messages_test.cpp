@@ -1,4 +1,5 @@
-// The fixtures and golden vectors of protocol/ are read by the web client's tests, too: both languages must agree.
+// The fixtures and golden vectors of protocol/ are read by the web client's tests, too: both
+// languages must agree.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -29,7 +30,8 @@ struct Fixture {
 
 std::vector<Fixture> fixtures(const std::string& folder) {
   std::vector<Fixture> found;
-  for (const auto& entry : std::filesystem::directory_iterator(STRATA_SOURCE_DIR "/protocol/fixtures/" + folder)) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(STRATA_SOURCE_DIR "/protocol/fixtures/" + folder)) {
     std::ifstream file(entry.path());
     json content = json::parse(file);
     found.push_back({entry.path().stem(), content.at("schema"), content});
@@ -45,14 +47,16 @@ std::optional<Schema> schema_named(const std::string& wanted) {
 
 bool is_client_message(const Fixture& f) {
   const json& body = f.content.value("json", json());
-  const std::string op = body.is_object() && body.contains("op") && body["op"].is_string() ? body["op"] : "";
+  const std::string op =
+      body.is_object() && body.contains("op") && body["op"].is_string() ? body["op"] : "";
   const auto schema = client_message_schema(op);
   return f.schema == "ClientMessage" || (schema && name(*schema) == f.schema);
 }
 
 bool is_server_message(const Fixture& f) {
   const json& body = f.content["json"];
-  const auto schema = body.contains("op") ? server_message_schema(body["op"].get<std::string>()) : std::nullopt;
+  const auto schema =
+      body.contains("op") ? server_message_schema(body["op"].get<std::string>()) : std::nullopt;
   return schema && name(*schema) == f.schema;
 }
 
@@ -129,7 +133,8 @@ TEST(ProtocolMessages, a_problem_says_what_belongs_in_the_field) {
   EXPECT_EQ(ok.error().detail, "It must be a whole number from 0 to 4294967295.");
   ok = validate(Schema::LayerCreate, json{{"name", "x"}, {"type", "u64"}});
   ASSERT_FALSE(ok);
-  EXPECT_EQ(ok.error().detail, R"(It must be one of "u8", "u16", "u32", "i8", "i16", "i32", "f16", "f32".)");
+  EXPECT_EQ(ok.error().detail,
+            R"(It must be one of "u8", "u16", "u32", "i8", "i16", "i32", "f16", "f32".)");
   ok = validate(Schema::Undo, json{{"op", "undo"}, {"layer", 1}}, "messages[2]");
   ASSERT_FALSE(ok);
   EXPECT_EQ(ok.error().field, "messages[2].id");
@@ -148,17 +153,20 @@ TEST(ProtocolMessages, a_refused_message_still_tells_its_id) {
   std::string ref;
   EXPECT_FALSE(parse_client_message(R"({"op":"undo","id":"abc"})", &ref));
   EXPECT_EQ(ref, "abc");
-  const json problem = to_json(problem_message(Problem{422, "Member missing", "It must be given.", "layer"}, ref));
+  const json problem =
+      to_json(problem_message(Problem{422, "Member missing", "It must be given.", "layer"}, ref));
   EXPECT_TRUE(validate(Schema::ProblemMessage, problem));
   EXPECT_EQ(problem["ref"], "abc");
 }
 
 TEST(ProtocolMessages, a_problem_keeps_its_bounds_whatever_was_sent) {
-  // What was sent stands in the detail and in the field; every cut of it falls within a character of three bytes.
+  // What was sent stands in the detail and in the field; every cut of it falls within a character
+  // of three bytes.
   for (const std::size_t before : {0, 1, 2}) {
     std::string sent(before, 'x');
     for (int i = 0; i < 5000; ++i) sent += "語";
-    const Problem problem{422, "Not a language of the tour", "The tour has no `" + sent + "`.", "title." + sent};
+    const Problem problem{422, "Not a language of the tour", "The tour has no `" + sent + "`.",
+                          "title." + sent};
     const json body = problem_body(problem), message = to_json(problem_message(problem));
     EXPECT_TRUE(validate(Schema::Problem, body));
     EXPECT_TRUE(validate(Schema::ProblemMessage, message));
@@ -183,13 +191,14 @@ TEST(ProtocolMessages, a_long_list_of_numbers_is_looked_through_to_its_end) {
     ASSERT_TRUE(good) << good.error().detail;
     EXPECT_EQ(good->points.size(), 300u);
     EXPECT_EQ(good->points[place], glm::dvec3(1, 2, 3));
-    for (const auto& [item, wrong] : std::map<json, std::string>{{json{1, 2}, field},
-                                                                 {json{1, 2, 3, 4}, field},
-                                                                 {json{1, "2", 3}, field + "[1]"},
-                                                                 {json{1, 2, 1.1e15}, field + "[2]"},
-                                                                 {json{1, nullptr, 3}, field + "[1]"},
-                                                                 {json{1, json::array(), 3}, field + "[1]"},
-                                                                 {json(7), field}}) {
+    for (const auto& [item, wrong] :
+         std::map<json, std::string>{{json{1, 2}, field},
+                                     {json{1, 2, 3, 4}, field},
+                                     {json{1, "2", 3}, field + "[1]"},
+                                     {json{1, 2, 1.1e15}, field + "[2]"},
+                                     {json{1, nullptr, 3}, field + "[1]"},
+                                     {json{1, json::array(), 3}, field + "[1]"},
+                                     {json(7), field}}) {
       const auto refused = from_json<PositionsRequest>(with(place, item));
       ASSERT_FALSE(refused) << item;
       EXPECT_EQ(refused.error().status, 422);
@@ -201,7 +210,9 @@ TEST(ProtocolMessages, a_long_list_of_numbers_is_looked_through_to_its_end) {
 TEST(ProtocolMessages, beside_a_long_list_all_else_is_held_to_the_schema) {
   json request{{"points", json(300, {1, 2, 3})}, {"layers", json(300, "moisture")}};
   EXPECT_TRUE(from_json<PositionsRequest>(request));
-  const auto field_of = [](const json& wrong) { return from_json<PositionsRequest>(wrong).error().field; };
+  const auto field_of = [](const json& wrong) {
+    return from_json<PositionsRequest>(wrong).error().field;
+  };
   json more = request, text = request, number = request;
   more["extra"] = json(300, 1);
   EXPECT_EQ(field_of(more), "extra");
@@ -222,7 +233,8 @@ TEST(ProtocolMessages, a_list_that_is_too_long_is_refused_before_its_items_are_b
     return read ? Problem{} : read.error();
   };
   const std::string bom = "\xEF\xBB\xBF";  // which the careful reader alone takes
-  const Problem expected = from_json<PositionsRequest>(json{{"points", json(100'001, {1, 2, 3})}}).error();
+  const Problem expected =
+      from_json<PositionsRequest>(json{{"points", json(100'001, {1, 2, 3})}}).error();
   for (const std::string& before : {std::string(), bom}) {
     const Problem problem = problem_of(before + R"({"points":[)" + points + R"([1,2,3]]})");
     EXPECT_EQ(problem.status, 422);
@@ -231,7 +243,8 @@ TEST(ProtocolMessages, a_list_that_is_too_long_is_refused_before_its_items_are_b
     EXPECT_EQ(problem.detail, expected.detail);
     EXPECT_EQ(problem_of(before + R"({"points":[[1,2,3],[1,2,3,4]]})").field, "points[1]");
   }
-  // What follows is not built, so it is not seen either: of the careful reader not even that it is no JSON.
+  // What follows is not built, so it is not seen either: of the careful reader not even that it is
+  // no JSON.
   EXPECT_EQ(problem_of(bom + R"({"points":[)" + points + "no JSON").field, "points");
   const auto within = parse<PositionsRequest>(R"({"points":[[1,2,3]],"layers":["a","b"]})");
   ASSERT_TRUE(within) << within.error().detail;
@@ -239,8 +252,9 @@ TEST(ProtocolMessages, a_list_that_is_too_long_is_refused_before_its_items_are_b
 }
 
 TEST(ProtocolMessages, a_stroke_arrives_as_it_was_sent) {
-  const auto message = parse_client_message(R"({"op":"stroke.begin","id":")" + std::string(kId) + R"(","stroke":")" +
-                                            kId + R"(","layer":"cracks","value":7,"radius_mm":2.5,"shape":"square",
+  const auto message =
+      parse_client_message(R"({"op":"stroke.begin","id":")" + std::string(kId) + R"(","stroke":")" +
+                           kId + R"(","layer":"cracks","value":7,"radius_mm":2.5,"shape":"square",
       "camera":{"view":[1,0,0,0,0,1,0,0,0,0,1,0,4,5,6,1],"projection":[1,0,0,0,0,1,0,0,0,0,-1,0,0,0,0,1],"width":800,"height":600}})");
   ASSERT_TRUE(message) << message.error().field << message.error().detail;
   const auto& begin = std::get<StrokeBegin>(*message);
@@ -258,15 +272,16 @@ TEST(ProtocolMessages, a_stroke_arrives_as_it_was_sent) {
 TEST(ProtocolMessages, a_text_is_refused_by_its_size_before_it_is_read) {
   JsonLimits limits;
   limits.max_bytes = 100;
-  const auto message =
-      parse_client_message("{\"op\":\"hello\",\"client\":\"" + std::string(100, 'x') + "\"}", nullptr, limits);
+  const auto message = parse_client_message(
+      "{\"op\":\"hello\",\"client\":\"" + std::string(100, 'x') + "\"}", nullptr, limits);
   ASSERT_FALSE(message);
   EXPECT_EQ(message.error().status, 413);
 }
 
 TEST(ProtocolMessages, nesting_is_taken_up_to_the_limit_and_not_beyond) {
   auto nested = [](int depth) {
-    return std::string(static_cast<std::size_t>(depth), '[') + std::string(static_cast<std::size_t>(depth), ']');
+    return std::string(static_cast<std::size_t>(depth), '[') +
+           std::string(static_cast<std::size_t>(depth), ']');
   };
   EXPECT_TRUE(parse_json(nested(32)));
   const auto deep = parse_json(nested(33));
@@ -287,15 +302,17 @@ TEST(ProtocolMessages, what_only_the_careful_reader_takes_is_still_taken) {
 }
 
 TEST(ProtocolMessages, the_fast_reader_leaves_what_is_wrong_to_the_careful_one) {
-  for (const std::string text : {"", "[1,]", "{\"a\":1,\"a\":2}", "[\"\\u0000\"]", "{\"\\u0000\":1}", "[1e999]",
-                                 "[1] 2", "[[[]]]", "\"\\ud800\"", "\"\xC3\x28\""})
+  for (const std::string text :
+       {"", "[1,]", "{\"a\":1,\"a\":2}", "[\"\\u0000\"]", "{\"\\u0000\":1}", "[1e999]", "[1] 2",
+        "[[[]]]", "\"\\ud800\"", "\"\xC3\x28\""})
     EXPECT_FALSE(read_json_fast(text, 2)) << text;
   const auto problem = parse_json("{\"a\":[1,}");
   ASSERT_FALSE(problem);
   EXPECT_NE(problem.error().detail.find("byte 9"), std::string::npos) << problem.error().detail;
 }
 
-// Bytes of the fixtures are changed at random: what the fast reader takes is JSON, and the value that nlohmann-json reads.
+// Bytes of the fixtures are changed at random: what the fast reader takes is JSON, and the value
+// that nlohmann-json reads.
 TEST(ProtocolMessages, the_fast_reader_reads_what_the_careful_one_would) {
   std::vector<std::string> texts{
       "[0,-0,-0.0,1,-1,18446744073709551615,9223372036854775808,-9223372036854775808,1.5e-310,0.1,"
@@ -309,7 +326,8 @@ TEST(ProtocolMessages, the_fast_reader_reads_what_the_careful_one_would) {
   for (const std::string& original : texts) {
     for (int change = 0; change < 200; ++change) {
       std::string text = original;
-      for (int i = 0; i < change % 4; ++i) text[random() % text.size()] = kBytes[random() % kBytes.size()];
+      for (int i = 0; i < change % 4; ++i)
+        text[random() % text.size()] = kBytes[random() % kBytes.size()];
       const auto fast = read_json_fast(text, 32);
       if (!fast) continue;
       ++taken;
@@ -327,7 +345,8 @@ TEST(ProtocolMessages, every_schema_can_be_built) {
     const auto schema = static_cast<Schema>(i);
     EXPECT_FALSE(name(schema).empty());
     // Null is a value of one only: that of a cell without a value.
-    EXPECT_EQ(validate(schema, json(nullptr)).has_value(), schema == Schema::CellValue) << name(schema);
+    EXPECT_EQ(validate(schema, json(nullptr)).has_value(), schema == Schema::CellValue)
+        << name(schema);
   }
 }
 

@@ -19,7 +19,8 @@ Picture scanned_map() {
       if (x >= 20 && x < 80 && y >= 20 && y < 80) color = {190, 40, 40, 255};
       if (x >= 120 && x < 160 && y >= 20 && y < 80) color = {40, 60, 180, 255};
       if (y == 90 && x > 10 && x < 190) color = {30, 140, 60, 255};
-      for (int c = 0; c < 3; ++c) color[c] = static_cast<std::uint8_t>(std::clamp(color[c] + noise(random), 0, 255));
+      for (int c = 0; c < 3; ++c)
+        color[c] = static_cast<std::uint8_t>(std::clamp(color[c] + noise(random), 0, 255));
       picture.rgba.insert(picture.rgba.end(), color.begin(), color.end());
     }
   return picture;
@@ -43,8 +44,8 @@ TEST(ColorKeys, a_pixel_has_the_value_of_the_nearest_colour_within_the_tolerance
 }
 
 TEST(ColorKeys, that_are_none_are_refused) {
-  for (const char* text :
-       {"", "{}", "[]", "{\"#ff0000\":\"1\"}", "{\"red\":1}", "{\"#ff00\":1}", "{\"#gg0000\":1}", "7"}) {
+  for (const char* text : {"", "{}", "[]", "{\"#ff0000\":\"1\"}", "{\"red\":1}", "{\"#ff00\":1}",
+                           "{\"#gg0000\":1}", "7"}) {
     const auto keys = parse_color_keys(text, "colors");
     ASSERT_FALSE(keys) << text;
     EXPECT_EQ(keys.error().field, "colors");

@@ -49,16 +49,19 @@ struct Texel {
 };
 
 // All surface and gutter texels with what a result paints there.
-std::vector<Texel> texels_of(const mesh::SurfaceMap& map, const std::map<TileAddress, TileData>& painted) {
+std::vector<Texel> texels_of(const mesh::SurfaceMap& map,
+                             const std::map<TileAddress, TileData>& painted) {
   std::vector<Texel> texels;
   for (int y = 0; y < map.resolution; ++y)
     for (int x = 0; x < map.resolution; ++x) {
-      const TileAddress tile{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)};
+      const TileAddress tile{static_cast<std::uint16_t>(x / kTileSize),
+                             static_cast<std::uint16_t>(y / kTileSize)};
       const int in_tile = y % kTileSize * kTileSize + x % kTileSize;
       const auto [slot, i] = mesh::slot_texel(map, tile, in_tile);
       const auto found = painted.find(tile);
       const bool is = found != painted.end() && found->second.valid.test(in_tile);
-      if (slot == mesh::kNoSlot || map.packed_position[std::size_t{slot} * 64 + i] == mesh::kNoPosition) {
+      if (slot == mesh::kNoSlot ||
+          map.packed_position[std::size_t{slot} * 64 + i] == mesh::kNoPosition) {
         EXPECT_FALSE(is) << "beside the surface";
         continue;
       }
@@ -80,7 +83,8 @@ TEST(Dabs, cover_what_lies_within_the_radius_and_the_nearest_one_counts) {
   for (const Texel& texel : texels_of(sphere.map, *painted)) {
     const Dab* nearest = nullptr;
     for (const Dab& dab : dabs)
-      if (!nearest || glm::distance(texel.position, dab.position) < glm::distance(texel.position, nearest->position))
+      if (!nearest || glm::distance(texel.position, dab.position) <
+                          glm::distance(texel.position, nearest->position))
         nearest = &dab;
     const bool inside = glm::distance(texel.position, nearest->position) <= radius;
     wrong += texel.bits != (inside ? std::optional(nearest->bits) : std::nullopt);
@@ -102,7 +106,8 @@ TEST(Dabs, do_not_reach_through_a_wall) {
   const Surface surface = surface_of(walls);
   const glm::vec3 middle = (surface.geometry.box_min + surface.geometry.box_max) * 0.5f;
   const Dab dab = dab_at(surface.map, {middle.x, middle.y, surface.geometry.box_max.z}, 1);
-  const auto painted = paint_dabs(surface.map, surface.graph, std::span(&dab, 1), 0.2f, ValueType::u8);
+  const auto painted =
+      paint_dabs(surface.map, surface.graph, std::span(&dab, 1), 0.2f, ValueType::u8);
   ASSERT_TRUE(painted);
   int near = 0, behind = 0;
   for (const Texel& texel : texels_of(surface.map, *painted))
@@ -114,10 +119,12 @@ TEST(Dabs, do_not_reach_through_a_wall) {
 TEST(Dabs, smaller_than_a_texel_are_not_lost) {
   const Surface sphere = surface_of(test::sphere(24));
   const Dab dab = dab_at(sphere.map, {0, 1, 0}, 3);
-  const auto painted = paint_dabs(sphere.map, sphere.graph, std::span(&dab, 1), 1e-6f, ValueType::u8);
+  const auto painted =
+      paint_dabs(sphere.map, sphere.graph, std::span(&dab, 1), 1e-6f, ValueType::u8);
   ASSERT_TRUE(painted);
   int surface = 0;
-  for (const Texel& texel : texels_of(sphere.map, *painted)) surface += texel.surface && texel.bits == 3u;
+  for (const Texel& texel : texels_of(sphere.map, *painted))
+    surface += texel.surface && texel.bits == 3u;
   EXPECT_EQ(surface, 1);
 }
 

@@ -11,7 +11,8 @@
 namespace strata::query {
 namespace {
 
-const std::string kSquare = R"({"type":"Polygon","coordinates":[[[0,0],[10,0],[10,10],[0,10],[0,0]]]})";
+const std::string kSquare =
+    R"({"type":"Polygon","coordinates":[[[0,0],[10,0],[10,10],[0,10],[0,0]]]})";
 
 std::string feature(const std::string& geometry, const std::string& properties) {
   return R"({"type":"Feature","geometry":)" + geometry + R"(,"properties":)" + properties + "}";
@@ -30,9 +31,10 @@ TEST(FlatMap, polygons_are_read_with_their_holes_and_the_value_of_an_attribute) 
   const std::string holed =
       R"({"type":"MultiPolygon","coordinates":[[[[20,0,5],[30,0,5],[30,10,5],[20,10,5],[20,0,5]],[[24,4],[26,4],[26,6],[24,6],[24,4]]],
          [[[40,0],[50,0],[45,10]]]]})";
-  const auto areas = parse_map(collection(feature(kSquare, R"({"unit":3,"name":"a"})") + "," +
-                                          feature(holed, R"({"unit":7.5})") + "," + feature("null", "{}")),
-                               "unit", 0);
+  const auto areas =
+      parse_map(collection(feature(kSquare, R"({"unit":3,"name":"a"})") + "," +
+                           feature(holed, R"({"unit":7.5})") + "," + feature("null", "{}")),
+                "unit", 0);
   ASSERT_TRUE(areas) << areas.error().detail;
   ASSERT_EQ(areas->areas().size(), 3u);
   EXPECT_EQ(areas->value_at({5, 5}), 3);
@@ -47,7 +49,8 @@ TEST(FlatMap, without_an_attribute_all_have_the_stated_value_and_later_ones_lie_
   ASSERT_TRUE(bare);
   EXPECT_EQ(bare->value_at({5, 5}), 9);
   const std::string small = R"({"type":"Polygon","coordinates":[[[4,4],[6,4],[6,6],[4,6]]]})";
-  const auto areas = parse_map(collection(feature(kSquare, R"({"v":1})") + "," + feature(small, R"({"v":2})")), "v", 0);
+  const auto areas = parse_map(
+      collection(feature(kSquare, R"({"v":1})") + "," + feature(small, R"({"v":2})")), "v", 0);
   ASSERT_TRUE(areas);
   EXPECT_EQ(areas->value_at({5, 5}), 2);
   EXPECT_EQ(areas->value_at({1, 5}), 1);
@@ -71,15 +74,19 @@ TEST(FlatMap, that_cannot_be_read_is_refused_with_the_place) {
       {collection(R"({"type":"Feature"})"), "body.features[0]", "`geometry`"},
       {collection(feature(kSquare, "null")), "attribute", "no attribute 'v'; it has none"},
       {collection(feature(kSquare, R"({"w":3})")), "attribute", "it has w"},
-      {collection(feature(kSquare, R"({"v":null})")), "body", "body.features[0]: the attribute 'v' holds no number"},
+      {collection(feature(kSquare, R"({"v":null})")), "body",
+       "body.features[0]: the attribute 'v' holds no number"},
       {collection(feature(kSquare, R"({"v":"3"})")), "body", "no number but"},
-      {collection(feature(R"({"type":"Point","coordinates":[1,2]})", R"({"v":1})")), "body.features[0].geometry",
-       "not Point"},
+      {collection(feature(R"({"type":"Point","coordinates":[1,2]})", R"({"v":1})")),
+       "body.features[0].geometry", "not Point"},
       {R"({"type":"Polygon"})", "body.coordinates", "list of rings"},
       {R"({"type":"Polygon","coordinates":[]})", "body.coordinates", "list of rings"},
-      {R"({"type":"Polygon","coordinates":[[[0,0],[1,1]]]})", "body.coordinates[0]", "three points"},
-      {R"({"type":"Polygon","coordinates":[[[0,0],[1],[1,1]]]})", "body.coordinates[0][1]", "list of numbers"},
-      {R"({"type":"Polygon","coordinates":[[[0,0],["1",2],[1,1]]]})", "body.coordinates[0][1]", "list of numbers"},
+      {R"({"type":"Polygon","coordinates":[[[0,0],[1,1]]]})", "body.coordinates[0]",
+       "three points"},
+      {R"({"type":"Polygon","coordinates":[[[0,0],[1],[1,1]]]})", "body.coordinates[0][1]",
+       "list of numbers"},
+      {R"({"type":"Polygon","coordinates":[[[0,0],["1",2],[1,1]]]})", "body.coordinates[0][1]",
+       "list of numbers"},
       {R"({"type":"MultiPolygon","coordinates":{"a":1}})", "body", "list of polygons"},
       {std::string(100'000, '['), "body", "nested"},
   };
@@ -122,16 +129,16 @@ TEST(FlatMap, of_thousands_of_areas_the_same_one_is_found_as_by_asking_all) {
 }
 
 TEST(FlatMap, a_world_file_is_six_numbers) {
-  for (const char* text :
-       {"0.5,0,0,-0.5,100,200", "0.5\r\n0\r\n0\r\n-0.5\r\n100\r\n200\r\n", " 0.5 0 0 -0.5 100 2e2 "}) {
+  for (const char* text : {"0.5,0,0,-0.5,100,200", "0.5\r\n0\r\n0\r\n-0.5\r\n100\r\n200\r\n",
+                           " 0.5 0 0 -0.5 100 2e2 "}) {
     const auto world = parse_world_file(text, "world");
     ASSERT_TRUE(world) << text;
     EXPECT_EQ(world->x_per_column, 0.5);
     EXPECT_EQ(world->y_per_row, -0.5);
     EXPECT_EQ(world->y, 200);
   }
-  for (const char* text : {"", "1,0,0,-1,0", "1,0,0,-1,0,0,0", "1,0,0,-1,0,x", "1,0,0,nan,0,0", "1,0,0,-1,0,1e999",
-                           "1;0;0;-1;0;0", "0,0,0,-1,0,0", "1,1,1,1,0,0"}) {
+  for (const char* text : {"", "1,0,0,-1,0", "1,0,0,-1,0,0,0", "1,0,0,-1,0,x", "1,0,0,nan,0,0",
+                           "1,0,0,-1,0,1e999", "1;0;0;-1;0;0", "0,0,0,-1,0,0", "1,1,1,1,0,0"}) {
     const auto world = parse_world_file(text, "world");
     ASSERT_FALSE(world) << text;
     EXPECT_EQ(world.error().field, "world");

@@ -52,10 +52,12 @@ std::vector<std::uint32_t> pieces_of_triangles(const mesh::Geometry& geometry) {
     return t;
   };
   std::vector<std::uint32_t> positions;
-  for (const std::uint32_t v : geometry.indices) positions.push_back(geometry.vertices[v].position_index);
+  for (const std::uint32_t v : geometry.indices)
+    positions.push_back(geometry.vertices[v].position_index);
   const auto neighbours = mesh::edge_neighbours(positions, geometry.positions.size());
   for (std::size_t c = 0; c < neighbours.size(); ++c)
-    if (neighbours[c] != mesh::kNoTriangle) parent[root(static_cast<std::uint32_t>(c / 3))] = root(neighbours[c]);
+    if (neighbours[c] != mesh::kNoTriangle)
+      parent[root(static_cast<std::uint32_t>(c / 3))] = root(neighbours[c]);
   const auto islands = mesh::find_islands(geometry.indices, geometry.vertices.size());
   std::map<std::uint32_t, std::uint32_t> first;
   for (std::uint32_t t = 0; t < parent.size(); ++t) {
@@ -121,7 +123,8 @@ TEST(Flood, neighbours_are_near_each_other_on_the_surface) {
         farthest = std::max(farthest, glm::distance(place(texel), place(neighbour)));
       });
     });
-    const double texel_size = std::sqrt(surface.map.area_total / static_cast<double>(surface.map.surface_texels));
+    const double texel_size =
+        std::sqrt(surface.map.area_total / static_cast<double>(surface.map.surface_texels));
     EXPECT_LT(farthest, 5 * texel_size);
   }
 }
@@ -131,7 +134,8 @@ void expect_connected(const Surface& surface, const std::function<int(glm::vec3)
   SCOPED_TRACE(surface.name);
   const mesh::SurfaceMap& map = surface.map;
   const TileMap tiles = layer_of(map, value_at);
-  const auto islands = mesh::find_islands(surface.geometry.indices, surface.geometry.vertices.size());
+  const auto islands =
+      mesh::find_islands(surface.geometry.indices, surface.geometry.vertices.size());
   Progress progress;
   const auto owners = mesh::bake_texel_owners(surface.geometry, map.resolution, progress);
   std::set<std::uint32_t> crossed;
@@ -190,8 +194,10 @@ TEST(Flood, the_pieces_that_are_counted_are_those_that_a_flood_finds) {
     std::uint64_t floods = 0;
     for_each_surface_texel(map, [&](std::uint32_t texel) {
       if (is_in(seen, texel) || floods > 300) return;
-      const auto block = static_cast<int>(map.block_of_slot[texel / 64]), i = static_cast<int>(texel % 64);
-      const int x = block % map.blocks_per_side * 8 + i % 8, y = block / map.blocks_per_side * 8 + i / 8;
+      const auto block = static_cast<int>(map.block_of_slot[texel / 64]),
+                 i = static_cast<int>(texel % 64);
+      const int x = block % map.blocks_per_side * 8 + i % 8,
+                y = block / map.blocks_per_side * 8 + i / 8;
       const TileData* tile = table.of_texel(x, y);
       const int in_tile = y % kTileSize * kTileSize + x % kTileSize;
       if (tile == nullptr || !tile->valid.test(in_tile)) return;
@@ -204,13 +210,15 @@ TEST(Flood, the_pieces_that_are_counted_are_those_that_a_flood_finds) {
     const PieceCounts counts = count_pieces(view, map, surface.graph, nullptr, {.each = true});
     EXPECT_EQ(counts.of_class, expected);
     EXPECT_EQ(counts.all, floods);
-    const auto statistics = query::statistics(view, map, glm::dvec3(0), 1, {.pieces = true, .graph = &surface.graph});
+    const auto statistics =
+        query::statistics(view, map, glm::dvec3(0), 1, {.pieces = true, .graph = &surface.graph});
     EXPECT_EQ(statistics.pieces, floods);
     for (const auto& [bits, pieces] : expected) EXPECT_EQ(statistics.keys.at(bits).pieces, pieces);
   }
 }
 
-// By the legend: each value, or ranges; areas by a plain sum over texels, pieces by flooding a layer that holds the class instead.
+// By the legend: each value, or ranges; areas by a plain sum over texels, pieces by flooding a
+// layer that holds the class instead.
 TEST(Quantities, are_those_of_a_sum_over_every_texel_and_of_floods) {
   const Surface surface = surface_of("torus", test::torus(40), kResolution);
   const mesh::SurfaceMap& map = surface.map;
@@ -229,8 +237,10 @@ TEST(Quantities, are_those_of_a_sum_over_every_texel_and_of_floods) {
       double total = 0;
       std::map<TileAddress, std::shared_ptr<TileData>> values, numbers;
       for_each_surface_texel(map, [&](std::uint32_t texel) {
-        const auto block = static_cast<int>(map.block_of_slot[texel / 64]), i = static_cast<int>(texel % 64);
-        const int x = block % map.blocks_per_side * 8 + i % 8, y = block / map.blocks_per_side * 8 + i / 8;
+        const auto block = static_cast<int>(map.block_of_slot[texel / 64]),
+                   i = static_cast<int>(texel % 64);
+        const int x = block % map.blocks_per_side * 8 + i % 8,
+                  y = block / map.blocks_per_side * 8 + i / 8;
         total += map.area[texel];
         const glm::ivec3 cell(glm::floor(map.position(texel / 64, i) * 3.0f));
         const int number = ((cell.x * 5 + cell.y * 3 + cell.z * 7) % 9 + 9) % 9;
@@ -239,12 +249,14 @@ TEST(Quantities, are_those_of_a_sum_over_every_texel_and_of_floods) {
         int of = number;
         if (mode == PaletteMode::step) of = value < 2 ? 0 : value < 4 ? 1 : value < 6 ? 2 : 3;
         if (mode == PaletteMode::linear) of = value < 2 ? 0 : value < 4 ? 1 : value <= 6 ? 2 : 3;
-        const TileAddress address{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)};
+        const TileAddress address{static_cast<std::uint16_t>(x / kTileSize),
+                                  static_cast<std::uint16_t>(y / kTileSize)};
         const int in_tile = y % kTileSize * kTileSize + x % kTileSize;
         for (auto* tiles : {&values, &numbers}) {
           auto& tile = (*tiles)[address];
           if (!tile) tile = std::make_shared<TileData>(tiles == &values ? type : ValueType::u8);
-          tile->write(in_tile, *encode_value(tiles == &values ? type : ValueType::u8, tiles == &values ? value : of));
+          tile->write(in_tile, *encode_value(tiles == &values ? type : ValueType::u8,
+                                             tiles == &values ? value : of));
         }
         ++expected[of].texels;
         expected[of].area_m2 += map.area[texel] * metres * metres;
@@ -255,8 +267,10 @@ TEST(Quantities, are_those_of_a_sum_over_every_texel_and_of_floods) {
       const TileTable table(classes.snapshot.tiles, kResolution);
       for_each_surface_texel(map, [&](std::uint32_t texel) {
         if (is_in(seen, texel)) return;
-        const auto block = static_cast<int>(map.block_of_slot[texel / 64]), i = static_cast<int>(texel % 64);
-        const int x = block % map.blocks_per_side * 8 + i % 8, y = block / map.blocks_per_side * 8 + i / 8;
+        const auto block = static_cast<int>(map.block_of_slot[texel / 64]),
+                   i = static_cast<int>(texel % 64);
+        const int x = block % map.blocks_per_side * 8 + i % 8,
+                  y = block / map.blocks_per_side * 8 + i / 8;
         const TileData* tile = table.of_texel(x, y);
         const int in_tile = y % kTileSize * kTileSize + x % kTileSize;
         if (tile == nullptr || !tile->valid.test(in_tile)) return;
@@ -316,12 +330,14 @@ TEST(Flood, a_texture_coordinate_finds_its_texel_also_from_the_gutter) {
   const Surface surface = surface_of("sphere", test::sphere(32), kResolution);
   const mesh::SurfaceMap& map = surface.map;
   for_each_surface_texel(map, [&](std::uint32_t texel) {
-    const auto block = static_cast<int>(map.block_of_slot[texel / 64]), i = static_cast<int>(texel % 64);
+    const auto block = static_cast<int>(map.block_of_slot[texel / 64]),
+               i = static_cast<int>(texel % 64);
     const glm::vec2 centre(block % map.blocks_per_side * 8 + i % 8 + 0.5f,
                            block / map.blocks_per_side * 8 + i / 8 + 0.5f);
     ASSERT_EQ(mesh::surface_texel_at(map, centre / float(map.resolution)), texel);
   });
-  for (const auto& vertex : surface.geometry.vertices) EXPECT_TRUE(mesh::surface_texel_at(map, vertex.uv));
+  for (const auto& vertex : surface.geometry.vertices)
+    EXPECT_TRUE(mesh::surface_texel_at(map, vertex.uv));
   const auto empty = std::find(map.slot_of_block.begin(), map.slot_of_block.end(), mesh::kNoSlot);
   ASSERT_NE(empty, map.slot_of_block.end());
   const auto block = static_cast<int>(empty - map.slot_of_block.begin());

@@ -22,7 +22,8 @@ TiffFile grey(std::vector<TiffFile::Tag> more = {}) {
 }
 TiffFile floats(const std::vector<float>& values, std::vector<TiffFile::Tag> more = {}) {
   TiffFile file{static_cast<std::uint32_t>(values.size()), 1, 32, 1, 3, 1, {}, std::move(more)};
-  for (const float value : values) file.pixels += test::little_endian(std::bit_cast<std::uint32_t>(value));
+  for (const float value : values)
+    file.pixels += test::little_endian(std::bit_cast<std::uint32_t>(value));
   return file;
 }
 std::vector<std::optional<double>> numbers(const std::string& file, int band = 1) {
@@ -32,7 +33,8 @@ std::vector<std::optional<double>> numbers(const std::string& file, int band = 1
   if (!raster) return {};
   std::vector<std::optional<double>> values;
   for (std::size_t i = 0; i < raster->bits.size(); ++i)
-    values.push_back(raster->valid[i] ? std::optional(decode_value(raster->type, raster->bits[i])) : std::nullopt);
+    values.push_back(raster->valid[i] ? std::optional(decode_value(raster->type, raster->bits[i]))
+                                      : std::nullopt);
   return values;
 }
 
@@ -58,7 +60,8 @@ TEST(MapTiff, its_place_is_that_of_the_centre_of_the_first_pixel) {
   EXPECT_EQ(area->world->x_per_column, 0.5);
   EXPECT_EQ(area->world->y_per_row, -0.25);
   // A tie in the middle of the picture; then one that says that it is of a pixel's centre.
-  const auto middle = inspect(grey({scale, TiffFile::doubles(33922, {2, 1, 0, 101, 199.75, 0})}).write());
+  const auto middle =
+      inspect(grey({scale, TiffFile::doubles(33922, {2, 1, 0, 101, 199.75, 0})}).write());
   ASSERT_TRUE(middle && middle->world);
   EXPECT_EQ(middle->world->x, 100.25);
   EXPECT_EQ(middle->world->y, 199.875);
@@ -87,10 +90,13 @@ TEST(MapTiff, longitude_and_latitude_are_told) {
 TEST(MapTiff, nodata_and_what_is_no_number_have_no_value) {
   EXPECT_THAT(numbers(grey({TiffFile::texts(42113, "255")}).write()),
               testing::ElementsAre(1, 2, 3, 4, 5, std::nullopt));
-  EXPECT_THAT(numbers(floats({0.5f, -9999, NAN, INFINITY}, {TiffFile::texts(42113, " -9999.0")}).write()),
-              testing::ElementsAre(0.5, std::nullopt, std::nullopt, std::nullopt));
-  EXPECT_THAT(numbers(floats({-3.40282347e+38f}, {TiffFile::texts(42113, "-3.4028234663852886e+38")}).write()),
-              testing::ElementsAre(std::nullopt));
+  EXPECT_THAT(
+      numbers(floats({0.5f, -9999, NAN, INFINITY}, {TiffFile::texts(42113, " -9999.0")}).write()),
+      testing::ElementsAre(0.5, std::nullopt, std::nullopt, std::nullopt));
+  EXPECT_THAT(
+      numbers(
+          floats({-3.40282347e+38f}, {TiffFile::texts(42113, "-3.4028234663852886e+38")}).write()),
+      testing::ElementsAre(std::nullopt));
   EXPECT_THAT(numbers(grey({TiffFile::texts(42113, "none")}).write()), testing::Contains(255));
 }
 
@@ -101,8 +107,8 @@ TEST(MapTiff, bands_of_every_width_are_read) {
                2,
                2,
                1,
-               test::little_endian(0xfffe, 2) + test::little_endian(7, 2) + test::little_endian(300, 2) +
-                   test::little_endian(8, 2)};
+               test::little_endian(0xfffe, 2) + test::little_endian(7, 2) +
+                   test::little_endian(300, 2) + test::little_endian(8, 2)};
   EXPECT_THAT(numbers(two.write(), 1), testing::ElementsAre(-2, 300));
   EXPECT_THAT(numbers(two.write(), 2), testing::ElementsAre(7, 8));
   EXPECT_TRUE(numbers(two.write(), 3).empty());
@@ -140,17 +146,20 @@ TEST(MapTiff, that_cannot_be_read_is_refused) {
   TiffFile odd = grey();
   odd.bits = 24;
   EXPECT_FALSE(inspect(odd.write()));
-  EXPECT_FALSE(
-      inspect(grey({TiffFile::doubles(33550, {0, 1, 0}), TiffFile::doubles(33922, {0, 0, 0, 1, 1, 0})}).write()))
+  EXPECT_FALSE(inspect(
+      grey({TiffFile::doubles(33550, {0, 1, 0}), TiffFile::doubles(33922, {0, 0, 0, 1, 1, 0})})
+          .write()))
       << "pixels without area";
-  EXPECT_FALSE(
-      inspect(grey({TiffFile::doubles(33550, {NAN, 1, 0}), TiffFile::doubles(33922, {0, 0, 0, 1, 1, 0})}).write()));
+  EXPECT_FALSE(inspect(
+      grey({TiffFile::doubles(33550, {NAN, 1, 0}), TiffFile::doubles(33922, {0, 0, 0, 1, 1, 0})})
+          .write()));
   TiffFile turned = grey();
   turned.orientation = 6;
   EXPECT_FALSE(inspect(turned.write()));
   // Of another type than the standard says: passed over.
-  const auto strange =
-      inspect(grey({TiffFile::shorts(33550, {1, 1, 0}), TiffFile::shorts(33922, {0, 0, 0, 1, 1, 0})}).write());
+  const auto strange = inspect(
+      grey({TiffFile::shorts(33550, {1, 1, 0}), TiffFile::shorts(33922, {0, 0, 0, 1, 1, 0})})
+          .write());
   ASSERT_TRUE(strange);
   EXPECT_FALSE(strange->world);
   const std::string cut = good.substr(0, good.size() - 3);
@@ -161,9 +170,10 @@ TEST(MapTiff, that_cannot_be_read_is_refused) {
 }
 
 TEST(MapTiff, damaged_anywhere_it_is_read_or_refused) {
-  const std::string good = grey({TiffFile::doubles(33550, {1, 1, 0}), TiffFile::doubles(33922, {0, 0, 0, 1, 1, 0}),
-                                 TiffFile::shorts(34735, {1, 1, 0, 1, 1025, 0, 1, 2}), TiffFile::texts(42113, "255")})
-                               .write();
+  const std::string good =
+      grey({TiffFile::doubles(33550, {1, 1, 0}), TiffFile::doubles(33922, {0, 0, 0, 1, 1, 0}),
+            TiffFile::shorts(34735, {1, 1, 0, 1, 1025, 0, 1, 2}), TiffFile::texts(42113, "255")})
+          .write();
   int refused = 0;
   for (const char change : {'\x00', '\x01', '\x7f', '\xff'})
     for (std::size_t i = 0; i < good.size(); ++i) {

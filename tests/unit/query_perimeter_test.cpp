@@ -32,13 +32,16 @@ Perimeters measure(const Surface& surface, const std::function<int(glm::vec3)>& 
   return one;
 }
 
-void expect_length(double length, double expected, double share) { EXPECT_NEAR(length / expected, 1, share); }
+void expect_length(double length, double expected, double share) {
+  EXPECT_NEAR(length / expected, 1, share);
+}
 
 Surface sheet(double turned, glm::dvec2 stretch = glm::dvec2(1)) {
   mesh::TriangleMesh mesh = test::open_grid(24, 0);
   for (glm::dvec3& p : mesh.positions) {
     const glm::dvec2 at = (glm::dvec2(p) - 0.5) * stretch;
-    p = {at.x * std::cos(turned) - at.y * std::sin(turned), at.x * std::sin(turned) + at.y * std::cos(turned), 0};
+    p = {at.x * std::cos(turned) - at.y * std::sin(turned),
+         at.x * std::sin(turned) + at.y * std::cos(turned), 0};
   }
   return test::surface_of("sheet", mesh, 1024);
 }
@@ -47,10 +50,12 @@ TEST(Perimeter, squares_and_strips_are_as_long_as_their_sides_however_they_lie) 
   for (const double degrees : {0.0, 7.0, 13.3, 22.5, 26.6, 36.0, 45.0}) {
     SCOPED_TRACE(degrees);
     const Surface surface = sheet(degrees * kPi / 180);
-    const auto square = measure(surface, [](glm::vec3 p) { return std::max(std::abs(p.x), std::abs(p.y)) < 0.25f; });
+    const auto square = measure(
+        surface, [](glm::vec3 p) { return std::max(std::abs(p.x), std::abs(p.y)) < 0.25f; });
     expect_length(square.all, 2, 0.02);
     EXPECT_EQ(square.of_class.at(1), square.all);
-    const auto strip = measure(surface, [](glm::vec3 p) { return std::abs(p.x) < 0.02f && std::abs(p.y) < 0.3f; });
+    const auto strip =
+        measure(surface, [](glm::vec3 p) { return std::abs(p.x) < 0.02f && std::abs(p.y) < 0.3f; });
     expect_length(strip.all, 2 * (0.6 + 0.04), 0.02);
   }
 }
@@ -89,12 +94,14 @@ TEST(Perimeter, two_classes_share_a_border_and_what_is_valid_has_only_its_own) {
 
 TEST(Perimeter, a_disc_on_a_sphere_is_the_same_wherever_it_lies) {
   const Surface surface = test::surface_of("sphere", test::sphere(128), 1024);
-  for (const glm::vec3 towards : {glm::vec3(0, 0, 1), glm::vec3(1, 0, 0), glm::vec3(-1, 2, 0.5f), glm::vec3(1, -1, -1)})
+  for (const glm::vec3 towards :
+       {glm::vec3(0, 0, 1), glm::vec3(1, 0, 0), glm::vec3(-1, 2, 0.5f), glm::vec3(1, -1, -1)})
     for (const float angle : {0.15f, 0.6f, 1.4f}) {
       SCOPED_TRACE(angle);
       const glm::vec3 axis = glm::normalize(towards);
-      const auto disc =
-          measure(surface, [&](glm::vec3 p) { return glm::dot(glm::normalize(p), axis) > std::cos(angle) ? 9 : 0; });
+      const auto disc = measure(surface, [&](glm::vec3 p) {
+        return glm::dot(glm::normalize(p), axis) > std::cos(angle) ? 9 : 0;
+      });
       expect_length(disc.all, 2 * kPi * std::sin(angle), 0.03);
     }
 }
@@ -115,7 +122,8 @@ TEST(Perimeter, seams_are_no_borders_and_nothing_has_none) {
     EXPECT_EQ(measure(surface, [](glm::vec3) { return 0; }).all, 0);
     const double around = measure(surface, [](glm::vec3) { return 1; }).all;
     const auto neighbours = mesh::edge_neighbours(mesh.triangles, mesh.positions.size());
-    const bool is_closed = std::find(neighbours.begin(), neighbours.end(), mesh::kNoTriangle) == neighbours.end();
+    const bool is_closed =
+        std::find(neighbours.begin(), neighbours.end(), mesh::kNoTriangle) == neighbours.end();
     if (is_closed)
       EXPECT_EQ(around, 0);
     else
@@ -128,8 +136,10 @@ TEST(Perimeter, statistics_tell_it_in_metres) {
   LayerView view;
   view.layer.type = ValueType::u8;
   view.layer.resolution = surface.map.resolution;
-  view.snapshot.tiles = test::layer_of(surface.map, [](glm::vec3 p) { return glm::length(p) < 0.3f ? 4 : 0; });
-  const auto found = statistics(view, surface.map, glm::dvec3(0), 0.001, {.perimeter = true, .graph = &surface.graph});
+  view.snapshot.tiles =
+      test::layer_of(surface.map, [](glm::vec3 p) { return glm::length(p) < 0.3f ? 4 : 0; });
+  const auto found = statistics(view, surface.map, glm::dvec3(0), 0.001,
+                                {.perimeter = true, .graph = &surface.graph});
   ASSERT_TRUE(found.perimeter_m);
   expect_length(*found.perimeter_m, 2 * kPi * 0.0003, 0.02);
   EXPECT_EQ(found.keys.at(4).perimeter_m, found.perimeter_m);

@@ -37,7 +37,8 @@ double area_of(const std::vector<FlatPolygon>& polygons) {
   return area;
 }
 
-double painted_area(const Surface& surface, const std::function<int(glm::vec3)>& value_at, int value) {
+double painted_area(const Surface& surface, const std::function<int(glm::vec3)>& value_at,
+                    int value) {
   double area = 0;
   test::for_each_surface_texel(surface.map, [&](std::uint32_t texel) {
     if (value_at(surface.map.position(texel / 64, static_cast<int>(texel % 64))) == value)
@@ -56,11 +57,14 @@ int disc_with_a_core(glm::vec3 p) {
   return r < 0.1f ? 2 : r < 0.3f ? 1 : 0;
 }
 
-// The sheet's quarters at its lower left and its upper right alone, each with a hole, joined in the middle vertex, where the first rim begins.
+// The sheet's quarters at its lower left and its upper right alone, each with a hole, joined in the
+// middle vertex, where the first rim begins.
 Surface two_lobes() {
   Surface surface = flat_sheet();
   mesh::Geometry& geometry = surface.geometry;
-  const auto place = [&](std::uint32_t vertex) { return glm::vec2(geometry.vertices[vertex].position); };
+  const auto place = [&](std::uint32_t vertex) {
+    return glm::vec2(geometry.vertices[vertex].position);
+  };
   const auto is_on_axis = [&](std::uint32_t vertex) {
     return std::abs(place(vertex).x) < 1e-5f || std::abs(place(vertex).y) < 1e-5f;
   };
@@ -68,7 +72,8 @@ Surface two_lobes() {
   for (std::size_t i = 0; i < geometry.indices.size(); i += 3) {
     std::array corners{geometry.indices[i], geometry.indices[i + 1], geometry.indices[i + 2]};
     const glm::vec2 middle = place(corners[0]) + place(corners[1]) + place(corners[2]);
-    const auto is_hole = [](float sum) { return std::abs(sum) > 0.6f && std::abs(sum) < 0.9f; };  // of three corners
+    // of three corners
+    const auto is_hole = [](float sum) { return std::abs(sum) > 0.6f && std::abs(sum) < 0.9f; };
     if (middle.x * middle.y < 0 || (is_hole(middle.x) && is_hole(middle.y))) continue;
     for (int turn = 0; turn < 3; ++turn) {
       std::ranges::rotate(corners, corners.begin() + 1);
@@ -79,7 +84,8 @@ Surface two_lobes() {
     if (triangles.empty() || triangles.front() != corners) triangles.push_back(corners);
   }
   geometry.indices.clear();
-  for (const auto& corners : triangles) geometry.indices.insert(geometry.indices.end(), corners.begin(), corners.end());
+  for (const auto& corners : triangles)
+    geometry.indices.insert(geometry.indices.end(), corners.begin(), corners.end());
   EXPECT_LT(glm::length(place(geometry.indices.front())), 1e-5f);
   Progress progress;
   surface.map = *mesh::bake_surface_map(geometry, surface.map.resolution, progress);
@@ -133,7 +139,8 @@ TEST(PlaneOutlines, seams_of_the_atlas_are_no_borders) {
   // All of the ball is one chart or many; from any side it is a disc without holes.
   const Surface ball = test::surface_of("ball", test::sphere(48), 1024);
   const double radius = (ball.geometry.box_max.x - ball.geometry.box_min.x) / 2;
-  for (const OutlinePlane plane : {OutlinePlane{0, 1, 2}, OutlinePlane{0, 2, 1}, OutlinePlane{1, 2, 0}}) {
+  for (const OutlinePlane plane :
+       {OutlinePlane{0, 1, 2}, OutlinePlane{0, 2, 1}, OutlinePlane{1, 2, 0}}) {
     const PlaneOutlines made = outlines(
         ball, [](glm::vec3) { return 1; }, plane);
     ASSERT_EQ(made.at(1).size(), 1u);
@@ -202,7 +209,8 @@ TEST(PlaneOutlines, they_end_with_their_question) {
   std::vector<FlatArea> discs;
   for (const double x : {0.0, 0.5}) {
     FlatRing ring;
-    for (int i = 0; i < 20'000; ++i) ring.emplace_back(x + std::cos(i * kPi / 10'000), std::sin(i * kPi / 10'000), 0);
+    for (int i = 0; i < 20'000; ++i)
+      ring.emplace_back(x + std::cos(i * kPi / 10'000), std::sin(i * kPi / 10'000), 0);
     discs.emplace_back(FlatPolygon{{ring}});
   }
   question->end({499, "Given up", "Nobody waits any more."});
@@ -214,7 +222,8 @@ TEST(PlaneOutlines, every_class_of_mesh_has_outlines) {
   for (const test::NamedMesh& named : test::mesh_classes()) {
     SCOPED_TRACE(named.name);
     const Surface surface = test::surface_of(named.name, named.mesh, 512);
-    const PlaneOutlines made = outlines(surface, [](glm::vec3 p) { return 1 + (std::sin(9 * p.x) > 0); });
+    const PlaneOutlines made =
+        outlines(surface, [](glm::vec3 p) { return 1 + (std::sin(9 * p.x) > 0); });
     for (const auto& [value, polygons] : made)
       for (const FlatPolygon& polygon : polygons) EXPECT_GT(ring_area(polygon.rings[0]), 0);
   }

@@ -1,4 +1,5 @@
-// TIFF and NumPy files of every kind of number, byte order and layout bring the same texels; what GIS reads of our own TIFF.
+// TIFF and NumPy files of every kind of number, byte order and layout bring the same texels; what
+// GIS reads of our own TIFF.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,7 +69,8 @@ void expect_expected(const Layer& layer, const TileMap& tiles, bool all_painted 
       const int texel = (kSide - 1 - row) * kTileSize + x;
       const bool painted = all_painted || is_painted(x, row);
       const double value = shown ? shown(value_at(x, row)) : value_at(x, row);
-      wrong += tile.valid.test(texel) != painted || decode_value(layer.type, tile.bits(texel)) != (painted ? value : 0);
+      wrong += tile.valid.test(texel) != painted ||
+               decode_value(layer.type, tile.bits(texel)) != (painted ? value : 0);
     }
   EXPECT_EQ(wrong, 0);
 }
@@ -117,8 +119,8 @@ void write_plane(TIFF* tiff, const TiffKind& kind, std::uint16_t plane,
       for (int left = 0; left < kSide; left += 48) {
         for (int y = 0; y < 32; ++y)
           put_row(buffer.data() + bytes * 48 * static_cast<std::size_t>(y), left, top + y, 48);
-        ASSERT_GT(TIFFWriteTile(tiff, buffer.data(), static_cast<std::uint32_t>(left), static_cast<std::uint32_t>(top),
-                                0, plane),
+        ASSERT_GT(TIFFWriteTile(tiff, buffer.data(), static_cast<std::uint32_t>(left),
+                                static_cast<std::uint32_t>(top), 0, plane),
                   0);
       }
 }
@@ -145,7 +147,8 @@ Bytes write_tiff(const TiffKind& kind) {
     TIFFSetField(tiff.get(), 42113, "120");
   }
   const auto value = [&](int x, int row) {
-    if (kind.layout != Layout::nodata || is_painted(x, row)) return sample(kind.form, kind.value(x, row));
+    if (kind.layout != Layout::nodata || is_painted(x, row))
+      return sample(kind.form, kind.value(x, row));
     const bool is_nan = kind.form.kind == 'f' && x % 2 == 0;
     return sample(kind.form, is_nan ? std::numeric_limits<double>::quiet_NaN() : kNodata);
   };
@@ -169,7 +172,8 @@ Bytes write_tiff(const TiffKind& kind) {
     TIFFSetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, kind.mask_bits);
     TIFFSetField(tiff.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MASK);
     if (kind.mask_bits == 8) {
-      write_plane(tiff.get(), kind, 0, [&](int x, int row) { return Bytes(1, is_painted(x, row) ? 255 : 0); });
+      write_plane(tiff.get(), kind, 0,
+                  [&](int x, int row) { return Bytes(1, is_painted(x, row) ? 255 : 0); });
     } else {
       const bool tiled = kind.tiled;
       Bytes bits(tiled ? 6 * 32 : kSide / 8);
@@ -182,8 +186,8 @@ Bytes write_tiff(const TiffKind& kind) {
                 bits[static_cast<std::size_t>(y * (tiled ? 6 : 0) + (x - left) / 8)] |=
                     static_cast<std::uint8_t>(0x80u >> (x - left) % 8);
           if (tiled)
-            TIFFWriteTile(tiff.get(), bits.data(), static_cast<std::uint32_t>(left), static_cast<std::uint32_t>(top), 0,
-                          0);
+            TIFFWriteTile(tiff.get(), bits.data(), static_cast<std::uint32_t>(left),
+                          static_cast<std::uint32_t>(top), 0, 0);
           else
             TIFFWriteScanline(tiff.get(), bits.data(), static_cast<std::uint32_t>(top), 0);
         }
@@ -197,13 +201,16 @@ Bytes write_tiff(const TiffKind& kind) {
 TEST(QueryRasterForms, a_tiff_of_every_kind_order_layout_and_compression_brings_the_same_texels) {
   for (const Form& form : kForms)
     for (const bool big_endian : {false, true})
-      for (const auto layout : {Layout::interleaved, Layout::separate, Layout::nodata, Layout::mask})
+      for (const auto layout :
+           {Layout::interleaved, Layout::separate, Layout::nodata, Layout::mask})
         for (const bool tiled : {false, true})
-          for (const int compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE}) {
+          for (const int compression :
+               {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE}) {
             SCOPED_TRACE(form.name() + " big " + std::to_string(big_endian) + " layout " +
-                         std::to_string(static_cast<int>(layout)) + " tiled " + std::to_string(tiled) +
-                         " compression " + std::to_string(compression));
-            const Bytes bytes = write_tiff({form, layout, big_endian, tiled, compression, tiled ? 8 : 1});
+                         std::to_string(static_cast<int>(layout)) + " tiled " +
+                         std::to_string(tiled) + " compression " + std::to_string(compression));
+            const Bytes bytes =
+                write_tiff({form, layout, big_endian, tiled, compression, tiled ? 8 : 1});
             for (const auto type : {ValueType::i16, ValueType::f32}) {
               const auto tiles = decode_tiff(layer_of(type), bytes);
               ASSERT_TRUE(tiles) << tiles.error().detail;
@@ -216,7 +223,8 @@ TEST(QueryRasterForms, a_mask_may_have_one_or_eight_bits_in_strips_and_tiles) {
   for (const bool tiled : {false, true})
     for (const int bits : {1, 8}) {
       const auto tiles = decode_tiff(
-          layer_of(ValueType::u8), write_tiff({{'u', 1}, Layout::mask, false, tiled, COMPRESSION_ADOBE_DEFLATE, bits}));
+          layer_of(ValueType::u8),
+          write_tiff({{'u', 1}, Layout::mask, false, tiled, COMPRESSION_ADOBE_DEFLATE, bits}));
       ASSERT_TRUE(tiles) << tiles.error().detail;
       expect_expected(layer_of(ValueType::u8), *tiles);
     }
@@ -229,10 +237,11 @@ struct NpyKind {
 };
 
 Bytes write_npy(const NpyKind& kind, const std::function<double(int, int)>& value) {
-  const std::string descr =
-      kind.structured ? "[('value', '" + kind.value + "'), ('valid', '|b1')]" : "'" + kind.value + "'";
-  std::string header = "{'descr': " + descr + ", 'fortran_order': " + (kind.by_columns ? "True" : "False") +
-                       ", 'shape': (" + std::to_string(kSide) + ", " + std::to_string(kSide) + "), }\n";
+  const std::string descr = kind.structured ? "[('value', '" + kind.value + "'), ('valid', '|b1')]"
+                                            : "'" + kind.value + "'";
+  std::string header =
+      "{'descr': " + descr + ", 'fortran_order': " + (kind.by_columns ? "True" : "False") +
+      ", 'shape': (" + std::to_string(kSide) + ", " + std::to_string(kSide) + "), }\n";
   std::string before("\x93NUMPY\1\0", 8);
   before += static_cast<char>(header.size());
   before += '\0';
@@ -254,28 +263,33 @@ TEST(QueryRasterForms, a_numpy_array_of_every_kind_and_order_brings_the_same_tex
       for (const bool by_columns : {false, true})
         for (const bool structured : {false, true}) {
           const NpyKind kind{order + form.name(), form, order == '>', by_columns, structured};
-          SCOPED_TRACE(kind.value + (by_columns ? " Fortran" : " C") + (structured ? " structured" : ""));
+          SCOPED_TRACE(kind.value + (by_columns ? " Fortran" : " C") +
+                       (structured ? " structured" : ""));
           const bool with_gaps = form.kind == 'f' && !structured;  // NaN
           const Bytes bytes = write_npy(kind, [&](int x, int row) {
-            return with_gaps && !is_painted(x, row) ? std::numeric_limits<double>::quiet_NaN() : value_at(x, row);
+            return with_gaps && !is_painted(x, row) ? std::numeric_limits<double>::quiet_NaN()
+                                                    : value_at(x, row);
           });
-          for (const auto type : {ValueType::i8, ValueType::u16, ValueType::i32, ValueType::f16, ValueType::f32}) {
+          for (const auto type :
+               {ValueType::i8, ValueType::u16, ValueType::i32, ValueType::f16, ValueType::f32}) {
             const auto tiles = decode_npy(layer_of(type), bytes);
             ASSERT_TRUE(tiles) << tiles.error().detail;
             expect_expected(layer_of(type), *tiles, !structured && !with_gaps);
           }
         }
   const auto odd = [](double value) { return static_cast<double>(static_cast<int>(value) % 2); };
-  const auto truths = decode_npy(layer_of(ValueType::u8),
-                                 write_npy({"|b1", {'u', 1}}, [&](int x, int row) { return odd(value_at(x, row)); }));
+  const auto truths = decode_npy(
+      layer_of(ValueType::u8),
+      write_npy({"|b1", {'u', 1}}, [&](int x, int row) { return odd(value_at(x, row)); }));
   ASSERT_TRUE(truths) << truths.error().detail;
   expect_expected(layer_of(ValueType::u8), *truths, true, odd);
 }
 
 TEST(QueryRasterForms, doubles_are_rounded_to_the_nearest_float) {
   const auto tenth = [](double value) { return value + 0.1; };
-  const auto tiles = decode_npy(layer_of(ValueType::f32),
-                                write_npy({"<f8", {'f', 8}}, [&](int x, int row) { return tenth(value_at(x, row)); }));
+  const auto tiles = decode_npy(
+      layer_of(ValueType::f32),
+      write_npy({"<f8", {'f', 8}}, [&](int x, int row) { return tenth(value_at(x, row)); }));
   ASSERT_TRUE(tiles) << tiles.error().detail;
   expect_expected(layer_of(ValueType::f32), *tiles, true,
                   [&](double value) { return double{static_cast<float>(tenth(value))}; });
@@ -301,16 +315,21 @@ TEST(QueryRasterForms, the_first_number_that_does_not_fit_is_named_with_its_plac
                             {ValueType::i16, {'f', 8}, infinity, "inf"},
                             {ValueType::f32, {'f', 4}, infinity, ""}}) {
     SCOPED_TRACE(std::string(name(wrong.type)) + " from " + wrong.form.name());
-    const auto value = [&](int x, int row) { return (row == 3 && x >= 7) || row == 90 ? wrong.value : 1.0; };
+    const auto value = [&](int x, int row) {
+      return (row == 3 && x >= 7) || row == 90 ? wrong.value : 1.0;
+    };
     const Form& form = wrong.form;
     TiffKind tiff{form, Layout::mask};
     tiff.value = value;
-    for (const auto& tiles : {decode_npy(layer_of(wrong.type), write_npy({"<" + form.name(), form}, value)),
-                              decode_tiff(layer_of(wrong.type), write_tiff(tiff))}) {
+    for (const auto& tiles :
+         {decode_npy(layer_of(wrong.type), write_npy({"<" + form.name(), form}, value)),
+          decode_tiff(layer_of(wrong.type), write_tiff(tiff))}) {
       ASSERT_FALSE(tiles);
       EXPECT_EQ(tiles.error().status, 422);
-      EXPECT_NE(tiles.error().detail.find("column 7 of row 3"), std::string::npos) << tiles.error().detail;
-      EXPECT_NE(tiles.error().detail.find(std::string("The value ") + wrong.text), std::string::npos)
+      EXPECT_NE(tiles.error().detail.find("column 7 of row 3"), std::string::npos)
+          << tiles.error().detail;
+      EXPECT_NE(tiles.error().detail.find(std::string("The value ") + wrong.text),
+                std::string::npos)
           << tiles.error().detail;
     }
   }
@@ -347,13 +366,14 @@ TEST(QueryRasterForms, files_with_a_mask_or_planes_that_are_cut_or_damaged_never
 
 // As GDAL looks for it: an internal mask for all types, and NaN with its tag for floats.
 TEST(QueryRasterForms, our_tiff_marks_what_is_not_painted_for_gis) {
-  for (const auto type :
-       {ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i16, ValueType::f16, ValueType::f32}) {
+  for (const auto type : {ValueType::u8, ValueType::u16, ValueType::u32, ValueType::i16,
+                          ValueType::f16, ValueType::f32}) {
     SCOPED_TRACE(name(type));
     auto tile = std::make_shared<TileData>(type);
     for (int row = 0; row < kSide; ++row)
       for (int x = 0; x < kSide; ++x)
-        if (is_painted(x, row)) tile->write((kSide - 1 - row) * kTileSize + x, *encode_value(type, value_at(x, row)));
+        if (is_painted(x, row))
+          tile->write((kSide - 1 - row) * kTileSize + x, *encode_value(type, value_at(x, row)));
     const Layer layer = layer_of(type);
     const auto bytes = encode_tiff(layer, {{{0, 0}, tile}});
     ASSERT_TRUE(bytes) << bytes.error().detail;
@@ -382,7 +402,8 @@ TEST(QueryRasterForms, our_tiff_marks_what_is_not_painted_for_gis) {
     ASSERT_GT(TIFFReadTile(tiff.get(), mask.data(), 0, 0, 0, 0), 0);
     for (int row = 0; row < kSide; ++row)
       for (int x = 0; x < kSide; ++x)
-        ASSERT_EQ((mask[static_cast<std::size_t>(row * 32 + x / 8)] >> (7 - x % 8) & 1) != 0, is_painted(x, row));
+        ASSERT_EQ((mask[static_cast<std::size_t>(row * 32 + x / 8)] >> (7 - x % 8) & 1) != 0,
+                  is_painted(x, row));
   }
 }
 

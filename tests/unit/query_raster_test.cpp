@@ -25,10 +25,12 @@ Layer layer_of(ValueType type, int resolution = 384) {
   return layer;
 }
 
-// Values of the whole range, among them 0 (which is a value, too) and both limits, in some tiles only.
+// Values of the whole range, among them 0 (which is a value, too) and both limits, in some tiles
+// only.
 TileMap paint(const Layer& layer, unsigned seed = 1) {
   std::mt19937 random(seed);
-  const double values[] = {0, 1, lowest_value(layer.type), highest_value(layer.type), is_float(layer.type) ? 0.25 : 3};
+  const double values[] = {0, 1, lowest_value(layer.type), highest_value(layer.type),
+                           is_float(layer.type) ? 0.25 : 3};
   TileMap tiles;
   const int side = (layer.resolution + kTileSize - 1) / kTileSize;
   for (int y = 0; y < side; ++y)
@@ -36,7 +38,8 @@ TileMap paint(const Layer& layer, unsigned seed = 1) {
       if ((x + 2 * y) % 3 == 1) continue;
       auto tile = std::make_shared<TileData>(layer.type);
       for (int i = 0; i < 4000; ++i)
-        tile->write(static_cast<int>(random() % kTexelsPerTile), *encode_value(layer.type, values[random() % 5]));
+        tile->write(static_cast<int>(random() % kTexelsPerTile),
+                    *encode_value(layer.type, values[random() % 5]));
       tiles[{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)}] = tile;
     }
   return tiles;
@@ -56,8 +59,9 @@ struct Format {
   Result<Bytes> (*encode)(const Layer&, const TileMap&);
   Result<TileMap> (*decode)(const Layer&, std::span<const std::uint8_t>);
 };
-constexpr Format kFormats[] = {
-    {"tif", encode_tiff, decode_tiff}, {"png", encode_png, decode_png}, {"npy", encode_npy, decode_npy}};
+constexpr Format kFormats[] = {{"tif", encode_tiff, decode_tiff},
+                               {"png", encode_png, decode_png},
+                               {"npy", encode_npy, decode_npy}};
 
 bool holds(const Format& format, ValueType type) {
   return format.encode != encode_png || type == ValueType::u8 || type == ValueType::u16;
@@ -99,8 +103,10 @@ TEST(QueryRaster, the_first_row_of_a_file_is_the_top_of_the_texture) {
   const auto npy = encode_npy(layer, tiles);
   ASSERT_TRUE(npy);
   const std::string text(npy->begin(), npy->begin() + 128);
-  EXPECT_NE(text.find("{'descr': [('value', '<u2'), ('valid', '|b1')], 'fortran_order': False, 'shape': (256, 256), }"),
-            std::string::npos);
+  EXPECT_NE(
+      text.find(
+          "{'descr': [('value', '<u2'), ('valid', '|b1')], 'fortran_order': False, 'shape': (256, 256), }"),
+      std::string::npos);
   const std::size_t data = npy->size() - 256 * 256 * 3;
   EXPECT_EQ(data % 64, 0u);
   EXPECT_EQ((*npy)[data + 5 * 3], 2);
@@ -126,7 +132,8 @@ TEST(QueryRaster, a_tiff_is_tiled_and_says_what_its_samples_are) {
     const Layer layer = layer_of(type);
     const auto bytes = encode_tiff(layer, paint(layer));
     ASSERT_TRUE(bytes);
-    const auto path = std::filesystem::path(testing::TempDir()) / ("strata_raster_" + std::string(name(type)) + ".tif");
+    const auto path = std::filesystem::path(testing::TempDir()) /
+                      ("strata_raster_" + std::string(name(type)) + ".tif");
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes->data()), std::streamsize(bytes->size()));
     TIFF* tiff = TIFFOpen(path.c_str(), "r");
@@ -186,7 +193,8 @@ TEST(QueryRaster, a_striped_big_endian_tiff_of_another_program_is_read) {
   for (int row = 0; row < 256; ++row)
     for (int x = 0; x < 256; ++x) {
       const int y = 255 - row;
-      const TileAddress address{static_cast<std::uint16_t>(x / 128), static_cast<std::uint16_t>(y / 128)};
+      const TileAddress address{static_cast<std::uint16_t>(x / 128),
+                                static_cast<std::uint16_t>(y / 128)};
       const auto found = tiles->find(address);
       const int texel = y % 128 * 128 + x % 128;
       const bool valid = found != tiles->end() && found->second->valid.test(texel);
@@ -217,15 +225,18 @@ TEST(QueryRaster, another_size_is_refused_and_named) {
     const auto other_size = format.decode(large, *bytes);
     ASSERT_FALSE(other_size);
     EXPECT_EQ(other_size.error().status, 422);
-    EXPECT_NE(other_size.error().detail.find("256"), std::string::npos) << other_size.error().detail;
-    EXPECT_NE(other_size.error().detail.find("512 × 512"), std::string::npos) << other_size.error().detail;
+    EXPECT_NE(other_size.error().detail.find("256"), std::string::npos)
+        << other_size.error().detail;
+    EXPECT_NE(other_size.error().detail.find("512 × 512"), std::string::npos)
+        << other_size.error().detail;
     if (format.decode != decode_png) continue;
     const auto other_type = format.decode(wide, *bytes);
     ASSERT_FALSE(other_type);
     EXPECT_EQ(other_type.error().status, 422);
   }
   const Layer whole = layer_of(ValueType::i32, 256), real = layer_of(ValueType::f32, 256);
-  EXPECT_FALSE(decode_tiff(real, *encode_tiff(whole, paint(whole)))) << "2147483647 is no 32-bit float";
+  EXPECT_FALSE(decode_tiff(real, *encode_tiff(whole, paint(whole))))
+      << "2147483647 is no 32-bit float";
   EXPECT_FALSE(decode_npy(real, *encode_npy(whole, paint(whole))));
 }
 
@@ -238,7 +249,8 @@ TEST(QueryRaster, a_valid_texel_that_is_not_finite_is_refused_with_its_place) {
     for (const auto& format : {kFormats[0], kFormats[2]}) {
       const auto back = format.decode(layer, *format.encode(layer, tiles));
       ASSERT_FALSE(back);
-      EXPECT_NE(back.error().detail.find("column 9 of row 0"), std::string::npos) << back.error().detail;
+      EXPECT_NE(back.error().detail.find("column 9 of row 0"), std::string::npos)
+          << back.error().detail;
     }
   }
 }
@@ -263,7 +275,8 @@ TEST(QueryRaster, a_truncated_file_is_refused_where_texels_are_missing) {
     ASSERT_TRUE(bytes);
     for (std::size_t size = 0; size < bytes->size(); size += 1 + bytes->size() / 150) {
       const auto back = format.decode(layer, std::span(*bytes).first(size));
-      // The last bytes of a TIFF are its remarks and its mask: without them all texels are still there.
+      // The last bytes of a TIFF are its remarks and its mask: without them all texels are still
+      // there.
       if (back && format.decode == decode_tiff && size > bytes->size() * 3 / 4)
         expect_equal(*back, paint(layer));
       else
@@ -283,7 +296,8 @@ TEST(QueryRaster, flipped_bits_never_crash) {
     for (int round = 0; round < 600; ++round) {
       Bytes broken = *bytes;
       // Headers and directories are where lies hurt: at the start, or (TIFF) at the end.
-      const std::size_t area = round % 3 == 0 ? broken.size() : std::min<std::size_t>(broken.size(), 400);
+      const std::size_t area =
+          round % 3 == 0 ? broken.size() : std::min<std::size_t>(broken.size(), 400);
       const std::size_t from = round % 3 == 1 ? broken.size() - area : 0;
       for (int i = 0; i <= round % 4; ++i)
         broken[from + random() % area] ^= static_cast<std::uint8_t>(1u << random() % 8);
@@ -300,7 +314,8 @@ TEST(QueryRaster, a_numpy_header_in_another_spelling_is_read) {
   ASSERT_TRUE(ours);
   std::string header =
       "{\"shape\": (256,256), \"descr\": [(\"value\", \"|u1\"), (\"valid\", \"|b1\")], \"fortran_order\": False}\n";
-  Bytes bytes{0x93, 'N', 'U', 'M', 'P', 'Y', 2, 0, static_cast<std::uint8_t>(header.size()), 0, 0, 0};
+  Bytes bytes{0x93, 'N', 'U', 'M', 'P', 'Y', 2, 0, static_cast<std::uint8_t>(header.size()),
+              0,    0,   0};
   bytes.insert(bytes.end(), header.begin(), header.end());
   bytes.insert(bytes.end(), ours->end() - 256 * 256 * 2, ours->end());
   const auto back = decode_npy(layer, bytes);

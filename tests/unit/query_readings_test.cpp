@@ -8,7 +8,8 @@ namespace {
 
 TEST(Readings, are_read_by_the_names_of_their_columns) {
   for (const std::string text :
-       {"x,y,z,value\n1,2,3,0.5\n-4e2,+5,6.25,7\n", "Value;note;Z;Y;X\n0.5;a;3;2;1\r\n\r\n7;;6.25;5;-400\r\n",
+       {"x,y,z,value\n1,2,3,0.5\n-4e2,+5,6.25,7\n",
+        "Value;note;Z;Y;X\n0.5;a;3;2;1\r\n\r\n7;;6.25;5;-400\r\n",
         "\xef\xbb\xbfid\tX\tY\tZ\tVALUE\n1\t\"1\"\t 2 \t3\t0.5\n2\t-400\t5\t6.25\t7"}) {
     const auto readings = parse_readings(text);
     ASSERT_TRUE(readings) << text << readings.error().detail;

@@ -17,14 +17,15 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-Result<FeatureMap> parse(const std::string& shp, const std::string& dbf = "", const std::string& cpg = "",
-                         const std::string& prj = "") {
+Result<FeatureMap> parse(const std::string& shp, const std::string& dbf = "",
+                         const std::string& cpg = "", const std::string& prj = "") {
   return parse_shapefile({bytes_of(shp), bytes_of(dbf), cpg, prj});
 }
 
-const std::vector<std::string> kThree{
-    polygon_record(square(0, 0, 10)), polygon_record({}),
-    polygon_record({square(20, 0, 10)[0], {{24, 4}, {26, 4}, {26, 6}, {24, 6}, {24, 4}}, square(40, 0, 5)[0]})};
+const std::vector<std::string> kThree{polygon_record(square(0, 0, 10)), polygon_record({}),
+                                      polygon_record({square(20, 0, 10)[0],
+                                                      {{24, 4}, {26, 4}, {26, 6}, {24, 6}, {24, 4}},
+                                                      square(40, 0, 5)[0]})};
 
 TEST(Shapefile, polygons_are_read_with_their_holes_and_attributes_of_every_type) {
   const auto map = parse(shp_of(kThree), dbf_of({{"UNIT", 'N', 8, 0, {"3", "5", "-7"}},
@@ -101,8 +102,8 @@ TEST(Shapefile, names_become_keys_that_the_legend_has_or_gets) {
 }
 
 TEST(Shapefile, numbers_take_names_from_another_attribute) {
-  const auto map = parse(shp_of(kThree),
-                         dbf_of({{"ID", 'N', 4, 0, {"8", "9", "1"}}, {"NAME", 'C', 12, 0, {"salt", "none", "crack"}}}));
+  const auto map = parse(shp_of(kThree), dbf_of({{"ID", 'N', 4, 0, {"8", "9", "1"}},
+                                                 {"NAME", 'C', 12, 0, {"salt", "none", "crack"}}}));
   ASSERT_TRUE(map);
   KeyNames keys({PaletteMode::categorical, 1, 7, {{1, {}, "moss"}}, {}}, {});
   ASSERT_TRUE(flat_map(*map, {"ID", 0, "NAME"}, &keys));
@@ -126,7 +127,8 @@ TEST(Shapefile, the_attributes_to_choose_from_are_told) {
   EXPECT_THAT(columns[0].samples, testing::ElementsAre("8", "1"));
   const auto missing = flat_map(*map, {"SOME", 0, ""}, nullptr);
   ASSERT_FALSE(missing);
-  EXPECT_THAT(missing.error().detail, testing::HasSubstr("Record 3: the attribute 'SOME' holds no number"));
+  EXPECT_THAT(missing.error().detail,
+              testing::HasSubstr("Record 3: the attribute 'SOME' holds no number"));
   const auto unknown = flat_map(*map, {"DEPTH", 0, ""}, nullptr);
   ASSERT_FALSE(unknown);
   EXPECT_EQ(unknown.error().field, "attribute");
@@ -135,11 +137,15 @@ TEST(Shapefile, the_attributes_to_choose_from_are_told) {
 
 TEST(Shapefile, its_coordinate_system_is_told) {
   const auto shp = shp_of({polygon_record(square(0, 0, 1))});
-  EXPECT_EQ(parse(shp, "", "",
-                  R"(PROJCS["ETRS89 / UTM zone 30N",GEOGCS["x",AUTHORITY["EPSG","4258"]],AUTHORITY["EPSG","25830"]])")
-                ->crs,
-            "EPSG:25830");
-  EXPECT_EQ(parse(shp, "", "", R"(PROJCS["mine",GEOGCS["x",AUTHORITY["EPSG","4258"]],UNIT["m",1]])")->crs, "");
+  EXPECT_EQ(
+      parse(
+          shp, "", "",
+          R"(PROJCS["ETRS89 / UTM zone 30N",GEOGCS["x",AUTHORITY["EPSG","4258"]],AUTHORITY["EPSG","25830"]])")
+          ->crs,
+      "EPSG:25830");
+  EXPECT_EQ(
+      parse(shp, "", "", R"(PROJCS["mine",GEOGCS["x",AUTHORITY["EPSG","4258"]],UNIT["m",1]])")->crs,
+      "");
   EXPECT_TRUE(parse(shp, "", "", R"(GEOGCS["WGS 84"])")->in_degrees);
 }
 
@@ -164,8 +170,10 @@ TEST(Shapefile, that_cannot_be_read_is_refused_with_the_reason) {
       {patched(good, 104, test::big_endian(0x7fffffff)), "", "Record 1 of the .shp is longer"},
       {patched(good, 104, test::big_endian(0)), "", "Record 1 of the .shp is longer"},
       {patched(good, 108, test::little_endian(3)), "", "Record 1 of the .shp is of another type"},
-      {patched(good, 108 + 36, test::little_endian(0x7fffffff)), "", "Record 1 of the .shp cannot be read"},
-      {patched(good, 108 + 40, test::little_endian(0x7fffffff)), "", "Record 1 of the .shp cannot be read"},
+      {patched(good, 108 + 36, test::little_endian(0x7fffffff)), "",
+       "Record 1 of the .shp cannot be read"},
+      {patched(good, 108 + 40, test::little_endian(0x7fffffff)), "",
+       "Record 1 of the .shp cannot be read"},
       {patched(good, 108 + 44, test::little_endian(0x7fffffff)), "", "Record 1 of the .shp"},
       {shp_of({polygon_record({{{0, 0}, {1, 1}}})}), "", "fewer than three"},
       {shp_of({polygon_record({{{0, 0}, {1, NAN}, {1, 1}}})}), "", "finite"},
@@ -185,8 +193,8 @@ TEST(Shapefile, that_cannot_be_read_is_refused_with_the_reason) {
 
 // Every byte of small files changed in turn, and every length: an answer or a refusal, never more.
 TEST(Shapefile, damaged_anywhere_it_is_read_or_refused) {
-  const std::string shp = shp_of(kThree),
-                    dbf = dbf_of({{"ID", 'N', 4, 0, {"8", "9", "1"}}, {"T", 'C', 4, 0, {"a", "b", "c"}}});
+  const std::string shp = shp_of(kThree), dbf = dbf_of({{"ID", 'N', 4, 0, {"8", "9", "1"}},
+                                                        {"T", 'C', 4, 0, {"a", "b", "c"}}});
   int refused = 0;
   for (const char change : {'\x00', '\x7f', '\xff'}) {
     for (std::size_t i = 0; i < shp.size(); ++i) {
@@ -200,7 +208,8 @@ TEST(Shapefile, damaged_anywhere_it_is_read_or_refused) {
       refused += !parse(shp, damaged);
     }
   }
-  for (std::size_t length = 0; length < shp.size(); ++length) EXPECT_FALSE(parse(shp.substr(0, length), dbf));
+  for (std::size_t length = 0; length < shp.size(); ++length)
+    EXPECT_FALSE(parse(shp.substr(0, length), dbf));
   EXPECT_GT(refused, 100);
 }
 

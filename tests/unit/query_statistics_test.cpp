@@ -19,7 +19,8 @@ namespace {
 
 constexpr glm::dvec3 kOrigin{4'000'000.0, 500'000.0, 100.0};
 
-// A map by hand: `share` of the blocks are there, with surface, gutter and empty texels and random areas and places.
+// A map by hand: `share` of the blocks are there, with surface, gutter and empty texels and random
+// areas and places.
 mesh::SurfaceMap make_map(int resolution, double share, unsigned seed) {
   std::mt19937 random(seed);
   mesh::SurfaceMap map;
@@ -35,7 +36,8 @@ mesh::SurfaceMap make_map(int resolution, double share, unsigned seed) {
     for (int i = 0; i < 64; ++i) {
       const auto kind = random() % 8;  // 0: neither, 1: gutter, otherwise surface
       if (kind >= 2) surface |= std::uint64_t{1} << i;
-      const std::uint64_t q = (std::uint64_t{random()} << 32 | random()) & ~(std::uint64_t{1} << 63);
+      const std::uint64_t q =
+          (std::uint64_t{random()} << 32 | random()) & ~(std::uint64_t{1} << 63);
       map.packed_position.push_back(kind == 0 ? mesh::kNoPosition : q);
       map.area.push_back(kind >= 2 ? 0.5f + static_cast<float>(random() % 1000) / 1000.0f : 0.0f);
     }
@@ -58,7 +60,8 @@ LayerView make_layer(ValueType type, const mesh::SurfaceMap& map, int distinct, 
       auto tile = std::make_shared<TileData>(type);
       for (int i = 0; i < kTexelsPerTile; ++i) {
         if (!everywhere && random() % 3 == 0) continue;
-        double value = double(random() % unsigned(distinct)) - (lowest_value(type) < 0 ? distinct / 2 : 0);
+        double value =
+            double(random() % unsigned(distinct)) - (lowest_value(type) < 0 ? distinct / 2 : 0);
         if (is_float(type)) value /= 8;
         tile->write(i, *encode_value(type, value));
       }
@@ -92,8 +95,8 @@ std::vector<Sample> samples(const LayerView& view, const mesh::SurfaceMap& map) 
 
 TEST(QueryStatistics, they_agree_with_a_plain_sum_over_every_texel) {
   const mesh::SurfaceMap map = make_map(512, 0.6, 3);
-  for (const auto type : {ValueType::u8, ValueType::i8, ValueType::u16, ValueType::i16, ValueType::u32, ValueType::i32,
-                          ValueType::f16, ValueType::f32}) {
+  for (const auto type : {ValueType::u8, ValueType::i8, ValueType::u16, ValueType::i16,
+                          ValueType::u32, ValueType::i32, ValueType::f16, ValueType::f32}) {
     SCOPED_TRACE(name(type));
     const LayerView view = make_layer(type, map, 100, 11);
     const Statistics got = statistics(view, map, kOrigin, 0.01);
@@ -182,7 +185,8 @@ TEST(QueryStatistics, the_mean_of_values_of_mixed_size_is_right_to_the_last_digi
     }
     tile = mixed;
   }
-  __extension__ using Wide = __int128;  // products of these values and areas are whole numbers of 2^-76
+  // products of these values and areas are whole numbers of 2^-76
+  __extension__ using Wide = __int128;
   Wide weighted = 0;
   double area = 0;
   for (const auto& sample : samples(view, map)) {
@@ -198,7 +202,8 @@ TEST(QueryStatistics, cells_of_a_layer_with_one_value_have_that_value_as_their_m
   for (const double value : {66.0, 0.1, -1e-30, 3e38}) {
     LayerView view = make_layer(ValueType::f32, *map, 2, 1, true);
     auto tile = std::make_shared<TileData>(ValueType::f32);
-    for (int i = 0; i < kTexelsPerTile; ++i) tile->write(i, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+    for (int i = 0; i < kTexelsPerTile; ++i)
+      tile->write(i, std::bit_cast<std::uint32_t>(static_cast<float>(value)));
     for (auto& [address, each] : view.snapshot.tiles) each = tile;
     const auto cells = samples_by_cell({view, map, {}, kOrigin, 0.001}, 0.25);
     ASSERT_TRUE(cells.has_value());
@@ -209,8 +214,8 @@ TEST(QueryStatistics, cells_of_a_layer_with_one_value_have_that_value_as_their_m
 
 TEST(QueryStatistics, quantiles_are_those_of_all_texels_in_order) {
   const mesh::SurfaceMap map = make_map(512, 0.6, 5);
-  for (const auto type : {ValueType::u8, ValueType::i8, ValueType::u16, ValueType::i16, ValueType::u32, ValueType::i32,
-                          ValueType::f16, ValueType::f32}) {
+  for (const auto type : {ValueType::u8, ValueType::i8, ValueType::u16, ValueType::i16,
+                          ValueType::u32, ValueType::i32, ValueType::f16, ValueType::f32}) {
     for (const int distinct : {1, 2, 100, 60000}) {
       if (distinct > highest_value(type)) continue;
       SCOPED_TRACE(std::string(name(type)) + " of " + std::to_string(distinct));
@@ -241,7 +246,8 @@ TEST(QueryStatistics, within_a_selection_only_its_texels_count) {
   }
   TileSumsCache cache;
   statistics(view, map, kOrigin, 1, {.cache = &cache});
-  const auto got = statistics(view, map, kOrigin, 1, {.within = &within, .quantiles = true, .cache = &cache});
+  const auto got =
+      statistics(view, map, kOrigin, 1, {.within = &within, .quantiles = true, .cache = &cache});
   const auto expected = statistics(view, smaller, kOrigin, 1, {.quantiles = true});
   EXPECT_GT(got.texels, 1000u);
   EXPECT_EQ(got.texels, expected.texels);
@@ -283,9 +289,11 @@ TEST(QueryStatistics, tiles_that_stay_are_not_counted_again_and_the_sums_are_the
         SCOPED_TRACE(std::string(name(type)) + ", stroke " + std::to_string(stroke));
         expect_same(statistics(view, map, kOrigin, 0.01, {.cache = &cache, .threads = 3}),
                     statistics(view, map, kOrigin, 0.01));
-        auto tile = std::next(view.snapshot.tiles.begin(), static_cast<long>(random() % view.snapshot.tiles.size()));
+        auto tile = std::next(view.snapshot.tiles.begin(),
+                              static_cast<long>(random() % view.snapshot.tiles.size()));
         auto changed = std::make_shared<TileData>(*tile->second);
-        for (int i = 0; i < 500; ++i) changed->write(static_cast<int>(random() % kTexelsPerTile), random() & 0x3fu);
+        for (int i = 0; i < 500; ++i)
+          changed->write(static_cast<int>(random() % kTexelsPerTile), random() & 0x3fu);
         tile->second = changed;
         if (stroke == 3) view.snapshot.tiles.erase(view.snapshot.tiles.begin());
       }
@@ -299,7 +307,8 @@ TEST(QueryStatistics, values_that_are_not_finite_do_not_count) {
   const auto before = statistics(view, map, kOrigin, 1);
   auto& tile = view.snapshot.tiles.begin()->second;
   auto changed = std::make_shared<TileData>(*tile);
-  for (int i = 0; i < kTexelsPerTile; ++i) changed->write(i, std::bit_cast<std::uint32_t>(INFINITY));
+  for (int i = 0; i < kTexelsPerTile; ++i)
+    changed->write(i, std::bit_cast<std::uint32_t>(INFINITY));
   tile = changed;
   const auto after = statistics(view, map, kOrigin, 1, {.quantiles = true});
   EXPECT_LT(after.texels, before.texels);
@@ -308,25 +317,31 @@ TEST(QueryStatistics, values_that_are_not_finite_do_not_count) {
 
 TEST(CrossTable, agrees_with_a_count_of_every_texel) {
   const mesh::SurfaceMap map = make_map(512, 0.6, 21);
-  LayerView units = make_layer(ValueType::u16, map, 7, 5), states = make_layer(ValueType::i8, map, 4, 6);
+  LayerView units = make_layer(ValueType::u16, map, 7, 5),
+            states = make_layer(ValueType::i8, map, 4, 6);
   std::mt19937_64 random(2);
   TexelSelection half;
   for (std::size_t slot = 0; slot < map.surface_mask.size(); ++slot) half.push_back(random());
-  for (const TexelSelection* within : {static_cast<const TexelSelection*>(nullptr), &std::as_const(half)}) {
+  for (const TexelSelection* within :
+       {static_cast<const TexelSelection*>(nullptr), &std::as_const(half)}) {
     const auto table = cross_tabulate(units, states, map, within, 0.01);
     ASSERT_TRUE(table);
-    std::map<std::pair<CrossTable::Key, CrossTable::Key>, std::pair<std::uint64_t, double>> expected;
+    std::map<std::pair<CrossTable::Key, CrossTable::Key>, std::pair<std::uint64_t, double>>
+        expected;
     for (int y = 0; y < map.resolution; ++y)
       for (int x = 0; x < map.resolution; ++x) {
-        const TileAddress address{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)};
-        const auto slot = map.slot_of_block[std::size_t(y / 8) * std::size_t(map.blocks_per_side) + std::size_t(x / 8)];
+        const TileAddress address{static_cast<std::uint16_t>(x / kTileSize),
+                                  static_cast<std::uint16_t>(y / kTileSize)};
+        const auto slot = map.slot_of_block[std::size_t(y / 8) * std::size_t(map.blocks_per_side) +
+                                            std::size_t(x / 8)];
         const int i = y % 8 * 8 + x % 8;
         if (slot == mesh::kNoSlot || !((map.surface_mask[slot] >> i) & 1)) continue;
         if (within && !(((*within)[slot] >> i) & 1)) continue;
         const auto key = [&](const LayerView& view) -> CrossTable::Key {
           const auto tile = view.snapshot.tiles.find(address);
           const int texel = y % kTileSize * kTileSize + x % kTileSize;
-          if (tile == view.snapshot.tiles.end() || !tile->second->valid.test(texel)) return std::nullopt;
+          if (tile == view.snapshot.tiles.end() || !tile->second->valid.test(texel))
+            return std::nullopt;
           return decode_value(view.layer.type, tile->second->bits(texel));
         };
         const std::pair pair{key(units), key(states)};
@@ -361,12 +376,14 @@ TEST(CrossTable, takes_layers_of_other_resolutions_by_the_texel_at_the_place) {
   ASSERT_TRUE(table);
   EXPECT_EQ(table->rows.size(), 1u);
   EXPECT_EQ(table->columns.size(), 2u);
-  EXPECT_NEAR(table->area_m2[0][0] + table->area_m2[0][1], statistics(fine, map, kOrigin, 1).area_m2, 1e-6);
+  EXPECT_NEAR(table->area_m2[0][0] + table->area_m2[0][1],
+              statistics(fine, map, kOrigin, 1).area_m2, 1e-6);
 }
 
 TEST(CrossTable, refuses_fractions_and_too_many_values) {
   const mesh::SurfaceMap map = make_map(256, 1.0, 3);
-  const LayerView keys = make_layer(ValueType::u8, map, 3, 1), fractions = make_layer(ValueType::f32, map, 3, 1),
+  const LayerView keys = make_layer(ValueType::u8, map, 3, 1),
+                  fractions = make_layer(ValueType::f32, map, 3, 1),
                   many = make_layer(ValueType::u16, map, 60000, 1);
   EXPECT_EQ(cross_tabulate(keys, fractions, map, nullptr, 1).error().field, "columns");
   EXPECT_EQ(cross_tabulate(fractions, keys, map, nullptr, 1).error().field, "rows");
@@ -377,7 +394,8 @@ TEST(QueryStatistics, gutter_texels_do_not_count) {
   mesh::SurfaceMap map = make_map(256, 1.0, 3);
   const LayerView view = make_layer(ValueType::u8, map, 3, 1, true);
   const auto before = statistics(view, map, kOrigin, 1);
-  for (auto& mask : map.surface_mask) mask &= 0xff;  // the other seven rows of each block become gutter
+  // the other seven rows of each block become gutter
+  for (auto& mask : map.surface_mask) mask &= 0xff;
   const auto after = statistics(view, map, kOrigin, 1);
   EXPECT_LT(after.texels, before.texels / 7);
   EXPECT_GT(after.texels, 0u);

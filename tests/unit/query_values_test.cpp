@@ -38,7 +38,8 @@ LayerView layer_with(ValueType type, int resolution, int x, int y, double value)
   view.layer.resolution = resolution;
   auto tile = std::make_shared<TileData>(type);
   tile->write(y % kTileSize * kTileSize + x % kTileSize, *encode_value(type, value));
-  view.snapshot.tiles[{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)}] = tile;
+  view.snapshot.tiles[{static_cast<std::uint16_t>(x / kTileSize),
+                       static_cast<std::uint16_t>(y / kTileSize)}] = tile;
   return view;
 }
 
@@ -64,7 +65,8 @@ TEST(QueryValues, the_edges_of_the_texture_belong_to_its_outer_texels) {
 
 TEST(QueryValues, the_nearest_point_is_found_in_world_coordinates) {
   const mesh::SearchTree tree(square());
-  const LayerView view = layer_with(ValueType::f32, 256, 192, 64, 0.5);  // uv (0.75, 0.25): position (0.5, -0.5)
+  // uv (0.75, 0.25): position (0.5, -0.5)
+  const LayerView view = layer_with(ValueType::f32, 256, 192, 64, 0.5);
   const auto point = nearest_point(tree, kOrigin, kOrigin + glm::dvec3(0.504, -0.496, 3), {view});
   ASSERT_TRUE(point.hit);
   EXPECT_NEAR(point.distance, 3, 1e-5);
@@ -77,8 +79,9 @@ TEST(QueryValues, the_nearest_point_is_found_in_world_coordinates) {
 
 TEST(QueryValues, a_point_that_is_not_a_number_hits_nothing) {
   const mesh::SearchTree tree(square());
-  const auto point = nearest_point(tree, kOrigin, glm::dvec3(std::numeric_limits<double>::quiet_NaN()),
-                                   {layer_with(ValueType::u8, 256, 0, 0, 1)});
+  const auto point =
+      nearest_point(tree, kOrigin, glm::dvec3(std::numeric_limits<double>::quiet_NaN()),
+                    {layer_with(ValueType::u8, 256, 0, 0, 1)});
   EXPECT_FALSE(point.hit);
 }
 
@@ -119,12 +122,14 @@ TEST(QueryValues, a_pick_sees_what_the_section_keeps) {
   EXPECT_NEAR(*height(), 0, 1e-6);
   camera.section = {{0, 0, -3, 3 * (kOrigin.z - 0.5)}};  // keeps what is below -0.5
   EXPECT_NEAR(*height(), -1, 1e-6);
-  EXPECT_NEAR(pick(tree, kOrigin, camera, 250, 150, {}).distance, 5.9, 1e-4) << "from the near plane, as ever";
+  EXPECT_NEAR(pick(tree, kOrigin, camera, 250, 150, {}).distance, 5.9, 1e-4)
+      << "from the near plane, as ever";
   camera.section.push_back({0, 0, 1, -kOrigin.z + 0.7});  // and above -0.7
   EXPECT_FALSE(height());
   camera.section = {{1, 0, 0, -kOrigin.x - 1.5}};  // beside the ray
   EXPECT_FALSE(height());
-  // From below, a plane between the eye and the lower square's back: the solid between them is closed there.
+  // From below, a plane between the eye and the lower square's back: the solid between them is
+  // closed there.
   camera.view = glm::lookAt(kOrigin + glm::dvec3(0, 0, -5), kOrigin, glm::dvec3(0, 1, 0));
   camera.section = {{0, 0, 1, -kOrigin.z + 0.5}};
   EXPECT_FALSE(height());
@@ -134,7 +139,8 @@ TEST(QueryValues, a_pick_sees_what_the_section_keeps) {
 
 TEST(QueryProfile, a_line_over_a_plane_is_as_long_as_it_was_drawn_and_reads_what_lies_under_it) {
   const mesh::SearchTree tree(square());
-  const LayerView view = layer_with(ValueType::u8, 256, 128, 128, 9);  // one texel: from the middle to 2/256
+  // one texel: from the middle to 2/256
+  const LayerView view = layer_with(ValueType::u8, 256, 128, 128, 9);
   const std::vector<glm::dvec3> places = {kOrigin + glm::dvec3(-0.5, 0.004, 0.3),
                                           kOrigin + glm::dvec3(0.5, 0.004, 0.3)};
   const auto profile = profile_near(tree, kOrigin, places, 0.001, {view});

@@ -9,7 +9,8 @@
 namespace strata::query {
 namespace {
 
-// Four vertices at the corners of the unit square of texture coordinates, of one scan colour; vertex 4 shares the place of vertex 3.
+// Four vertices at the corners of the unit square of texture coordinates, of one scan colour;
+// vertex 4 shares the place of vertex 3.
 std::shared_ptr<const mesh::Geometry> square() {
   auto geometry = std::make_shared<mesh::Geometry>();
   for (int i = 0; i < 5; ++i) {
@@ -29,7 +30,8 @@ TileMap tiles_with(ValueType type, int x, int y, double value) {
   auto tile = std::make_shared<TileData>(type);
   tile->write(y % kTileSize * kTileSize + x % kTileSize, *encode_value(type, value));
   TileMap tiles;
-  tiles[{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)}] = tile;
+  tiles[{static_cast<std::uint16_t>(x / kTileSize), static_cast<std::uint16_t>(y / kTileSize)}] =
+      tile;
   return tiles;
 }
 
@@ -47,9 +49,12 @@ Palette one_class(Rgba color, Pattern pattern = Pattern::solid) {
 using Rgb = std::array<std::uint8_t, 3>;
 constexpr Rgb kScan{0x60, 0x40, 0x20};
 
-Rgb at(const VertexColors& colors, std::vector<std::uint32_t> vertices) { return colors.at(vertices); }
+Rgb at(const VertexColors& colors, std::vector<std::uint32_t> vertices) {
+  return colors.at(vertices);
+}
 
-// What pictures do, written down once more: each colour covers what lies below by opacity times alpha.
+// What pictures do, written down once more: each colour covers what lies below by opacity times
+// alpha.
 Rgb composed(glm::dvec3 below, const std::vector<std::pair<Rgba, double>>& inks) {
   for (const auto& [ink, opacity] : inks) {
     const double cover = opacity * ink[3] / 255;
@@ -131,7 +136,8 @@ TEST(VertexPly, colours_of_layers_take_the_place_of_the_scans) {
     return true;
   }));
   ASSERT_EQ(file.size(), colored.bytes());
-  const std::size_t first = file.find("end_header\n") + std::strlen("end_header\n") + 3 * sizeof(float);
+  const std::size_t first =
+      file.find("end_header\n") + std::strlen("end_header\n") + 3 * sizeof(float);
   EXPECT_EQ(file.substr(first, 3), "\x0a\x14\x1e");
   EXPECT_EQ(file.substr(first + 3 * sizeof(float) + 3, 3), "\x60\x40\x20");
 }

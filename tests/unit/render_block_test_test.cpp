@@ -27,7 +27,8 @@ Block random_block(std::mt19937& random) {
   block.box = mesh::packed_box_of(center - 0.2f, center + 0.2f);
   for (auto& position : block.positions) {
     const glm::vec3 offset(uniform(random), uniform(random), uniform(random));
-    position = random() % 8 == 0 ? mesh::kNoPosition : mesh::pack_position(center + offset * 0.19f, block.box);
+    position = random() % 8 == 0 ? mesh::kNoPosition
+                                 : mesh::pack_position(center + offset * 0.19f, block.box);
   }
   return block;
 }
@@ -36,7 +37,8 @@ Block random_block(std::mt19937& random) {
 std::shared_ptr<const ShapeTexture> random_shape(std::mt19937& random) {
   ShapeBits bits{};
   for (int dot = 0; dot < 12; ++dot) {
-    const int size = 1 << random() % 7, x0 = static_cast<int>(random() % 256), y0 = static_cast<int>(random() % 256);
+    const int size = 1 << random() % 7, x0 = static_cast<int>(random() % 256),
+              y0 = static_cast<int>(random() % 256);
     for (int y = y0; y < std::min(y0 + size, kShapeSide); ++y)
       for (int x = x0; x < std::min(x0 + size, kShapeSide); ++x)
         bits[std::size_t(y * kShapeSide + x) / 64] |= std::uint64_t{1} << (x % 64);
@@ -59,7 +61,9 @@ struct Stroke {
 };
 
 void make_stroke(std::mt19937& random, Stroke& stroke) {
-  const auto in = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const auto in = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
   constexpr int kWidth = 200, kHeight = 120;
   stroke.batch.camera.width = kWidth;
   stroke.batch.camera.height = kHeight;
@@ -75,8 +79,9 @@ void make_stroke(std::mt19937& random, Stroke& stroke) {
   std::vector<float> depth(std::size_t{kWidth} * kHeight);
   for (float& d : depth) d = static_cast<float>(in(0.85, 1.0));
   stroke.depth = make_depth_copy(std::move(depth), kWidth, kHeight, 1);
-  stroke.test.clip_from_model = glm::mat4(glm::perspective(0.9, double{kWidth} / kHeight, 0.2, 9.0) *
-                                          glm::lookAt(glm::dvec3(in(-3, 3), in(-3, 3), 2), {}, {0, 1, 0}));
+  stroke.test.clip_from_model =
+      glm::mat4(glm::perspective(0.9, double{kWidth} / kHeight, 0.2, 9.0) *
+                glm::lookAt(glm::dvec3(in(-3, 3), in(-3, 3), 2), {}, {0, 1, 0}));
   stroke.test.path = &stroke.path;
   stroke.test.depth = random() % 3 ? &stroke.depth : nullptr;
   stroke.test.width = kWidth;
@@ -97,7 +102,8 @@ TEST(BlockTest, every_vector_unit_of_this_machine_decides_as_plain_code_but_for_
     for (int k = 0; k < 20; ++k) {
       const Block block = random_block(random);
       const auto bits = [&](VectorUnit unit) {
-        return test_block_on(unit)(stroke.test, block.positions.data(), block.box, stroke.segments, false);
+        return test_block_on(unit)(stroke.test, block.positions.data(), block.box, stroke.segments,
+                                   false);
       };
       const std::uint64_t plain = bits(VectorUnit::plain);
       set += std::popcount(plain);
@@ -105,10 +111,11 @@ TEST(BlockTest, every_vector_unit_of_this_machine_decides_as_plain_code_but_for_
       for (const auto unit : {VectorUnit::avx2, VectorUnit::avx512})
         if (unit <= best_vector_unit()) differ += std::popcount(bits(unit) ^ plain);
       for (int t = 0; t < 64; ++t)
-        ASSERT_FALSE(block.positions[std::size_t(t)] == mesh::kNoPosition && (plain >> t & 1)) << "no surface there";
+        ASSERT_FALSE(block.positions[std::size_t(t)] == mesh::kNoPosition && (plain >> t & 1))
+            << "no surface there";
       // To be told that the tool covers the block only saves asking.
-      const std::uint64_t in_tool =
-          test_block_on(VectorUnit::plain)(stroke.test, block.positions.data(), block.box, stroke.segments, true);
+      const std::uint64_t in_tool = test_block_on(VectorUnit::plain)(
+          stroke.test, block.positions.data(), block.box, stroke.segments, true);
       ASSERT_EQ(plain & ~in_tool, 0u);
     }
   }
@@ -122,12 +129,13 @@ TEST(BlockTest, texels_behind_the_eye_and_matrices_without_sense_write_nothing) 
   Stroke stroke;
   make_stroke(random, stroke);
   stroke.test.depth = &stroke.depth;
-  for (const float odd :
-       {0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1.0f}) {
+  for (const float odd : {0.0f, std::numeric_limits<float>::quiet_NaN(),
+                          std::numeric_limits<float>::infinity(), -1.0f}) {
     stroke.test.clip_from_model = glm::mat4(odd);
     for (int unit = 0; unit <= static_cast<int>(best_vector_unit()); ++unit) {
       const Block block = random_block(random);
-      EXPECT_EQ(test_block_on(VectorUnit(unit))(stroke.test, block.positions.data(), block.box, stroke.segments, true),
+      EXPECT_EQ(test_block_on(VectorUnit(unit))(stroke.test, block.positions.data(), block.box,
+                                                stroke.segments, true),
                 0u)
           << "matrix of " << odd << " on unit " << unit;
     }

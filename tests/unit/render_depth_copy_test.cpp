@@ -25,7 +25,8 @@ TEST(DepthCopy, slopes_and_cells_are_those_of_their_definition_at_any_size) {
         const float here = at(x, y);
         const float slope = std::min(std::abs(here - at(x - 1, y)), std::abs(at(x + 1, y) - here)) +
                             std::min(std::abs(here - at(x, y - 1)), std::abs(at(x, y + 1) - here));
-        ASSERT_EQ(copy.slope[std::size_t(y * width + x)], slope) << width << " x " << height << ", " << x << ", " << y;
+        ASSERT_EQ(copy.slope[std::size_t(y * width + x)], slope)
+            << width << " x " << height << ", " << x << ", " << y;
         float& cell = deepest[std::size_t(y / 16 * ((width + 15) / 16) + x / 16)];
         cell = std::max(cell, here);
       }

@@ -11,7 +11,8 @@ namespace {
 TileMask random_mask(unsigned seed) {
   std::mt19937_64 random(seed);
   TileMask mask;
-  for (auto& word : mask.words) word = random() % 3 == 0 ? ~std::uint64_t{0} : random() % 2 == 0 ? 0 : random();
+  for (auto& word : mask.words)
+    word = random() % 3 == 0 ? ~std::uint64_t{0} : random() % 2 == 0 ? 0 : random();
   return mask;
 }
 
@@ -20,13 +21,16 @@ TEST(TileBytes, flags_are_one_where_the_mask_has_a_bit_and_come_back_as_they_wer
   TileFlags flags;
   flags.fill(0xcc);
   flags_of(mask, flags);
-  for (int i = 0; i < kTexelsPerTile; ++i) ASSERT_EQ(flags[std::size_t(i)], mask.test(i) ? 1 : 0) << "texel " << i;
+  for (int i = 0; i < kTexelsPerTile; ++i)
+    ASSERT_EQ(flags[std::size_t(i)], mask.test(i) ? 1 : 0) << "texel " << i;
   EXPECT_TRUE(mask_of(flags) == mask);
 }
 
 TEST(TileBytes, texels_are_written_and_erased_as_one_by_one) {
   for (const auto type : {ValueType::u8, ValueType::i16, ValueType::f32}) {
-    const std::uint32_t bits = type == ValueType::u8 ? 0xfeu : type == ValueType::i16 ? 0xfedcu : 0xfedcba98u;
+    const std::uint32_t bits = type == ValueType::u8    ? 0xfeu
+                               : type == ValueType::i16 ? 0xfedcu
+                                                        : 0xfedcba98u;
     TileData tile(type);
     for (int i = 0; i < kTexelsPerTile; i += 3) tile.write(i, 5);
     TileData expected = tile;

@@ -23,7 +23,8 @@ TEST_F(FollowersTest, one_follows_one_at_a_time) {
 }
 
 TEST_F(FollowersTest, nobody_follows_themselves_however_long_the_way_round) {
-  for (const Uuid& way : {anna, bea, carl}) EXPECT_EQ(followers.follow(way, way).error().status, 409);
+  for (const Uuid& way : {anna, bea, carl})
+    EXPECT_EQ(followers.follow(way, way).error().status, 409);
   ASSERT_TRUE(followers.follow(anna, bea));
   EXPECT_EQ(followers.follow(bea, anna).error().field, "follow");
   ASSERT_TRUE(followers.follow(bea, carl));

@@ -165,7 +165,8 @@ TEST(StreamFlow, nothing_changed_means_nothing_is_drawn) {
   flow.on_change(box_at(0), 7);
   const auto draw = flow.next();
   ASSERT_TRUE(draw);
-  EXPECT_EQ(draw->camera_seq, 2u) << "frames echo the newest number, also of a camera that is where it was";
+  EXPECT_EQ(draw->camera_seq, 2u)
+      << "frames echo the newest number, also of a camera that is where it was";
 }
 
 TEST(StreamFlow, an_edit_redraws_only_its_box_at_full_quality) {
@@ -206,7 +207,8 @@ TEST(StreamFlow, very_many_boxes_become_few_that_cover_them_all) {
   EXPECT_EQ(draw->changed->size(), FlowControl::kMaxBoxes);
   for (int i = 0; i < 1000; ++i)
     EXPECT_TRUE(std::any_of(draw->changed->begin(), draw->changed->end(), [&](const auto& box) {
-      return glm::min(box.min, box_at(float(i)).min) == box.min && glm::max(box.max, box_at(float(i)).max) == box.max;
+      return glm::min(box.min, box_at(float(i)).min) == box.min &&
+             glm::max(box.max, box_at(float(i)).max) == box.max;
     })) << i;
 }
 
@@ -252,7 +254,8 @@ TEST(StreamFlow, quiet_during_a_moving_draw_still_leads_to_a_still_frame) {
   EXPECT_EQ(still->quality, Quality::still);
 }
 
-TEST(StreamFlow, a_camera_that_waited_for_credit_until_it_was_quiet_is_drawn_once_and_at_full_quality) {
+TEST(StreamFlow,
+     a_camera_that_waited_for_credit_until_it_was_quiet_is_drawn_once_and_at_full_quality) {
   FlowControl flow = ready(1);
   flow.on_camera(1, camera_at(1), true);
   flow.on_drawn(flow.next()->ticket, true);
@@ -320,7 +323,8 @@ TEST(StreamFlow, after_a_reset_old_answers_are_void_and_everything_is_drawn_anew
   EXPECT_TRUE(flow.on_drawn(draw->ticket, true));
 }
 
-TEST(StreamFlow, a_change_of_style_redraws_everything_and_the_scene_sequence_starts_where_it_is_told) {
+TEST(StreamFlow,
+     a_change_of_style_redraws_everything_and_the_scene_sequence_starts_where_it_is_told) {
   FlowControl flow(2, 41);
   flow.on_ready();
   flow.on_camera(1, camera_at(1), false);
@@ -335,8 +339,9 @@ TEST(StreamFlow, a_change_of_style_redraws_everything_and_the_scene_sequence_sta
   EXPECT_FALSE(draw->changed);
 }
 
-// A client model that checks the promises under any order of events: what the screen shows in the end is the newest
-// camera with every edit, at full quality, and never more frames are under way than the window allows.
+// A client model that checks the promises under any order of events: what the screen shows in the
+// end is the newest camera with every edit, at full quality, and never more frames are under way
+// than the window allows.
 TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_complete) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     std::mt19937 random(seed);
@@ -360,7 +365,8 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
         ASSERT_EQ(number->frame, ++sent);
         for (int one : in_out) {
           const bool covered =
-              !out->changed || std::any_of(out->changed->begin(), out->changed->end(), [&](const Box& box) {
+              !out->changed ||
+              std::any_of(out->changed->begin(), out->changed->end(), [&](const Box& box) {
                 return box.min.x <= float(one) && box.max.x >= float(one + 1);
               });
           if (covered) unseen.erase(one);
@@ -420,7 +426,8 @@ TEST(StreamFlow, in_any_order_of_events_nothing_is_lost_and_the_last_picture_is_
       if (HasFatalFailure()) return;
     }
     EXPECT_FALSE(out) << "it comes to rest";
-    EXPECT_TRUE(unseen.empty()) << "seed " << seed << ": " << unseen.size() << " edits were never shown";
+    EXPECT_TRUE(unseen.empty()) << "seed " << seed << ": " << unseen.size()
+                                << " edits were never shown";
     EXPECT_EQ(shown, newest);
     EXPECT_TRUE(shown_still);
   }

@@ -11,7 +11,8 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = LinkPace::Clock;
 
-// A link with a delay and a rate, and a renderer that makes a picture whenever the pace's window has room. In time of its own.
+// A link with a delay and a rate, and a renderer that makes a picture whenever the pace's window
+// has room. In time of its own.
 class Simulation {
  public:
   Clock::duration delay = 0ms;  // there and back
@@ -28,7 +29,8 @@ class Simulation {
     int shown = 0;
     while (now_ < end) {
       const bool may_send = sent_ - acked_ < std::uint64_t(pace.window());
-      const auto next_ack = arrivals_.empty() ? Clock::time_point::max() : arrivals_.begin()->second;
+      const auto next_ack =
+          arrivals_.empty() ? Clock::time_point::max() : arrivals_.begin()->second;
       if (may_send && now_ + drawing <= next_ack) {
         now_ += drawing;
         send();
@@ -50,11 +52,13 @@ class Simulation {
     static constexpr double kBytes = 60e3;
     const MovingPicture picture = pace.moving();
     const double bytes =
-        moving ? kBytes * picture.scale * picture.scale * (0.3 + 0.7 * picture.jpeg.quality / 75.0) : 3 * kBytes;
+        moving ? kBytes * picture.scale * picture.scale * (0.3 + 0.7 * picture.jpeg.quality / 75.0)
+               : 3 * kBytes;
     pace.on_sent(++sent_, static_cast<std::size_t>(bytes), moving, now_);
     sent_at_[sent_] = now_;
-    link_free_ = std::max(link_free_, now_) +
-                 std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(bytes / bytes_per_s));
+    link_free_ =
+        std::max(link_free_, now_) + std::chrono::duration_cast<Clock::duration>(
+                                         std::chrono::duration<double>(bytes / bytes_per_s));
     browser_free_ = std::max(browser_free_, link_free_ + delay) + showing;
     arrivals_[sent_] = browser_free_;
   }

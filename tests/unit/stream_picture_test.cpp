@@ -26,10 +26,12 @@ Decoded decode(const std::vector<std::uint8_t>& jpeg) {
   Decoded out;
   tjhandle handle = tjInitDecompress();
   int colorspace = 0;
-  EXPECT_EQ(tjDecompressHeader3(handle, jpeg.data(), jpeg.size(), &out.width, &out.height, &out.sampling, &colorspace),
+  EXPECT_EQ(tjDecompressHeader3(handle, jpeg.data(), jpeg.size(), &out.width, &out.height,
+                                &out.sampling, &colorspace),
             0);
   out.rgba.resize(std::size_t(out.width) * out.height * 4);
-  EXPECT_EQ(tjDecompress2(handle, jpeg.data(), jpeg.size(), out.rgba.data(), out.width, 0, out.height, TJPF_RGBA, 0),
+  EXPECT_EQ(tjDecompress2(handle, jpeg.data(), jpeg.size(), out.rgba.data(), out.width, 0,
+                          out.height, TJPF_RGBA, 0),
             0);
   tjDestroy(handle);
   return out;
@@ -50,15 +52,17 @@ TEST(StreamPicture, the_pool_encodes_every_picture_it_is_given) {
   std::multiset<int> widths;
   JpegPool pool(3);
   for (int i = 1; i <= 40; ++i)
-    pool.encode(frame_of(gradient(i * 8, 16), i * 8, 16), {}, [&](const Jpegs& jpegs, double elapsed_ms) {
-      EXPECT_GE(elapsed_ms, 0);
-      const int width = decode(jpegs->at(0)).width;
-      std::lock_guard lock(mutex);
-      widths.insert(width);
-      changed.notify_all();
-    });
+    pool.encode(frame_of(gradient(i * 8, 16), i * 8, 16), {},
+                [&](const Jpegs& jpegs, double elapsed_ms) {
+                  EXPECT_GE(elapsed_ms, 0);
+                  const int width = decode(jpegs->at(0)).width;
+                  std::lock_guard lock(mutex);
+                  widths.insert(width);
+                  changed.notify_all();
+                });
   std::unique_lock lock(mutex);
-  ASSERT_TRUE(changed.wait_for(lock, std::chrono::seconds(60), [&] { return widths.size() == 40; }));
+  ASSERT_TRUE(
+      changed.wait_for(lock, std::chrono::seconds(60), [&] { return widths.size() == 40; }));
   for (int i = 1; i <= 40; ++i) EXPECT_EQ(widths.count(i * 8), 1u);
 }
 
@@ -67,12 +71,13 @@ TEST(StreamPicture, a_picture_that_cannot_be_encoded_is_answered_without_bytes) 
   std::condition_variable changed;
   bool answered = false;
   JpegPool pool(1);
-  pool.encode(frame_of(std::vector<std::uint8_t>(4), 100, 100), {}, [&](const Jpegs& jpegs, double) {
-    std::lock_guard lock(mutex);
-    EXPECT_FALSE(jpegs);
-    answered = true;
-    changed.notify_all();
-  });
+  pool.encode(frame_of(std::vector<std::uint8_t>(4), 100, 100), {},
+              [&](const Jpegs& jpegs, double) {
+                std::lock_guard lock(mutex);
+                EXPECT_FALSE(jpegs);
+                answered = true;
+                changed.notify_all();
+              });
   std::unique_lock lock(mutex);
   EXPECT_TRUE(changed.wait_for(lock, std::chrono::seconds(60), [&] { return answered; }));
 }
@@ -84,7 +89,8 @@ TEST(StreamPicture, each_rectangle_of_a_frame_is_a_jpeg_of_its_own_pixels) {
   const std::array<std::array<int, 3>, 2> colors{{{200, 40, 40}, {40, 40, 200}}};
   for (std::size_t i = 0; i < 2; ++i)
     for (int pixel = 0; pixel < frame.rects[i].width * frame.rects[i].height; ++pixel) {
-      for (const int channel : colors[i]) frame.pixels.push_back(static_cast<std::uint8_t>(channel));
+      for (const int channel : colors[i])
+        frame.pixels.push_back(static_cast<std::uint8_t>(channel));
       frame.pixels.push_back(255);
     }
   std::promise<Jpegs> encoded;
@@ -119,7 +125,8 @@ TEST(StreamPicture, a_picture_for_many_is_encoded_once_for_each_setting) {
   };
   const auto wait_for = [&](std::size_t count) {
     std::unique_lock lock(mutex);
-    ASSERT_TRUE(changed.wait_for(lock, std::chrono::seconds(60), [&] { return few.size() + more.size() == count; }));
+    ASSERT_TRUE(changed.wait_for(lock, std::chrono::seconds(60),
+                                 [&] { return few.size() + more.size() == count; }));
   };
   for (int i = 0; i < 20; ++i) {
     pool.encode(frame, {20, false}, into(few));

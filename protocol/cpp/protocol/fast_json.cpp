@@ -14,7 +14,8 @@ using simdjson::dom::element_type;
 
 bool has_nul(std::string_view text) { return text.find('\0') != std::string_view::npos; }
 
-// False where the careful reader has to say why. `depth`: how many objects and lists may still be opened.
+// False where the careful reader has to say why. `depth`: how many objects and lists may still be
+// opened.
 bool convert(const element& from, int depth, json& to) {
   switch (from.type()) {
     case element_type::ARRAY: {
@@ -59,10 +60,13 @@ bool convert(const element& from, int depth, json& to) {
   return false;
 }
 
-bool says_something(const ListLimits& limits) { return limits.most || limits.items || !limits.members.empty(); }
+bool says_something(const ListLimits& limits) {
+  return limits.most || limits.items || !limits.members.empty();
+}
 
 // False: something was found, or this is no JSON.
-bool scan(simdjson::ondemand::value value, const ListLimits& limits, std::optional<ListTooLong>& found) {
+bool scan(simdjson::ondemand::value value, const ListLimits& limits,
+          std::optional<ListTooLong>& found) {
   simdjson::ondemand::json_type type;
   if (value.type().get(type)) return false;
   // What was found below stands at this step.
@@ -114,7 +118,8 @@ std::optional<ListTooLong> find_long_list(std::string_view text, const ListLimit
   simdjson::ondemand::document document;
   simdjson::ondemand::value root;
   std::optional<ListTooLong> found;
-  if (!parser.iterate(padded).get(document) && !document.get_value().get(root)) scan(root, lists, found);
+  if (!parser.iterate(padded).get(document) && !document.get_value().get(root))
+    scan(root, lists, found);
   return found;
 }
 

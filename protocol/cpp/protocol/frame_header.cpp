@@ -12,7 +12,8 @@ constexpr std::uint16_t kKeyframe = 1, kStill = 2, kLast = 4;
 
 template <class T>
 void put(std::span<std::uint8_t> bytes, std::size_t offset, T value) {
-  for (std::size_t i = 0; i < sizeof(T); ++i) bytes[offset + i] = static_cast<std::uint8_t>(value >> (8 * i));
+  for (std::size_t i = 0; i < sizeof(T); ++i)
+    bytes[offset + i] = static_cast<std::uint8_t>(value >> (8 * i));
 }
 
 template <class T>
@@ -30,13 +31,16 @@ tl::unexpected<Problem> broken(const char* field, std::string detail) {
 Result<void> check(const FrameHeader& h) {
   if (h.view_id > 15) return broken("view_id", "A view is 0 to 15.");
   if (h.camera_seq > kMaxSafeInteger) return broken("camera_seq", "It is at most 2^53 - 1.");
-  if (h.scene_sequence > kMaxSafeInteger) return broken("scene_sequence", "It is at most 2^53 - 1.");
+  if (h.scene_sequence > kMaxSafeInteger)
+    return broken("scene_sequence", "It is at most 2^53 - 1.");
   if (h.full_width < 1 || h.full_width > kMaxFrameSize)
     return broken("full_width", "A picture is 1 to 8192 pixels wide.");
   if (h.full_height < 1 || h.full_height > kMaxFrameSize)
     return broken("full_height", "A picture is 1 to 8192 pixels high.");
-  if (h.width < 1 || h.x + h.width > h.full_width) return broken("width", "The rectangle lies within the picture.");
-  if (h.height < 1 || h.y + h.height > h.full_height) return broken("height", "The rectangle lies within the picture.");
+  if (h.width < 1 || h.x + h.width > h.full_width)
+    return broken("width", "The rectangle lies within the picture.");
+  if (h.height < 1 || h.y + h.height > h.full_height)
+    return broken("height", "The rectangle lies within the picture.");
   if (h.keyframe && (h.width != h.full_width || h.height != h.full_height))
     return broken("keyframe", "A keyframe is the whole picture.");
   if (h.payload_bytes < 1) return broken("payload_bytes", "A rectangle has bytes.");
@@ -49,8 +53,8 @@ std::array<std::uint8_t, kFrameHeaderBytes> encode_frame_header(const FrameHeade
   assert(check(h));
   std::array<std::uint8_t, kFrameHeaderBytes> bytes{};
   std::copy(kMagic.begin(), kMagic.end(), bytes.begin());
-  const std::uint16_t flags =
-      static_cast<std::uint16_t>((h.keyframe ? kKeyframe : 0) | (h.still ? kStill : 0) | (h.last ? kLast : 0));
+  const std::uint16_t flags = static_cast<std::uint16_t>(
+      (h.keyframe ? kKeyframe : 0) | (h.still ? kStill : 0) | (h.last ? kLast : 0));
   put<std::uint8_t>(bytes, 4, kFrameVersion);
   put<std::uint8_t>(bytes, 5, static_cast<std::uint8_t>(h.codec));
   put<std::uint16_t>(bytes, 6, flags);
@@ -71,13 +75,17 @@ std::array<std::uint8_t, kFrameHeaderBytes> encode_frame_header(const FrameHeade
 }
 
 Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message) {
-  if (message.size() < kFrameHeaderBytes) return broken("message", "A frame has at least 56 bytes.");
-  if (!std::equal(kMagic.begin(), kMagic.end(), message.begin())) return broken("magic", "A frame starts with STRF.");
+  if (message.size() < kFrameHeaderBytes)
+    return broken("message", "A frame has at least 56 bytes.");
+  if (!std::equal(kMagic.begin(), kMagic.end(), message.begin()))
+    return broken("magic", "A frame starts with STRF.");
   if (message[4] != kFrameVersion) return broken("version", "Only version 1 is known.");
   const auto codec = static_cast<FrameCodec>(message[5]);
-  if (codec != FrameCodec::jpeg && codec != FrameCodec::png) return broken("codec", "Known are 1 (JPEG) and 2 (PNG).");
+  if (codec != FrameCodec::jpeg && codec != FrameCodec::png)
+    return broken("codec", "Known are 1 (JPEG) and 2 (PNG).");
   const auto flags = get<std::uint16_t>(message, 6);
-  if ((flags & ~(kKeyframe | kStill | kLast)) != 0) return broken("flags", "Bits above the third are zero.");
+  if ((flags & ~(kKeyframe | kStill | kLast)) != 0)
+    return broken("flags", "Bits above the third are zero.");
   FrameHeader h;
   h.codec = codec;
   h.keyframe = (flags & kKeyframe) != 0;

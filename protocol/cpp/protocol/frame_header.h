@@ -6,7 +6,8 @@
 
 #include "core/problem.h"
 
-// The binary message that carries one rectangle of a picture: see protocol/frame.md, whose rules are named in brackets.
+// The binary message that carries one rectangle of a picture: see protocol/frame.md, whose rules
+// are named in brackets.
 namespace strata::protocol {
 
 constexpr std::size_t kFrameHeaderBytes = 56;
@@ -32,11 +33,13 @@ struct FrameHeader {
   bool operator==(const FrameHeader&) const = default;
 };
 
-// The first bytes of the message. Precondition: the header keeps the rules (asserted); our own code made it.
+// The first bytes of the message. Precondition: the header keeps the rules (asserted); our own code
+// made it.
 std::array<std::uint8_t, kFrameHeaderBytes> encode_frame_header(const FrameHeader& header);
 
-// The header of a whole message; the payload is what follows kFrameHeaderBytes. Refused: a message that is too short or
-// too long, and every header that breaks a rule; the Problem's field is the name of the member.
+// The header of a whole message; the payload is what follows kFrameHeaderBytes. Refused: a message
+// that is too short or too long, and every header that breaks a rule; the Problem's field is the
+// name of the member.
 Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message);
 
 }  // namespace strata::protocol

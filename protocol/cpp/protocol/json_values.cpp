@@ -26,32 +26,44 @@ nlohmann::json write_numbers(const double* numbers) {
 void read_core(const nlohmann::json& json, Uuid& value) {
   if (auto uuid = parse_uuid(json.get_ref<const std::string&>())) value = *uuid;
 }
-void read_core(const nlohmann::json& json, glm::dvec2& value) { read_numbers<2>(json, glm::value_ptr(value)); }
-void read_core(const nlohmann::json& json, glm::dvec3& value) { read_numbers<3>(json, glm::value_ptr(value)); }
-void read_core(const nlohmann::json& json, glm::dvec4& value) { read_numbers<4>(json, glm::value_ptr(value)); }
-void read_core(const nlohmann::json& json, glm::dmat4& value) { read_numbers<16>(json, glm::value_ptr(value)); }
+void read_core(const nlohmann::json& json, glm::dvec2& value) {
+  read_numbers<2>(json, glm::value_ptr(value));
+}
+void read_core(const nlohmann::json& json, glm::dvec3& value) {
+  read_numbers<3>(json, glm::value_ptr(value));
+}
+void read_core(const nlohmann::json& json, glm::dvec4& value) {
+  read_numbers<4>(json, glm::value_ptr(value));
+}
+void read_core(const nlohmann::json& json, glm::dmat4& value) {
+  read_numbers<16>(json, glm::value_ptr(value));
+}
 void read_core(const nlohmann::json& json, strata::Camera& value) {
   read_core(json.at("view"), value.view);
   read_core(json.at("projection"), value.projection);
   json.at("width").get_to(value.width);
   json.at("height").get_to(value.height);
   value.section.clear();
-  if (const auto section = json.find("section"); section != json.end()) read_value(*section, value.section);
+  if (const auto section = json.find("section"); section != json.end())
+    read_value(*section, value.section);
 }
 void read_core(const nlohmann::json& json, strata::LightMode& value) {
   const auto found = std::ranges::find(kLightModes, json.get_ref<const std::string&>());
-  value = found == kLightModes.end() ? LightMode::museum : static_cast<LightMode>(found - kLightModes.begin());
+  value = found == kLightModes.end() ? LightMode::museum
+                                     : static_cast<LightMode>(found - kLightModes.begin());
 }
 void read_core(const nlohmann::json& json, strata::Light& value) {
   value = {};
   read_core(json.at("mode"), value.mode);
-  if (const auto direction = json.find("direction"); direction != json.end()) read_core(*direction, value.direction);
+  if (const auto direction = json.find("direction"); direction != json.end())
+    read_core(*direction, value.direction);
 }
 void read_core(const nlohmann::json& json, strata::ValueType& value) {
   if (auto type = parse_value_type(json.get_ref<const std::string&>())) value = *type;
 }
 void read_core(const nlohmann::json& json, strata::LayerKind& value) {
-  value = json.get_ref<const std::string&>() == "database" ? LayerKind::database : LayerKind::numeric;
+  value =
+      json.get_ref<const std::string&>() == "database" ? LayerKind::database : LayerKind::numeric;
 }
 void read_core(const nlohmann::json& json, strata::Unit& value) {
   if (auto unit = parse_unit(json.get_ref<const std::string&>())) value = *unit;
@@ -67,10 +79,18 @@ void read_core(const nlohmann::json& json, IdOrSlug& value) {
 }
 
 nlohmann::json write_core(const Uuid& value) { return to_string(value); }
-nlohmann::json write_core(const glm::dvec2& value) { return write_numbers<2>(glm::value_ptr(value)); }
-nlohmann::json write_core(const glm::dvec3& value) { return write_numbers<3>(glm::value_ptr(value)); }
-nlohmann::json write_core(const glm::dvec4& value) { return write_numbers<4>(glm::value_ptr(value)); }
-nlohmann::json write_core(const glm::dmat4& value) { return write_numbers<16>(glm::value_ptr(value)); }
+nlohmann::json write_core(const glm::dvec2& value) {
+  return write_numbers<2>(glm::value_ptr(value));
+}
+nlohmann::json write_core(const glm::dvec3& value) {
+  return write_numbers<3>(glm::value_ptr(value));
+}
+nlohmann::json write_core(const glm::dvec4& value) {
+  return write_numbers<4>(glm::value_ptr(value));
+}
+nlohmann::json write_core(const glm::dmat4& value) {
+  return write_numbers<16>(glm::value_ptr(value));
+}
 nlohmann::json write_core(const strata::Camera& value) {
   nlohmann::json json{{"view", write_core(value.view)},
                       {"projection", write_core(value.projection)},
@@ -79,7 +99,9 @@ nlohmann::json write_core(const strata::Camera& value) {
   if (!value.section.empty()) json["section"] = write_value(value.section);
   return json;
 }
-nlohmann::json write_core(const strata::LightMode& value) { return kLightModes.at(static_cast<std::size_t>(value)); }
+nlohmann::json write_core(const strata::LightMode& value) {
+  return kLightModes.at(static_cast<std::size_t>(value));
+}
 nlohmann::json write_core(const strata::Light& value) {
   return {{"mode", write_core(value.mode)}, {"direction", write_core(value.direction)}};
 }

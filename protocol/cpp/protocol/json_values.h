@@ -16,8 +16,8 @@
 #include "core/problem.h"
 #include "core/uuid.h"
 
-// What the generated reading and writing is made of. JSON that comes in here has passed `validate`, so that no type is
-// in doubt; for anything else nlohmann-json throws.
+// What the generated reading and writing is made of. JSON that comes in here has passed `validate`,
+// so that no type is in doubt; for anything else nlohmann-json throws.
 namespace strata::protocol {
 
 template <class T>
@@ -89,7 +89,8 @@ void read_value(const nlohmann::json& json, T& value) {
 
 template <class T>
 nlohmann::json write_value(const T& value) {
-  if constexpr (std::is_same_v<T, nlohmann::json> || std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
+  if constexpr (std::is_same_v<T, nlohmann::json> || std::is_arithmetic_v<T> ||
+                std::is_same_v<T, std::string>) {
     return value;
   } else if constexpr (IsVector<T>::value) {
     nlohmann::json json = nlohmann::json::array();

@@ -11,7 +11,8 @@
 
 namespace strata::protocol {
 
-// How long the lists of a message may be, by the place where they stand: known before any of their items is built.
+// How long the lists of a message may be, by the place where they stand: known before any of their
+// items is built.
 struct ListLimits {
   std::optional<std::size_t> most;  // of a list: its items
   std::string wanted;               // of a list: what belongs there, in words

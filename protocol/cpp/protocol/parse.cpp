@@ -15,7 +15,8 @@ std::string dump(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-// What somebody sent may stand in a problem, and may be long; a problem has its bounds all the same (Problem in http.schema.json).
+// What somebody sent may stand in a problem, and may be long; a problem has its bounds all the same
+// (Problem in http.schema.json).
 constexpr std::size_t kMaxTitle = 200, kMaxDetail = 10'000, kMaxField = 500;
 constexpr std::string_view kMore = "…";
 
@@ -29,15 +30,19 @@ Result<Message> parse_message(std::string_view text, std::string* ref, const Jso
                               SchemaOf&& schema_of_op) {
   auto json = parse_json(text, limits);
   if (!json) return tl::unexpected<Problem>(json.error());
-  if (!json->is_object()) return fail(422, "Not a message", "A message is an object with the member \"op\".");
+  if (!json->is_object())
+    return fail(422, "Not a message", "A message is an object with the member \"op\".");
   if (auto id = json->find("id"); ref != nullptr && id != json->end() && id->is_string())
     *ref = id->template get_ref<const std::string&>().substr(0, kMaxRef);
   const auto op = json->find("op");
-  if (op == json->end()) return fail(422, "Member missing", "A message names what it is in \"op\".", "op");
+  if (op == json->end())
+    return fail(422, "Member missing", "A message names what it is in \"op\".", "op");
   if (!op->is_string()) return fail(422, "Wrong type", "\"op\" is a text.", "op");
   const auto& word = op->template get_ref<const std::string&>();
   const std::optional<Schema> schema = schema_of_op(word);
-  if (!schema) return fail(422, "Unknown message", "There is no message \"" + word.substr(0, 50) + "\".", "op");
+  if (!schema)
+    return fail(422, "Unknown message", "There is no message \"" + word.substr(0, 50) + "\".",
+                "op");
   if (auto ok = validate(*schema, *json); !ok) return tl::unexpected<Problem>(ok.error());
   Message message;
   read(*json, message);
@@ -47,7 +52,8 @@ Result<Message> parse_message(std::string_view text, std::string* ref, const Jso
 
 }  // namespace
 
-Result<ClientMessage> parse_client_message(std::string_view text, std::string* ref, const JsonLimits& limits) {
+Result<ClientMessage> parse_client_message(std::string_view text, std::string* ref,
+                                           const JsonLimits& limits) {
   return parse_message<ClientMessage>(text, ref, limits, client_message_schema);
 }
 

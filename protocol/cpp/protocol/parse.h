@@ -14,7 +14,8 @@ namespace strata::protocol {
 // From JSON already parsed (for example a part of a larger object); `field` is where it stands.
 template <class T>
 Result<T> from_json(const nlohmann::json& json, const std::string& field = {}) {
-  if (auto ok = validate(kSchemaOf<T>, json, field); !ok) return tl::unexpected<Problem>(ok.error());
+  if (auto ok = validate(kSchemaOf<T>, json, field); !ok)
+    return tl::unexpected<Problem>(ok.error());
   T value;
   read(json, value);
   if constexpr (requires { check(value, field); })
@@ -32,11 +33,12 @@ Result<T> parse(std::string_view text, const JsonLimits& limits = {}) {
   return from_json<T>(*json);
 }
 
-// A text message of the WebSocket. `ref`, when given, becomes the message's `id` as far as it can be read, also when
-// the message is refused, so that the `problem` can name it.
+// A text message of the WebSocket. `ref`, when given, becomes the message's `id` as far as it can
+// be read, also when the message is refused, so that the `problem` can name it.
 Result<ClientMessage> parse_client_message(std::string_view text, std::string* ref = nullptr,
                                            const JsonLimits& limits = {});
-Result<ServerMessage> parse_server_message(std::string_view text, const JsonLimits& limits = {16 * 1024 * 1024, 32});
+Result<ServerMessage> parse_server_message(std::string_view text,
+                                           const JsonLimits& limits = {16 * 1024 * 1024, 32});
 
 // One line of JSON, ready to send.
 std::string to_text(const ClientMessage& message);

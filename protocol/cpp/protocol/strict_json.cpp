@@ -12,10 +12,12 @@ namespace {
 
 using nlohmann::json;
 
-// Builds the value event by event, so that depth and duplicates are seen before memory is spent on them.
+// Builds the value event by event, so that depth and duplicates are seen before memory is spent on
+// them.
 class StrictBuilder : public nlohmann::json_sax<json> {
  public:
-  StrictBuilder(int max_depth, const ListLimits* lists) : max_depth_(max_depth), root_lists_(lists) {}
+  StrictBuilder(int max_depth, const ListLimits* lists)
+      : max_depth_(max_depth), root_lists_(lists) {}
 
   json take() { return std::move(root_); }
   Problem take_problem() { return std::move(problem_); }
@@ -26,7 +28,8 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   bool number_unsigned(number_unsigned_t value) override { return put(value); }
   bool number_float(number_float_t value, const string_t& text) override {
     if (!std::isfinite(value))
-      return refuse(422, "Number not usable", "The number " + text.substr(0, 40) + " is too large.");
+      return refuse(422, "Number not usable",
+                    "The number " + text.substr(0, 40) + " is too large.");
     return put(value);
   }
   bool string(string_t& text) override {
@@ -53,10 +56,13 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   }
   bool end_array() override { return close(); }
 
-  bool parse_error(std::size_t position, const std::string&, const nlohmann::detail::exception& error) override {
+  bool parse_error(std::size_t position, const std::string&,
+                   const nlohmann::detail::exception& error) override {
     if (error.id == 406)
-      return refuse(422, "Number not usable", "A number near byte " + std::to_string(position) + " is too large.");
-    return refuse(400, "Malformed JSON", "The text stops being JSON near byte " + std::to_string(position) + ".");
+      return refuse(422, "Number not usable",
+                    "A number near byte " + std::to_string(position) + " is too large.");
+    return refuse(400, "Malformed JSON",
+                  "The text stops being JSON near byte " + std::to_string(position) + ".");
   }
 
  private:
@@ -81,7 +87,8 @@ class StrictBuilder : public nlohmann::json_sax<json> {
     if (!limits || !limits->most || open_.back()->size() < *limits->most) return true;
     refuse(422, "Value not allowed", "It must be " + limits->wanted + ".");
     for (std::size_t i = 1; i < steps_.size(); ++i)
-      problem_.field += (steps_[i].starts_with('[') || problem_.field.empty() ? "" : ".") + steps_[i];
+      problem_.field +=
+          (steps_[i].starts_with('[') || problem_.field.empty() ? "" : ".") + steps_[i];
     return false;
   }
   // Of what is opened next.
@@ -96,13 +103,15 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   // A pointer to an open value stays good: while it is open, only its own children grow.
   bool open(json&& container) {
     if (static_cast<int>(open_.size()) >= max_depth_)
-      return refuse(422, "Nested too deeply",
-                    "At most " + std::to_string(max_depth_) + " objects and lists may lie in each other.");
+      return refuse(
+          422, "Nested too deeply",
+          "At most " + std::to_string(max_depth_) + " objects and lists may lie in each other.");
     lists_.push_back(next_lists());
     if (open_.empty())
       steps_.emplace_back("-");
     else
-      steps_.push_back(open_.back()->is_array() ? "[" + std::to_string(open_.back()->size()) + "]" : key_);
+      steps_.push_back(open_.back()->is_array() ? "[" + std::to_string(open_.back()->size()) + "]"
+                                                : key_);
     open_.push_back(add(std::move(container)));
     return true;
   }
@@ -137,8 +146,8 @@ class StrictBuilder : public nlohmann::json_sax<json> {
 Result<json> parse_json(std::string_view text, const JsonLimits& limits) {
   if (text.size() > limits.max_bytes)
     return fail(413, "Too much at once",
-                "At most " + std::to_string(limits.max_bytes) + " bytes of JSON are taken; these are " +
-                    std::to_string(text.size()) + ".");
+                "At most " + std::to_string(limits.max_bytes) +
+                    " bytes of JSON are taken; these are " + std::to_string(text.size()) + ".");
   // Shorter ones are built sooner than looked through twice, and validated then.
   constexpr std::size_t kLong = 64 * 1024;
   if (limits.lists && text.size() >= kLong)
@@ -146,7 +155,8 @@ Result<json> parse_json(std::string_view text, const JsonLimits& limits) {
       return fail(422, "Value not allowed", "It must be " + too_long->wanted + ".", too_long->path);
   if (auto value = read_json_fast(text, limits.max_depth)) return std::move(*value);
   StrictBuilder builder(limits.max_depth, limits.lists);
-  if (!json::sax_parse(text.begin(), text.end(), &builder)) return tl::unexpected<Problem>(builder.take_problem());
+  if (!json::sax_parse(text.begin(), text.end(), &builder))
+    return tl::unexpected<Problem>(builder.take_problem());
   return builder.take();
 }
 

@@ -32,7 +32,8 @@ const valijson::Schema& built(Schema schema) {
   static std::array<std::unique_ptr<valijson::Schema>, kSchemaCount> schemas;
   const auto index = static_cast<std::size_t>(schema);
   std::call_once(once[index], [&] {
-    const json document{{"$ref", "#/definitions/" + std::string(name(schema))}, {"definitions", definitions()}};
+    const json document{{"$ref", "#/definitions/" + std::string(name(schema))},
+                        {"definitions", definitions()}};
     auto result = std::make_unique<valijson::Schema>();
     valijson::SchemaParser(valijson::SchemaParser::kDraft7)
         .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), *result);
@@ -44,11 +45,13 @@ const valijson::Schema& built(Schema schema) {
 const json& resolve(const json& schema) {
   const json* node = &schema;
   while (node->contains("$ref"))
-    node = &definitions().at(node->at("$ref").get_ref<const std::string&>().substr(sizeof("#/definitions/") - 1));
+    node = &definitions().at(
+        node->at("$ref").get_ref<const std::string&>().substr(sizeof("#/definitions/") - 1));
   return *node;
 }
 
-// The part of a schema that a member of `value` answers to; null when none is found. A choice by `op` follows the op.
+// The part of a schema that a member of `value` answers to; null when none is found. A choice by
+// `op` follows the op.
 const json* child_schema(const json& schema, const json& value, const std::string& step) {
   const json& node = resolve(schema);
   if (value.is_array()) return node.contains("items") ? &node["items"] : nullptr;
@@ -57,8 +60,10 @@ const json* child_schema(const json& schema, const json& value, const std::strin
     return &properties->at(step);
   if (node.contains("allOf") && value.contains("op"))
     for (const auto& branch : node["allOf"])
-      if (branch["if"]["properties"]["op"]["const"] == value["op"]) return child_schema(branch["then"], value, step);
-  if (auto rest = node.find("additionalProperties"); rest != node.end() && rest->is_object()) return &*rest;
+      if (branch["if"]["properties"]["op"]["const"] == value["op"])
+        return child_schema(branch["then"], value, step);
+  if (auto rest = node.find("additionalProperties"); rest != node.end() && rest->is_object())
+    return &*rest;
   return nullptr;
 }
 
@@ -104,20 +109,24 @@ bool holds(const NumberRule& rule, const json& value) {
   if (rule.is_list ? !value.is_array() : !value.is_number()) return false;
   const double number = rule.is_list ? static_cast<double>(value.size()) : value.get<double>();
   if (!(number >= rule.least && number <= rule.most)) return false;
-  return !rule.is_list || std::ranges::all_of(value, [&](const json& item) { return holds(*rule.items, item); });
+  return !rule.is_list ||
+         std::ranges::all_of(value, [&](const json& item) { return holds(*rule.items, item); });
 }
 
-// A hundred thousand points take valijson longer than all else that is done with them. Those members of a message that are long
-// lists of numbers, and right, are cut to their first items in the copy that comes back; nothing where there are none.
+// A hundred thousand points take valijson longer than all else that is done with them. Those
+// members of a message that are long lists of numbers, and right, are cut to their first items in
+// the copy that comes back; nothing where there are none.
 std::optional<json> without_long_lists(Schema schema, const json& value) {
   constexpr std::size_t kLong = 256;
   if (!value.is_object()) return std::nullopt;
   std::map<std::string, std::size_t> kept;
   for (const auto& [name, member] : value.items()) {
     if (!member.is_array() || member.size() < kLong) continue;
-    const json* said = child_schema(definitions().at(std::string(protocol::name(schema))), value, name);
+    const json* said =
+        child_schema(definitions().at(std::string(protocol::name(schema))), value, name);
     const auto rule = said == nullptr ? nullptr : number_rule(*said);
-    if (rule && rule->least < kLong && holds(*rule, member)) kept[name] = static_cast<std::size_t>(rule->least);
+    if (rule && rule->least < kLong && holds(*rule, member))
+      kept[name] = static_cast<std::size_t>(rule->least);
   }
   if (kept.empty()) return std::nullopt;
   json shorter = json::object();
@@ -126,7 +135,8 @@ std::optional<json> without_long_lists(Schema schema, const json& value) {
     if (count == kept.end())
       shorter[name] = member;
     else
-      shorter[name] = json(member.begin(), member.begin() + static_cast<std::ptrdiff_t>(count->second));
+      shorter[name] =
+          json(member.begin(), member.begin() + static_cast<std::ptrdiff_t>(count->second));
   }
   return shorter;
 }
@@ -138,7 +148,8 @@ std::string expectation(const json& schema) {
   if (node.contains("enum")) return "one of " + listed(node["enum"]);
   if (node.contains("oneOf") && !node.contains("type")) {
     std::string text;
-    for (const auto& choice : node["oneOf"]) text += (text.empty() ? "" : ", or ") + expectation(choice);
+    for (const auto& choice : node["oneOf"])
+      text += (text.empty() ? "" : ", or ") + expectation(choice);
     return text;
   }
   std::string type = node.value("type", std::string("value"));
@@ -146,14 +157,15 @@ std::string expectation(const json& schema) {
     std::string text = type == "integer" ? "a whole number" : "a number";
     if (node.contains("exclusiveMinimum")) text += " above " + number(node["exclusiveMinimum"]);
     if (node.contains("minimum")) text += " from " + number(node["minimum"]);
-    if (node.contains("maximum")) text += (node.contains("minimum") ? " to " : " up to ") + number(node["maximum"]);
+    if (node.contains("maximum"))
+      text += (node.contains("minimum") ? " to " : " up to ") + number(node["maximum"]);
     return text;
   }
   if (type == "string") {
     if (node.value("minLength", 0) == 36 && node.contains("pattern"))
       return "a UUID such as 123e4567-e89b-42d3-a456-426614174000";
-    std::string text =
-        "a text of " + std::to_string(node.value("minLength", 0)) + " to " + number(node["maxLength"]) + " characters";
+    std::string text = "a text of " + std::to_string(node.value("minLength", 0)) + " to " +
+                       number(node["maxLength"]) + " characters";
     if (node.contains("pattern")) text += " like " + node["pattern"].get<std::string>();
     return text;
   }
@@ -174,19 +186,21 @@ std::shared_ptr<const ListLimits> limits_of(const json& schema, int deep) {
   const json& node = resolve(schema);
   auto limits = std::make_shared<ListLimits>();
   if (deep == 0) return limits;
-  if (node.value("type", json()) == "array" && node.contains("maxItems") && node.contains("minItems") &&
-      node.contains("items")) {
+  if (node.value("type", json()) == "array" && node.contains("maxItems") &&
+      node.contains("minItems") && node.contains("items")) {
     limits->most = node["maxItems"].get<std::size_t>();
     limits->wanted = expectation(node);
   }
   if (const auto items = node.find("items"); items != node.end() && items->is_object())
     limits->items = limits_of(*items, deep - 1);
   if (const auto properties = node.find("properties"); properties != node.end())
-    for (const auto& [member, said] : properties->items()) limits->members[member] = limits_of(said, deep - 1);
+    for (const auto& [member, said] : properties->items())
+      limits->members[member] = limits_of(said, deep - 1);
   return limits;
 }
 
-// The member that valijson names at the end of a description: everything after `before`, less the closing "'.".
+// The member that valijson names at the end of a description: everything after `before`, less the
+// closing "'.".
 std::string member_named(const std::string& description, std::string_view before) {
   const auto begin = description.find(before);
   if (begin == std::string::npos) return {};
@@ -195,13 +209,14 @@ std::string member_named(const std::string& description, std::string_view before
   return member;
 }
 
-// The first member that a `oneOf` of an object demands beside one that is given; empty where no choice was begun.
+// The first member that a `oneOf` of an object demands beside one that is given; empty where no
+// choice was begun.
 std::string missing_companion(const json& schema, const json& value) {
   for (const auto& choice : resolve(schema).value("oneOf", json::array())) {
     const auto names = choice.value("required", std::vector<std::string>());
     if (names.empty() || !value.contains(names.front())) continue;
-    const auto missing =
-        std::find_if(names.begin(), names.end(), [&](const auto& name) { return !value.contains(name); });
+    const auto missing = std::find_if(names.begin(), names.end(),
+                                      [&](const auto& name) { return !value.contains(name); });
     if (missing != names.end()) return *missing;
   }
   return {};
@@ -232,7 +247,8 @@ const json* begun_choice(const json* schema, const json* value) {
   return begun;
 }
 
-// The first member that a choice rules out, and that is given all the same; empty where there is none.
+// The first member that a choice rules out, and that is given all the same; empty where there is
+// none.
 std::string ruled_out(const json& choice, const json& value) {
   for (const auto& other : choice.value("not", json::object()).value("anyOf", json::array()))
     if (value.contains(other["required"][0])) return other["required"][0].get<std::string>();
@@ -244,8 +260,11 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
   std::string path = field;
   const json* value = &whole;
   const json* rule = &definitions().at(std::string(name(schema)));
-  auto enter = [&](const std::string& step) { path += (path.empty() ? "" : ".") + step.substr(0, 100); };
-  for (std::size_t i = 1; i < error.context.size() && value != nullptr; ++i) {  // context[0] is "<root>"
+  auto enter = [&](const std::string& step) {
+    path += (path.empty() ? "" : ".") + step.substr(0, 100);
+  };
+  for (std::size_t i = 1; i < error.context.size() && value != nullptr; ++i) {
+    // context[0] is "<root>"
     const std::string& bracketed = error.context[i];
     const std::string step = bracketed.substr(1, bracketed.size() - 2);
     if (rule != nullptr) rule = child_schema(*rule, *value, step);
@@ -267,38 +286,46 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
   if (said.starts_with("Missing required")) {
     std::string member = member_named(said, "property '");
     if (rule != nullptr && value != nullptr)
-      if (const std::string companion = missing_companion(*rule, *value); !companion.empty()) member = companion;
+      if (const std::string companion = missing_companion(*rule, *value); !companion.empty())
+        member = companion;
     const auto exclusive = exclusive_members(rule);
     if (!exclusive.empty() && member == exclusive.front()) {
       enter(member);
-      return fail(422, "Member missing", "Give exactly one of " + listed(json(exclusive)) + ".", path);
+      return fail(422, "Member missing", "Give exactly one of " + listed(json(exclusive)) + ".",
+                  path);
     }
     const json* missing = rule == nullptr ? nullptr : child_schema(*rule, *value, member);
     enter(member);
     return fail(422, "Member missing",
-                "It must be given" + (missing ? ": " + expectation(*missing) : std::string()) + ".", path);
+                "It must be given" + (missing ? ": " + expectation(*missing) : std::string()) + ".",
+                path);
   }
-  if (said.starts_with("Failed to validate against exactly one") || said.starts_with("Target should not validate")) {
+  if (said.starts_with("Failed to validate against exactly one") ||
+      said.starts_with("Target should not validate")) {
     if (const json* choice = begun_choice(rule, value))
       if (const std::string member = ruled_out(*choice, *value); !member.empty()) {
         enter(member);
-        return fail(422, "Members exclude each other", "It does not go with " + listed((*choice)["required"]) + ".",
-                    path);
+        return fail(422, "Members exclude each other",
+                    "It does not go with " + listed((*choice)["required"]) + ".", path);
       }
     const auto exclusive = exclusive_members(rule);
     if (exclusive.size() > 1) enter(exclusive.back());
-    return fail(422, "Members exclude each other", "Give exactly one of " + listed(json(exclusive)) + ".", path);
+    return fail(422, "Members exclude each other",
+                "Give exactly one of " + listed(json(exclusive)) + ".", path);
   }
   if (said.starts_with("Object contains a property")) {
     enter(member_named(said, "constraints: '"));
-    return fail(422, "Unknown member", "This object has no such member; check its spelling or leave it out.", path);
+    return fail(422, "Unknown member",
+                "This object has no such member; check its spelling or leave it out.", path);
   }
   if (said.starts_with("Object should have no fewer"))
     return fail(422, "Nothing given", "Give at least one member.", path);
   if (said.starts_with("Value type"))
-    return fail(422, "Wrong type", "It must be " + (rule ? expectation(*rule) : std::string("of another type")) + ".",
+    return fail(422, "Wrong type",
+                "It must be " + (rule ? expectation(*rule) : std::string("of another type")) + ".",
                 path);
-  return fail(422, "Value not allowed", rule ? "It must be " + expectation(*rule) + "." : said, path);
+  return fail(422, "Value not allowed", rule ? "It must be " + expectation(*rule) + "." : said,
+              path);
 }
 
 }  // namespace
@@ -307,15 +334,18 @@ const ListLimits& list_limits(Schema schema) {
   static std::array<std::once_flag, kSchemaCount> once;
   static std::array<std::shared_ptr<const ListLimits>, kSchemaCount> limits;
   const auto index = static_cast<std::size_t>(schema);
-  std::call_once(once[index],
-                 [&] { limits[index] = limits_of(definitions().at(std::string(name(schema))), kLimitsDeep); });
+  std::call_once(once[index], [&] {
+    limits[index] = limits_of(definitions().at(std::string(name(schema))), kLimitsDeep);
+  });
   return *limits[index];
 }
 
 Result<void> validate(Schema schema, const json& json, const std::string& field) {
   thread_local valijson::Validator validator;  // keeps the compiled patterns
   const auto shorter = without_long_lists(schema, json);
-  if (validator.validate(built(schema), valijson::adapters::NlohmannJsonAdapter(shorter ? *shorter : json), nullptr))
+  if (validator.validate(built(schema),
+                         valijson::adapters::NlohmannJsonAdapter(shorter ? *shorter : json),
+                         nullptr))
     return {};
   valijson::ValidationResults results;
   validator.validate(built(schema), valijson::adapters::NlohmannJsonAdapter(json), &results);

@@ -27,13 +27,15 @@ std::uint64_t spread(std::uint64_t x) {
 }
 
 std::uint64_t morton(const glm::ivec3& cell) {
-  return spread(static_cast<std::uint64_t>(cell.x)) | spread(static_cast<std::uint64_t>(cell.y)) << 1 |
+  return spread(static_cast<std::uint64_t>(cell.x)) |
+         spread(static_cast<std::uint64_t>(cell.y)) << 1 |
          spread(static_cast<std::uint64_t>(cell.z)) << 2;
 }
 
 using Triangle = std::array<glm::vec3, 3>;  // in cells
 
-// Separating axes of a triangle and the cell (Akenine-Möller 2001), the box's own left to the caller.
+// Separating axes of a triangle and the cell (Akenine-Möller 2001), the box's own left to the
+// caller.
 bool crosses(const Triangle& triangle, const glm::vec3& normal, const glm::ivec3& cell) {
   const glm::vec3 center = glm::vec3(cell) + 0.5f;
   const glm::vec3 a = triangle[0] - center, b = triangle[1] - center, c = triangle[2] - center;
@@ -59,7 +61,9 @@ void for_each_cell(const Triangle& triangle, int cells, Found&& found) {
   const int u = (w + 1) % 3, v = (w + 2) % 3;
   const glm::vec3 low = glm::min(triangle[0], glm::min(triangle[1], triangle[2]));
   const glm::vec3 high = glm::max(triangle[0], glm::max(triangle[1], triangle[2]));
-  const auto cell_of = [&](float x) { return std::clamp(static_cast<int>(std::floor(x)), 0, cells - 1); };
+  const auto cell_of = [&](float x) {
+    return std::clamp(static_cast<int>(std::floor(x)), 0, cells - 1);
+  };
   const bool flat = facing[w] <= 0;  // no area
   const float du = flat ? 0 : -normal[u] / normal[w], dv = flat ? 0 : -normal[v] / normal[w];
   const float reach = 0.5f * (std::abs(du) + std::abs(dv)) + 1e-3f;
@@ -96,23 +100,29 @@ std::uint64_t available_bytes() {
   return ~std::uint64_t{0};
 }
 
-// About three cells are crossed for each that the surface's area would fill; a code is held some three times while sorted.
+// About three cells are crossed for each that the surface's area would fill; a code is held some
+// three times while sorted.
 Result<void> check_memory(double area, double cell_side, int depth) {
   const double needed = 3 * area / (cell_side * cell_side) * 24;
   const double available = 0.8 * static_cast<double>(available_bytes());
   if (needed <= available) return {};
-  const auto gib = [](double bytes) { return std::to_string(static_cast<int>(std::ceil(bytes / (1u << 30)))); };
+  const auto gib = [](double bytes) {
+    return std::to_string(static_cast<int>(std::ceil(bytes / (1u << 30))));
+  };
   return fail(503, "Octree too large",
-              "An octree of depth " + std::to_string(depth) + " of this model takes about " + gib(needed) +
-                  " GiB to build and " + gib(available) + " GiB can be had: run it on a larger machine.");
+              "An octree of depth " + std::to_string(depth) + " of this model takes about " +
+                  gib(needed) + " GiB to build and " + gib(available) +
+                  " GiB can be had: run it on a larger machine.");
 }
 
-std::vector<std::vector<std::uint64_t>> crossed_cells(const mesh::Geometry& geometry, const glm::vec3& low,
-                                                      float cell_side, int depth, int threads) {
+std::vector<std::vector<std::uint64_t>> crossed_cells(const mesh::Geometry& geometry,
+                                                      const glm::vec3& low, float cell_side,
+                                                      int depth, int threads) {
   std::vector<std::vector<std::uint64_t>> buckets(kBuckets);
   std::vector<std::mutex> mutexes(kBuckets);
   const int shift = std::max(0, 3 * (depth - kBucketLevels));
-  const std::size_t batches = (geometry.triangle_count() + kTrianglesPerBatch - 1) / kTrianglesPerBatch;
+  const std::size_t batches =
+      (geometry.triangle_count() + kTrianglesPerBatch - 1) / kTrianglesPerBatch;
   mesh::parallel_for(threads, static_cast<int>(batches), [&](int batch) {
     std::vector<std::uint64_t> codes;
     const std::size_t first = static_cast<std::size_t>(batch) * kTrianglesPerBatch;
@@ -120,14 +130,17 @@ std::vector<std::vector<std::uint64_t>> crossed_cells(const mesh::Geometry& geom
     for (std::size_t t = first; t < last; ++t) {
       Triangle triangle;
       for (std::size_t corner = 0; corner < 3; ++corner)
-        triangle[corner] = (geometry.vertices[geometry.indices[3 * t + corner]].position - low) / cell_side;
-      for_each_cell(triangle, 1 << depth, [&](const glm::ivec3& cell) { codes.push_back(morton(cell)); });
+        triangle[corner] =
+            (geometry.vertices[geometry.indices[3 * t + corner]].position - low) / cell_side;
+      for_each_cell(triangle, 1 << depth,
+                    [&](const glm::ivec3& cell) { codes.push_back(morton(cell)); });
     }
     sort_unique(codes);
     for (auto begin = codes.begin(); begin != codes.end();) {
       const std::size_t bucket = *begin >> shift;
-      const auto end = std::upper_bound(begin, codes.end(), bucket,
-                                        [&](std::size_t b, std::uint64_t code) { return b < code >> shift; });
+      const auto end =
+          std::upper_bound(begin, codes.end(), bucket,
+                           [&](std::size_t b, std::uint64_t code) { return b < code >> shift; });
       std::lock_guard lock(mutexes[bucket]);
       buckets[bucket].insert(buckets[bucket].end(), begin, end);
       begin = end;
@@ -141,7 +154,8 @@ std::vector<std::vector<std::uint64_t>> crossed_cells(const mesh::Geometry& geom
 }  // namespace
 
 Result<Octree> Octree::build(const mesh::Geometry& geometry, int depth, int threads) {
-  if (depth < 1 || depth > kDeepest) return fail(422, "Depth out of range", "An octree has 1 to 15 levels.", "depth");
+  if (depth < 1 || depth > kDeepest)
+    return fail(422, "Depth out of range", "An octree has 1 to 15 levels.", "depth");
   Octree tree;
   const glm::vec3 extent = geometry.box_max - geometry.box_min;
   // A little larger, so that no vertex lies on the far faces.
@@ -150,10 +164,13 @@ Result<Octree> Octree::build(const mesh::Geometry& geometry, int depth, int thre
   const float cell_side = tree.side_ / static_cast<float>(1u << depth);
   double area = 0;
   for (std::size_t t = 0; t < geometry.triangle_count(); ++t) {
-    const auto corner = [&](std::size_t i) { return geometry.vertices[geometry.indices[3 * t + i]].position; };
+    const auto corner = [&](std::size_t i) {
+      return geometry.vertices[geometry.indices[3 * t + i]].position;
+    };
     area += 0.5 * glm::length(glm::cross(corner(1) - corner(0), corner(2) - corner(0)));
   }
-  if (auto enough = check_memory(area, cell_side, depth); !enough) return tl::unexpected(enough.error());
+  if (auto enough = check_memory(area, cell_side, depth); !enough)
+    return tl::unexpected(enough.error());
 
   std::vector<std::uint64_t> codes;
   {

@@ -9,9 +9,10 @@
 
 namespace strata::bench {
 
-// OCT-TR (Torres et al. 2010, as the paper describes its rival): the cube around a model is divided by eight down to a depth,
-// and the leaves are the cells that the surface crosses. A layer is one value a leaf, in the order of the leaves. Kept small
-// and quick to walk: 8 bytes an inner node, leaves in Morton order without any node of their own, no lists of triangles.
+// OCT-TR (Torres et al. 2010, as the paper describes its rival): the cube around a model is divided
+// by eight down to a depth, and the leaves are the cells that the surface crosses. A layer is one
+// value a leaf, in the order of the leaves. Kept small and quick to walk: 8 bytes an inner node,
+// leaves in Morton order without any node of their own, no lists of triangles.
 class Octree {
  public:
   struct Node {
@@ -23,7 +24,9 @@ class Octree {
   static Result<Octree> build(const mesh::Geometry& geometry, int depth, int threads);
 
   int depth() const { return static_cast<int>(levels_.size()); }
-  const std::vector<Node>& level(int depth) const { return levels_[static_cast<std::size_t>(depth)]; }
+  const std::vector<Node>& level(int depth) const {
+    return levels_[static_cast<std::size_t>(depth)];
+  }
   std::size_t leaf_count() const { return leaf_count_; }
   std::size_t bytes() const;
   // Model space.

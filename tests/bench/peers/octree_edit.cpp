@@ -22,10 +22,12 @@ glm::dmat4 clip_of(const OctreeDab& dab) {
 void paint(const OctreeDab& dab, std::size_t leaf, OctreeLayer& layer) {
   layer.values[leaf] = dab.value;
   layer.colors[leaf] = dab.color;
-  std::atomic_ref(layer.dirty[leaf / OctreeLayer::kLeavesPerRange]).store(1, std::memory_order_relaxed);
+  std::atomic_ref(layer.dirty[leaf / OctreeLayer::kLeavesPerRange])
+      .store(1, std::memory_order_relaxed);
 }
 
-// ------------------------------------------------------------------------------------------------------------- rays
+// -------------------------------------------------------------------------------------------------------------
+// rays
 
 // Where a ray that goes up every axis enters and leaves a node, axis by axis.
 struct Span {
@@ -42,7 +44,8 @@ class RayWalk {
     if (depth == tree_.depth()) return node;
     const Octree::Node& here = tree_.level(depth)[node];
     const glm::vec3 middle = 0.5f * (span.enter + span.leave);
-    // The first child: beyond the middle of each axis whose middle is passed before the node is entered.
+    // The first child: beyond the middle of each axis whose middle is passed before the node is
+    // entered.
     const float entered = std::max({span.enter.x, span.enter.y, span.enter.z});
     std::uint32_t child = 0;
     for (int axis = 0; axis < 3; ++axis) child |= middle[axis] < entered ? 1u << axis : 0u;
@@ -55,12 +58,13 @@ class RayWalk {
       }
       const std::uint32_t stored = child ^ flipped_;
       if (here.mask >> stored & 1) {
-        const auto before = static_cast<std::uint32_t>(std::popcount(here.mask & ((1u << stored) - 1)));
+        const auto before =
+            static_cast<std::uint32_t>(std::popcount(here.mask & ((1u << stored) - 1)));
         const std::int64_t leaf = first_leaf(depth + 1, here.first + before, part);
         if (leaf != kMiss) return leaf;
       }
-      const int axis =
-          part.leave.x < part.leave.y ? (part.leave.x < part.leave.z ? 0 : 2) : (part.leave.y < part.leave.z ? 1 : 2);
+      const int axis = part.leave.x < part.leave.y ? (part.leave.x < part.leave.z ? 0 : 2)
+                                                   : (part.leave.y < part.leave.z ? 1 : 2);
       if (child >> axis & 1) return kMiss;  // out of the node
       child |= 1u << axis;
     }
@@ -83,16 +87,19 @@ std::int64_t cast(const Octree& tree, const glm::dvec3& from, const glm::dvec3& 
   }
   way = glm::max(way, glm::dvec3(1e-12));
   const Span span{glm::vec3(-start / way), glm::vec3((1.0 - start) / way)};
-  if (std::max({span.enter.x, span.enter.y, span.enter.z}) >= std::min({span.leave.x, span.leave.y, span.leave.z}))
+  if (std::max({span.enter.x, span.enter.y, span.enter.z}) >=
+      std::min({span.leave.x, span.leave.y, span.leave.z}))
     return kMiss;
   return RayWalk(tree, flipped).first_leaf(0, 0, span);
 }
 
-// ---------------------------------------------------------------------------------------------------------- descent
+// ----------------------------------------------------------------------------------------------------------
+// descent
 
 constexpr int kPlanes = 8;  // an octagon around the disc
 
-// What a node's tests need, linear in its centre: eight distances from the planes, then clip x, y, z, w.
+// What a node's tests need, linear in its centre: eight distances from the planes, then clip x, y,
+// z, w.
 struct alignas(16) Place {
   float planes[kPlanes];
   float clip[4];
@@ -107,16 +114,19 @@ struct Pending {
 
 class Descent {
  public:
-  Descent(const Octree& tree, const OctreeDab& dab, const render::DepthCopy& depth, OctreeLayer& layer)
+  Descent(const Octree& tree, const OctreeDab& dab, const render::DepthCopy& depth,
+          OctreeLayer& layer)
       : tree_(tree), dab_(dab), depth_(depth), layer_(layer) {
     const glm::dmat4 clip = clip_of(dab), rows = glm::transpose(clip);
     const double width = dab.camera.width, height = dab.camera.height;
     center_ = {static_cast<float>(dab.center.x), static_cast<float>(height - dab.center.y)};
     // Window x · w is linear in the position: so is each side of the octagon.
-    const glm::dvec4 window_x = 0.5 * width * (rows[0] + rows[3]), window_y = 0.5 * height * (rows[1] + rows[3]);
+    const glm::dvec4 window_x = 0.5 * width * (rows[0] + rows[3]),
+                     window_y = 0.5 * height * (rows[1] + rows[3]);
     const double half = std::sqrt(0.5);
-    const glm::dvec2 normals[kPlanes] = {{1, 0},       {-1, 0},       {0, 1},        {0, -1},
-                                         {half, half}, {half, -half}, {-half, half}, {-half, -half}};
+    const glm::dvec2 normals[kPlanes] = {{1, 0},        {-1, 0},       {0, 1},
+                                         {0, -1},       {half, half},  {half, -half},
+                                         {-half, half}, {-half, -half}};
     glm::dvec4 linear[kPlanes + 4];
     for (int i = 0; i < kPlanes; ++i) {
       const glm::dvec2 n = normals[i];
@@ -137,10 +147,11 @@ class Descent {
         steps[child] = place_at(linear, sign * side * 0.25, 0);
       }
     }
-    pixels_per_w_ =
-        static_cast<float>(0.5 * height * std::abs(dab.camera.projection[1][1]) * render::view_scale(dab.camera));
+    pixels_per_w_ = static_cast<float>(0.5 * height * std::abs(dab.camera.projection[1][1]) *
+                                       render::view_scale(dab.camera));
     tolerance_ = static_cast<float>(octree_depth_tolerance(tree, dab.camera));
-    depth_scale_ = static_cast<float>(octree_depth_tolerance(tree, dab.camera) / (2 * tree.cell_side()));
+    depth_scale_ =
+        static_cast<float>(octree_depth_tolerance(tree, dab.camera) / (2 * tree.cell_side()));
     squared_radius_ = static_cast<float>(dab.radius_px * dab.radius_px);
   }
 
@@ -148,7 +159,8 @@ class Descent {
     std::vector<Pending> front{{root_, 0, 0, false}};
     std::atomic<std::size_t> painted{0};
     // Until there is work for all.
-    while (!front.empty() && front.size() < 64 * static_cast<std::size_t>(threads) && front[0].depth < tree_.depth()) {
+    while (!front.empty() && front.size() < 64 * static_cast<std::size_t>(threads) &&
+           front[0].depth < tree_.depth()) {
       std::vector<Pending> next;
       for (const Pending& pending : front) {
         std::array<Pending, 8> children;
@@ -165,8 +177,10 @@ class Descent {
  private:
   static Place place_at(const glm::dvec4* linear, const glm::dvec3& at, double one) {
     Place place;
-    for (int i = 0; i < kPlanes; ++i) place.planes[i] = static_cast<float>(glm::dot(linear[i], glm::dvec4(at, one)));
-    for (int i = 0; i < 4; ++i) place.clip[i] = static_cast<float>(glm::dot(linear[kPlanes + i], glm::dvec4(at, one)));
+    for (int i = 0; i < kPlanes; ++i)
+      place.planes[i] = static_cast<float>(glm::dot(linear[i], glm::dvec4(at, one)));
+    for (int i = 0; i < 4; ++i)
+      place.clip[i] = static_cast<float>(glm::dot(linear[kPlanes + i], glm::dvec4(at, one)));
     return place;
   }
 
@@ -195,7 +209,8 @@ class Descent {
     for (std::uint32_t mask = node.mask; mask != 0; mask &= mask - 1) {
       Pending& child = children[count];
       const Place& step = steps[static_cast<std::size_t>(std::countr_zero(mask))];
-      for (int i = 0; i < kPlanes; ++i) child.place.planes[i] = pending.place.planes[i] + step.planes[i];
+      for (int i = 0; i < kPlanes; ++i)
+        child.place.planes[i] = pending.place.planes[i] + step.planes[i];
       for (int i = 0; i < 4; ++i) child.place.clip[i] = pending.place.clip[i] + step.clip[i];
       child.node = next++;
       child.depth = pending.depth + 1;
@@ -226,10 +241,14 @@ class Descent {
     const glm::vec3 window = to_window(node.place);
     if (window.z - depth_scale_ * (radius + 3 * tree_.cell_side()) / (w * w) <= 0) return false;
     const float nearest = window.z - depth_scale_ * (radius + 3 * tree_.cell_side()) / (w * w);
-    const int cells_x = (depth_.width + kCell - 1) / kCell, cells_y = (depth_.height + kCell - 1) / kCell;
-    const auto cell = [](float pixel, int count) { return std::clamp(static_cast<int>(pixel) / kCell, 0, count - 1); };
+    const int cells_x = (depth_.width + kCell - 1) / kCell,
+              cells_y = (depth_.height + kCell - 1) / kCell;
+    const auto cell = [](float pixel, int count) {
+      return std::clamp(static_cast<int>(pixel) / kCell, 0, count - 1);
+    };
     for (int y = cell(window.y - radius_px, cells_y); y <= cell(window.y + radius_px, cells_y); ++y)
-      for (int x = cell(window.x - radius_px, cells_x); x <= cell(window.x + radius_px, cells_x); ++x)
+      for (int x = cell(window.x - radius_px, cells_x); x <= cell(window.x + radius_px, cells_x);
+           ++x)
         if (depth_.grid[static_cast<std::size_t>(y * cells_x + x)] >= nearest) return false;
     return true;
   }
@@ -300,8 +319,8 @@ std::size_t paint_by_rays(const Octree& tree, const OctreeDab& dab, OctreeLayer&
   return hits;
 }
 
-std::size_t paint_by_descent(const Octree& tree, const OctreeDab& dab, const render::DepthCopy& depth, int threads,
-                             OctreeLayer& layer) {
+std::size_t paint_by_descent(const Octree& tree, const OctreeDab& dab,
+                             const render::DepthCopy& depth, int threads, OctreeLayer& layer) {
   return Descent(tree, dab, depth, layer).run(threads);
 }
 

@@ -8,7 +8,8 @@
 
 namespace strata::bench {
 
-// A layer of an octree in main memory: values, and the colours that are sent to the GPU to be shown.
+// A layer of an octree in main memory: values, and the colours that are sent to the GPU to be
+// shown.
 struct OctreeLayer {
   std::vector<std::uint8_t> values;
   std::vector<std::uint32_t> colors;
@@ -19,7 +20,9 @@ struct OctreeLayer {
       : values(tree.leaf_count()),
         colors(tree.leaf_count()),
         dirty((tree.leaf_count() + kLeavesPerRange - 1) / kLeavesPerRange) {}
-  std::size_t bytes() const { return values.size() + colors.size() * sizeof(colors[0]) + dirty.size(); }
+  std::size_t bytes() const {
+    return values.size() + colors.size() * sizeof(colors[0]) + dirty.size();
+  }
 };
 
 // A dab of a disc; `center` in window pixels, origin top left.
@@ -32,15 +35,17 @@ struct OctreeDab {
   std::uint32_t color = 0;
 };
 
-// As published: one ray through each pixel's centre under the tool, one thread; the first leaf on its way is painted. The
-// way through the tree is that of Revelles et al. 2000. Answers how many rays met a leaf.
+// As published: one ray through each pixel's centre under the tool, one thread; the first leaf on
+// its way is painted. The way through the tree is that of Revelles et al. 2000. Answers how many
+// rays met a leaf.
 std::size_t paint_by_rays(const Octree& tree, const OctreeDab& dab, OctreeLayer& layer);
 
-// The fair variant: every leaf is painted whose centre lies under the tool and not behind the depth buffer by more than two
-// cells, so that no leaf is missed where cells are smaller than pixels. Goes down the tree by planes around the tool, leaves
-// out what the coarse depth hides, and works on `threads` threads. Answers how many leaves were painted.
-std::size_t paint_by_descent(const Octree& tree, const OctreeDab& dab, const render::DepthCopy& depth, int threads,
-                             OctreeLayer& layer);
+// The fair variant: every leaf is painted whose centre lies under the tool and not behind the depth
+// buffer by more than two cells, so that no leaf is missed where cells are smaller than pixels.
+// Goes down the tree by planes around the tool, leaves out what the coarse depth hides, and works
+// on `threads` threads. Answers how many leaves were painted.
+std::size_t paint_by_descent(const Octree& tree, const OctreeDab& dab,
+                             const render::DepthCopy& depth, int threads, OctreeLayer& layer);
 
 // How far behind the depth buffer a leaf may lie, in window depth · w²: two cells.
 double octree_depth_tolerance(const Octree& tree, const Camera& camera);

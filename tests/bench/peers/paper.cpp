@@ -19,15 +19,16 @@ void fill(const gl::Texture& texture, std::uint32_t value) {
 
 }  // namespace
 
-Result<std::unique_ptr<PaperEditor>> PaperEditor::create(const mesh::Geometry& geometry, int resolution) {
+Result<std::unique_ptr<PaperEditor>> PaperEditor::create(const mesh::Geometry& geometry,
+                                                         int resolution) {
   auto editor = std::make_unique<PaperEditor>();
   editor->resolution_ = resolution;
   editor->origin_ = geometry.origin;
   editor->index_count_ = static_cast<GLsizei>(geometry.indices.size());
-  auto vertices =
-      gl::Buffer::create(geometry.vertices.size() * sizeof(mesh::Vertex), gl::Buffer::Use::fixed, "paper vertices");
-  auto indices =
-      gl::Buffer::create(geometry.indices.size() * sizeof(std::uint32_t), gl::Buffer::Use::fixed, "paper indices");
+  auto vertices = gl::Buffer::create(geometry.vertices.size() * sizeof(mesh::Vertex),
+                                     gl::Buffer::Use::fixed, "paper vertices");
+  auto indices = gl::Buffer::create(geometry.indices.size() * sizeof(std::uint32_t),
+                                    gl::Buffer::Use::fixed, "paper indices");
   if (!vertices) return tl::unexpected(vertices.error());
   if (!indices) return tl::unexpected(indices.error());
   vertices->upload_values(0, std::span(geometry.vertices));
@@ -35,9 +36,10 @@ Result<std::unique_ptr<PaperEditor>> PaperEditor::create(const mesh::Geometry& g
   editor->vertices_ = std::move(*vertices);
   editor->indices_ = std::move(*indices);
   const std::array<gl::VertexAttribute, 2> attributes{
-      {{0, 3, GL_FLOAT, false, offsetof(mesh::Vertex, position)}, {1, 2, GL_FLOAT, false, offsetof(mesh::Vertex, uv)}}};
-  editor->mesh_array_ =
-      gl::VertexArray(editor->vertices_, sizeof(mesh::Vertex), attributes, editor->indices_, "paper mesh");
+      {{0, 3, GL_FLOAT, false, offsetof(mesh::Vertex, position)},
+       {1, 2, GL_FLOAT, false, offsetof(mesh::Vertex, uv)}}};
+  editor->mesh_array_ = gl::VertexArray(editor->vertices_, sizeof(mesh::Vertex), attributes,
+                                        editor->indices_, "paper mesh");
   editor->empty_array_ = gl::VertexArray("paper texture pass");
   const struct {
     gl::Program& program;
@@ -107,15 +109,16 @@ void PaperEditor::draw_texture(const gl::Framebuffer& target) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void PaperEditor::edit(const Camera& camera, const gl::Texture& depth, glm::dvec2 center, double radius_px,
-                       std::uint8_t value, Padding padding) {
+void PaperEditor::edit(const Camera& camera, const gl::Texture& depth, glm::dvec2 center,
+                       double radius_px, std::uint8_t value, Padding padding) {
   const glm::mat4 clip = clip_from_model(camera, origin_);
   const glm::vec2 lower_left(center.x, camera.height - center.y);
   ++edit_number_;
   const GLuint editing = texture_editing_.id();
   const gl::Program& padder = padding == Padding::raster ? texture_padding_ : compute_padding_;
   glProgramUniformMatrix4fv(editing, 0, 1, GL_FALSE, glm::value_ptr(clip));
-  glProgramUniform2f(editing, 1, static_cast<float>(camera.width), static_cast<float>(camera.height));
+  glProgramUniform2f(editing, 1, static_cast<float>(camera.width),
+                     static_cast<float>(camera.height));
   glProgramUniform2f(editing, 2, lower_left.x, lower_left.y);
   glProgramUniform1f(editing, 3, static_cast<float>(radius_px));
   glProgramUniform1f(editing, 4, static_cast<float>(kPaperDepthBias));
@@ -137,7 +140,8 @@ void PaperEditor::edit(const Camera& camera, const gl::Texture& depth, glm::dvec
   mask_.bind_image(1, GL_WRITE_ONLY);
   const auto groups = static_cast<GLuint>(resolution_ / kPaddingGroup);
   glDispatchCompute(groups, groups, 1);
-  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT |
+                  GL_FRAMEBUFFER_BARRIER_BIT);
 }
 
 void PaperEditor::clear() {
@@ -147,8 +151,8 @@ void PaperEditor::clear() {
 
 std::vector<std::uint8_t> PaperEditor::read(const gl::Texture& texture) {
   std::vector<std::uint8_t> texels(texture.bytes());
-  glGetTextureImage(texture.id(), 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE, static_cast<GLsizei>(texels.size()),
-                    texels.data());
+  glGetTextureImage(texture.id(), 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE,
+                    static_cast<GLsizei>(texels.size()), texels.data());
   return texels;
 }
 

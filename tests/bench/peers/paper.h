@@ -10,35 +10,40 @@
 
 namespace strata::bench {
 
-// The paper's "small bias", in window depth; it gives no number. For cameras whose near and far planes lie as close around the
-// model as those of `look_at`, this is 1.6 % of the model's radius. A bias of 2e-4 would reject parts of every surface that is
-// tilted by more than 13 degrees, because depth varies by more than that within a pixel: a speckled edit, whose many
-// thresholds make rounding decide 3 to 11 texels of 100 000.
+// The paper's "small bias", in window depth; it gives no number. For cameras whose near and far
+// planes lie as close around the model as those of `look_at`, this is 1.6 % of the model's radius.
+// A bias of 2e-4 would reject parts of every surface that is tilted by more than 13 degrees,
+// because depth varies by more than that within a pixel: a speckled edit, whose many thresholds
+// make rounding decide 3 to 11 texels of 100 000.
 constexpr double kPaperDepthBias = 5e-3;
 
-// The paper's editing, literally: the Texture Editing Algorithm draws the whole mesh at its texture coordinates into data,
-// mask and edited-area textures, discarding what fails the window, depth (fixed bias) and tool tests; the Texture Padding
-// Algorithm then filters the whole texture, setting outline texels (1 wide) beside the edited area. The outline mask is
-// made by its two passes when the model is loaded. The tool is a disc by formula; the window → tool map is derived anew,
-// because the printed translation factor has the wrong sign and lacks ½. GPU thread only; one dab an edit, values of 8 bits.
-// The padding is published as a raster pass; the same as a compute pass spares the few multiprocessors that rasterise on
-// H100-class GPUs.
+// The paper's editing, literally: the Texture Editing Algorithm draws the whole mesh at its texture
+// coordinates into data, mask and edited-area textures, discarding what fails the window, depth
+// (fixed bias) and tool tests; the Texture Padding Algorithm then filters the whole texture,
+// setting outline texels (1 wide) beside the edited area. The outline mask is made by its two
+// passes when the model is loaded. The tool is a disc by formula; the window → tool map is derived
+// anew, because the printed translation factor has the wrong sign and lacks ½. GPU thread only; one
+// dab an edit, values of 8 bits. The padding is published as a raster pass; the same as a compute
+// pass spares the few multiprocessors that rasterise on H100-class GPUs.
 class PaperEditor {
  public:
   enum class Padding { raster, compute };
-  static Result<std::unique_ptr<PaperEditor>> create(const mesh::Geometry& geometry, int resolution);
+  static Result<std::unique_ptr<PaperEditor>> create(const mesh::Geometry& geometry,
+                                                     int resolution);
 
   // `depth` is the system's depth texture: the mesh from this camera at its window's size.
-  void edit(const Camera& camera, const gl::Texture& depth, glm::dvec2 center, double radius_px, std::uint8_t value,
-            Padding padding = Padding::raster);
+  void edit(const Camera& camera, const gl::Texture& depth, glm::dvec2 center, double radius_px,
+            std::uint8_t value, Padding padding = Padding::raster);
   void clear();
 
   int resolution() const { return resolution_; }
   std::vector<std::uint8_t> data() const { return read(data_); }
   std::vector<std::uint8_t> mask() const { return read(mask_); }
-  std::vector<std::uint8_t> coverage() const { return read(coverage_); }  // 1 where the parametrisation lies
+  // 1 where the parametrisation lies
+  std::vector<std::uint8_t> coverage() const { return read(coverage_); }
   std::uint64_t layer_bytes() const { return data_.bytes() + mask_.bytes(); }
-  std::uint64_t structure_bytes() const { return edited_.bytes() + outline_.bytes(); }  // of a resolution
+  // of a resolution
+  std::uint64_t structure_bytes() const { return edited_.bytes() + outline_.bytes(); }
 
  private:
   static std::vector<std::uint8_t> read(const gl::Texture& texture);

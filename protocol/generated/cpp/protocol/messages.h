@@ -419,7 +419,9 @@ struct EditFill {
   double value = 0;  // In the layer's type; ignored when erasing.
   bool erase = false;
   EditFillMode mode{};
-  std::optional<std::string> where;  // With mode `where`: a condition over the model's layers, such as `moisture > 0.3 and not valid(cracks)`.
+  // With mode `where`: a condition over the model's layers, such as `moisture > 0.3 and not
+  // valid(cracks)`.
+  std::optional<std::string> where;
   std::optional<SurfacePlace> at;  // With the other modes: where the fill begins.
   bool operator==(const EditFill&) const = default;
 };
@@ -466,10 +468,15 @@ struct PalettePoint {
   double at = 0;
   std::string color;  // #rrggbb or #rrggbbaa, sRGB.
   std::optional<std::string> label;
-  std::optional<std::string> value;  // With a `column` that holds no numbers, in a categorical palette: the value that is meant, as text (of a term, its key). `at` then only orders the points.
-  PalettePointPattern pattern = PalettePointPattern::solid;  // How the colour is laid on; step and categorical palettes only.
+  // With a `column` that holds no numbers, in a categorical palette: the value that is meant, as
+  // text (of a term, its key). `at` then only orders the points.
+  std::optional<std::string> value;
+  // How the colour is laid on; step and categorical palettes only.
+  PalettePointPattern pattern = PalettePointPattern::solid;
   double angle = 45;  // Of hatch and dots, in degrees on the picture: 0 runs to the right, 90 up.
-  double spacing_mm = 0;  // Between lines or dots, at the distance of the model's middle (exact in an orthographic view). 0: some pixels, as in the legend.
+  // Between lines or dots, at the distance of the model's middle (exact in an orthographic view).
+  // 0: some pixels, as in the legend.
+  double spacing_mm = 0;
   bool operator==(const PalettePoint&) const = default;
 };
 void read(const nlohmann::json& json, PalettePoint& value);
@@ -496,7 +503,9 @@ nlohmann::json to_json(const Recompute& value);
 // Records that are to be seen before all others. Of a database layer. Their texels keep their colours, those of others turn grey, or with `isolate` are not drawn at all.
 struct Highlight {
   std::optional<std::vector<std::int64_t>> keys;
-  std::optional<std::string> filter;  // A condition over the columns of the layer's table (OGC CQL2 text); follows the records as they change.
+  // A condition over the columns of the layer's table (OGC CQL2 text); follows the records as they
+  // change.
+  std::optional<std::string> filter;
   bool isolate = false;
   bool operator==(const Highlight&) const = default;
 };
@@ -572,7 +581,8 @@ inline constexpr Schema kSchemaOf<TourColumn> = Schema::TourColumn;
 struct TourRecords {
   std::string table;  // Its slug; in requests its id, too.
   std::vector<std::int64_t> keys;  // In this order; records may be gone meanwhile.
-  std::vector<TourColumn> columns;  // In this order, of any record of the table that is looked at here.
+  // In this order, of any record of the table that is looked at here.
+  std::vector<TourColumn> columns;
   bool operator==(const TourRecords&) const = default;
 };
 void read(const nlohmann::json& json, TourRecords& value);
@@ -629,7 +639,10 @@ nlohmann::json to_json(const AtlasLimitCode& value);
 
 // Why part of the texture stays unused.
 struct AtlasLimit {
-  AtlasLimitCode code{};  // long_triangles: the longest triangle sets the scale of all; many_charts: the margins around charts take the room; hollow_charts: charts leave their own boxes empty; file_coordinates: the scan's own coordinates were kept.
+  // long_triangles: the longest triangle sets the scale of all; many_charts: the margins around
+  // charts take the room; hollow_charts: charts leave their own boxes empty; file_coordinates: the
+  // scan's own coordinates were kept.
+  AtlasLimitCode code{};
   std::string text;
   bool operator==(const AtlasLimit&) const = default;
 };
@@ -665,8 +678,11 @@ struct Atlas {
   double stretch_mean = 0;
   double stretch_p99 = 0;
   double texel_area_max_m2 = 0;  // Surface in the texel that holds most, at lowest_resolution.
-  std::optional<std::vector<TexelSize>> texel_sizes;  // Precision of layers by their resolution, the lowest first; not known of models imported before it was measured.
-  std::optional<std::vector<AtlasLimit>> limits;  // Why less than 60 % of the texels are used; empty where more are.
+  // Precision of layers by their resolution, the lowest first; not known of models imported before
+  // it was measured.
+  std::optional<std::vector<TexelSize>> texel_sizes;
+  // Why less than 60 % of the texels are used; empty where more are.
+  std::optional<std::vector<AtlasLimit>> limits;
   bool operator==(const Atlas&) const = default;
 };
 void read(const nlohmann::json& json, Atlas& value);
@@ -722,7 +738,9 @@ struct Hello {
   static constexpr std::string_view kOp = "hello";
   std::string client;  // Name and version of the program.
   double dpr = 1;  // Device pixels per CSS pixel.
-  std::optional<std::vector<std::string>> accept;  // Codecs of frames that the client draws, best first: jpeg, png. Absent: jpeg and png; unknown names are passed over.
+  // Codecs of frames that the client draws, best first: jpeg, png. Absent: jpeg and png; unknown
+  // names are passed over.
+  std::optional<std::vector<std::string>> accept;
   bool operator==(const Hello&) const = default;
 };
 void read(const nlohmann::json& json, Hello& value);
@@ -755,7 +773,9 @@ struct LayersUpdate {
   static constexpr std::string_view kOp = "layers";
   int view_id = 0;
   std::vector<LayerOverride> layers;
-  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top, over the colours of the vertices; absent: those visible by default.
+  // Exactly these, bottom to top, over the colours of the vertices; absent: those visible by
+  // default.
+  std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Absent: museum.
   std::optional<Background> background;  // Absent: light grey.
   bool operator==(const LayersUpdate&) const = default;
@@ -884,10 +904,14 @@ inline constexpr Schema kSchemaOf<Ack> = Schema::Ack;
 struct PresenceUpdate {
   static constexpr std::string_view kOp = "presence";
   int view_id = 0;
-  std::optional<glm::dvec2> pointer;  // Pixel of the view's newest camera; null or absent: the pointer is elsewhere.
-  std::optional<double> radius;  // Of the brush in hand where the pointer is, in world coordinates; absent: another tool.
+  // Pixel of the view's newest camera; null or absent: the pointer is elsewhere.
+  std::optional<glm::dvec2> pointer;
+  // Of the brush in hand where the pointer is, in world coordinates; absent: another tool.
+  std::optional<double> radius;
   bool leading = false;  // Asks the others to look with this viewer.
-  std::optional<Uuid> follow;  // Session of whom this viewer looks with; its camera then comes with `presence`. 404: it is not here; 409: it follows this one, or somebody who does.
+  // Session of whom this viewer looks with; its camera then comes with `presence`. 404: it is not
+  // here; 409: it follows this one, or somebody who does.
+  std::optional<Uuid> follow;
   bool operator==(const PresenceUpdate&) const = default;
 };
 void read(const nlohmann::json& json, PresenceUpdate& value);
@@ -946,9 +970,11 @@ struct Welcome {
   nlohmann::json model;
   std::vector<nlohmann::json> layers;
   std::vector<nlohmann::json> looks;  // By order.
-  std::optional<PersonalView> personal_view;  // What this person keeps of how they show the layers; absent: nothing, or this is a kiosk.
+  // What this person keeps of how they show the layers; absent: nothing, or this is a kiosk.
+  std::optional<PersonalView> personal_view;
   Limits limits;
-  std::vector<StrokeProgress> strokes;  // Of this user, so that the client resends what is not in them.
+  // Of this user, so that the client resends what is not in them.
+  std::vector<StrokeProgress> strokes;
   bool operator==(const Welcome&) const = default;
 };
 void read(const nlohmann::json& json, Welcome& value);
@@ -1209,7 +1235,8 @@ struct PresenceUser {
   std::optional<PresencePointer> pointer;
   bool leading = false;  // Asks the others to look with this viewer.
   std::optional<Uuid> following;  // Session of whom they look with.
-  std::optional<strata::Camera> camera;  // Newest of their view 0, without its section: only of whom the receiver follows.
+  // Newest of their view 0, without its section: only of whom the receiver follows.
+  std::optional<strata::Camera> camera;
   bool operator==(const PresenceUser&) const = default;
 };
 void read(const nlohmann::json& json, PresenceUser& value);
@@ -1256,7 +1283,9 @@ struct ProblemMessage {
   int status = 0;
   std::string detail;
   std::optional<std::string> field;  // Where in the message: camera.view[3].
-  std::optional<int> offset;  // Where the member is a text in a language: characters (Unicode code points) before what is wrong.
+  // Where the member is a text in a language: characters (Unicode code points) before what is
+  // wrong.
+  std::optional<int> offset;
   bool operator==(const ProblemMessage&) const = default;
 };
 void read(const nlohmann::json& json, ProblemMessage& value);
@@ -1302,7 +1331,9 @@ struct ScriptTokenCreate {
   std::string name;  // What it is for.
   std::optional<Role> role;
   int days = 365;  // Until it expires.
-  std::optional<std::string> project;  // Slug or id of the only project that it is good in, as viewer, annotator or curator; absent: wherever its person is.
+  // Slug or id of the only project that it is good in, as viewer, annotator or curator; absent:
+  // wherever its person is.
+  std::optional<std::string> project;
   bool operator==(const ScriptTokenCreate&) const = default;
 };
 void read(const nlohmann::json& json, ScriptTokenCreate& value);
@@ -1394,7 +1425,8 @@ inline constexpr Schema kSchemaOf<GroupCreate> = Schema::GroupCreate;
 struct GroupPatch {
   std::optional<std::string> name;
   std::optional<std::vector<std::string>> add;  // Who is put into it; who is in it stays.
-  std::optional<std::vector<std::string>> remove;  // Who is taken out of it; who is not in it stays out.
+  // Who is taken out of it; who is not in it stays out.
+  std::optional<std::vector<std::string>> remove;
   bool operator==(const GroupPatch&) const = default;
 };
 void read(const nlohmann::json& json, GroupPatch& value);
@@ -1461,7 +1493,8 @@ struct ModelPatch {
   std::optional<std::string> processing;
   std::optional<std::string> rights_uri;
   std::optional<std::string> credit;
-  std::optional<ModelPatchSourceDownload> source_download;  // The least role that gets the scan's files, the pictures of its looks and its mesh.
+  // The least role that gets the scan's files, the pictures of its looks and its mesh.
+  std::optional<ModelPatchSourceDownload> source_download;
   bool operator==(const ModelPatch&) const = default;
 };
 void read(const nlohmann::json& json, ModelPatch& value);
@@ -1503,7 +1536,8 @@ struct TransferReport {
   double matched_m2 = 0;  // Of that, what has a counterpart within the tolerance.
   std::vector<TransferredLayer> layers;
   std::optional<std::int64_t> marks;  // Lines and points that records have on this model now, too.
-  std::optional<std::int64_t> lost_marks;  // Those of the other model that have no counterpart within the tolerance, as a whole or in part.
+  // Those of the other model that have no counterpart within the tolerance, as a whole or in part.
+  std::optional<std::int64_t> lost_marks;
   bool operator==(const TransferReport&) const = default;
 };
 void read(const nlohmann::json& json, TransferReport& value);
@@ -1537,9 +1571,13 @@ inline constexpr Schema kSchemaOf<Job> = Schema::Job;
 
 // Layers of another version of the same scan.
 struct Transfer {
-  std::string from;  // Id or slug of the model whose layers are taken. Both models' coordinates must be of one system.
-  double tolerance_mm = 0;  // A place with no surface of the other model within this distance stays empty.
-  double max_angle = 60;  // Degrees by which the surfaces may differ in direction: keeps the two sides of a thin wall apart.
+  // Id or slug of the model whose layers are taken. Both models' coordinates must be of one system.
+  std::string from;
+  // A place with no surface of the other model within this distance stays empty.
+  double tolerance_mm = 0;
+  // Degrees by which the surfaces may differ in direction: keeps the two sides of a thin wall
+  // apart.
+  double max_angle = 60;
   std::optional<std::vector<std::string>> layers;  // Ids or slugs; absent: all.
   bool operator==(const Transfer&) const = default;
 };
@@ -1568,10 +1606,12 @@ struct ColumnCreate {
   std::string unit;  // Numbers: what they count.
   bool required = false;
   bool unique = false;
-  std::optional<nlohmann::json> default_value;  // What new records have where they say nothing; null: none.
+  // What new records have where they say nothing; null: none.
+  std::optional<nlohmann::json> default_value;
   std::string comment;
   std::optional<std::vector<std::string>> choices;  // Enumerations: what may be chosen.
-  std::optional<TableRef> target;  // Terms and relations: the table of the project whose records they name.
+  // Terms and relations: the table of the project whose records they name.
+  std::optional<TableRef> target;
   std::optional<double> minimum;
   std::optional<double> maximum;
   std::optional<strata::Visibility> visibility;  // Absent: public.
@@ -1591,14 +1631,18 @@ struct ColumnPatch {
   std::optional<std::string> unit;  // Numbers: what they count.
   std::optional<bool> required;
   std::optional<bool> unique;
-  std::optional<nlohmann::json> default_value;  // What new records have where they say nothing; null: none.
+  // What new records have where they say nothing; null: none.
+  std::optional<nlohmann::json> default_value;
   std::optional<std::string> comment;
   std::optional<std::vector<std::string>> choices;  // Enumerations: what may be chosen.
-  std::optional<TableRef> target;  // Terms and relations: the table of the project whose records they name.
+  // Terms and relations: the table of the project whose records they name.
+  std::optional<TableRef> target;
   std::optional<double> minimum;
   std::optional<double> maximum;
   std::optional<int> order;  // Ascending from left to right.
-  std::optional<strata::Visibility> visibility;  // Alone. Counts for the past, too, and is no entry of the table's journal: no undo shows the column again.
+  // Alone. Counts for the past, too, and is no entry of the table's journal: no undo shows the
+  // column again.
+  std::optional<strata::Visibility> visibility;
   bool operator==(const ColumnPatch&) const = default;
 };
 void read(const nlohmann::json& json, ColumnPatch& value);
@@ -1618,7 +1662,8 @@ inline constexpr Schema kSchemaOf<AttachmentPatch> = Schema::AttachmentPatch;
 
 // Names of files that say which records they are of.
 struct AttachmentMatch {
-  std::string pattern;  // A {word} stands for one or more characters; the one called like the column says the record.
+  // A {word} stands for one or more characters; the one called like the column says the record.
+  std::string pattern;
   std::string column;  // Slug or id of a column, or `key`.
   std::vector<std::string> names;
   bool operator==(const AttachmentMatch&) const = default;
@@ -1647,7 +1692,8 @@ struct TablePatch {
   std::optional<std::string> name;
   std::optional<Labels> labels;
   std::optional<std::string> description;
-  std::optional<std::string> title_column;  // Id or slug of the column that says what a record is called; empty: the best one by rule.
+  // Id or slug of the column that says what a record is called; empty: the best one by rule.
+  std::optional<std::string> title_column;
   bool operator==(const TablePatch&) const = default;
 };
 void read(const nlohmann::json& json, TablePatch& value);
@@ -1657,7 +1703,8 @@ inline constexpr Schema kSchemaOf<TablePatch> = Schema::TablePatch;
 
 // New record.
 struct RecordInput {
-  std::optional<std::int64_t> key;  // Absent: the next one. A deleted record's key is not given again.
+  // Absent: the next one. A deleted record's key is not given again.
+  std::optional<std::int64_t> key;
   std::optional<nlohmann::json> values;
   bool operator==(const RecordInput&) const = default;
 };
@@ -1717,7 +1764,8 @@ struct TemplateTable {
   std::optional<Labels> labels;
   std::string description;
   std::optional<std::vector<TemplateTerm>> terms;
-  std::optional<std::vector<ColumnCreate>> columns;  // Their targets are tables of the template: those before, or the table itself.
+  // Their targets are tables of the template: those before, or the table itself.
+  std::optional<std::vector<ColumnCreate>> columns;
   bool operator==(const TemplateTable&) const = default;
 };
 void read(const nlohmann::json& json, TemplateTable& value);
@@ -1760,8 +1808,10 @@ inline constexpr Schema kSchemaOf<Template> = Schema::Template;
 
 // Use of a template.
 struct TemplateUse {
-  std::optional<std::string> model;  // Id or slug of a model of the project: its layers are made there. Absent: tables only.
-  std::optional<std::string> language;  // What things are called, as far as the template has it; English otherwise.
+  // Id or slug of a model of the project: its layers are made there. Absent: tables only.
+  std::optional<std::string> model;
+  // What things are called, as far as the template has it; English otherwise.
+  std::optional<std::string> language;
   bool operator==(const TemplateUse&) const = default;
 };
 void read(const nlohmann::json& json, TemplateUse& value);
@@ -1777,13 +1827,17 @@ nlohmann::json to_json(const ShapeRecipeKind& value);
 // Values computed from the model's shape. The answer is a job; the layer is there once it is done. Unit, palette and description follow from the recipe where they are not given.
 struct ShapeRecipe {
   ShapeRecipeKind kind{};
-  std::optional<double> radius_mm;  // Curvatures and roughness: of the neighbourhood; absent: four edges of the mesh.
-  std::optional<double> distance_mm;  // Ambient occlusion and model distance: as far as it looks; absent: a quarter or a tenth of the model's diagonal.
+  // Curvatures and roughness: of the neighbourhood; absent: four edges of the mesh.
+  std::optional<double> radius_mm;
+  // Ambient occlusion and model distance: as far as it looks; absent: a quarter or a tenth of the
+  // model's diagonal.
+  std::optional<double> distance_mm;
   std::optional<int> rays;  // Ambient occlusion: rays a point; absent: 64.
   bool absolute = false;  // Height: the world's coordinate, not that above the lowest point.
   std::optional<std::string> model;  // Model distance: id or slug of the other model.
   std::optional<std::string> property;  // Vertex property: its name in the PLY, such as quality.
-  std::optional<std::string> source;  // Vertex property: the source file; needed where several have it.
+  // Vertex property: the source file; needed where several have it.
+  std::optional<std::string> source;
   bool operator==(const ShapeRecipe&) const = default;
 };
 void read(const nlohmann::json& json, ShapeRecipe& value);
@@ -1796,7 +1850,8 @@ struct LayerCreate {
   std::string name;
   std::optional<std::string> slug;  // Made from the name when absent; never all digits.
   strata::LayerKind kind = strata::LayerKind::numeric;
-  std::optional<strata::ValueType> type;  // Absent: u8; f32 for what is computed, but for a condition.
+  // Absent: u8; f32 for what is computed, but for a condition.
+  std::optional<strata::ValueType> type;
   std::optional<int> resolution;  // Absent: the model's default.
   std::string unit;
   std::string description;
@@ -1804,15 +1859,25 @@ struct LayerCreate {
   std::optional<Descriptions> descriptions;
   std::optional<nlohmann::json> palette;
   double opacity = 1;
-  std::optional<bool> visible;  // Absent: true, but for a computed layer, which must not cover what others look at: whoever made it sees it all the same.
-  std::optional<bool> locked;  // Nobody below curator changes its texels. Absent: false, but for a computed layer, which is always locked when it is made (false: 422).
+  // Absent: true, but for a computed layer, which must not cover what others look at: whoever made
+  // it sees it all the same.
+  std::optional<bool> visible;
+  // Nobody below curator changes its texels. Absent: false, but for a computed layer, which is
+  // always locked when it is made (false: 422).
+  std::optional<bool> locked;
   bool review = false;  // What annotators change waits for a curator's review.
-  std::optional<strata::Visibility> visibility;  // Absent: public. What it reads and is coloured by must be seen by all who see it.
+  // Absent: public. What it reads and is coloured by must be seen by all who see it.
+  std::optional<strata::Visibility> visibility;
   std::optional<int> order;  // Absent: on top, a computed layer below all others.
-  std::optional<TableRef> table;  // Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own name.
-  std::optional<std::vector<ColumnCreate>> columns;  // Database layers without `table`: those of its own one. Absent: one text, Name.
+  // Database layers: the project's table whose keys the texels hold. Absent: one of the layer's own
+  // name.
+  std::optional<TableRef> table;
+  // Database layers without `table`: those of its own one. Absent: one text, Name.
+  std::optional<std::vector<ColumnCreate>> columns;
   std::optional<ShapeRecipe> compute;
-  std::optional<std::string> expression;  // A computed layer: a number, or a condition (1 where it holds, not painted elsewhere) over layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area).
+  // A computed layer: a number, or a condition (1 where it holds, not painted elsewhere) over
+  // layers, their records and the surface (x, y, z, nx, ny, nz, height, slope, curvature, area).
+  std::optional<std::string> expression;
   std::optional<Recompute> recompute;  // With `expression`; absent: manual.
   bool operator==(const LayerCreate&) const = default;
 };
@@ -1846,7 +1911,9 @@ inline constexpr Schema kSchemaOf<VertexPropertyList> = Schema::VertexPropertyLi
 // First comment of a thread.
 struct CommentCreate {
   std::string text;  // Plain text.
-  glm::dvec3 position{0};  // World coordinates; the nearest place of the surface is taken, within 5 % of the model's diagonal.
+  // World coordinates; the nearest place of the surface is taken, within 5 % of the model's
+  // diagonal.
+  glm::dvec3 position{0};
   std::optional<LayerRef> layer;  // What it is about.
   std::optional<std::int64_t> record;  // What it is about: a key of the layer, which is of a table.
   bool operator==(const CommentCreate&) const = default;
@@ -1883,7 +1950,8 @@ struct ViewCreate {
   std::optional<std::string> text;  // Plain text.
   strata::Camera camera;  // With its section.
   std::optional<std::vector<LayerOverride>> layers;  // Layers not listed show their defaults.
-  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
+  // Exactly these, bottom to top; absent: those visible by default.
+  std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Absent: museum.
   bool operator==(const ViewCreate&) const = default;
 };
@@ -1899,7 +1967,8 @@ struct ViewPatch {
   std::optional<std::string> text;  // Plain text.
   std::optional<strata::Camera> camera;  // With its section.
   std::optional<std::vector<LayerOverride>> layers;  // Layers not listed show their defaults.
-  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
+  // Exactly these, bottom to top; absent: those visible by default.
+  std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Absent: museum.
   bool operator==(const ViewPatch&) const = default;
 };
@@ -1917,7 +1986,8 @@ struct TourStopCreate {
   double attract_s = 10;  // How long it is shown while the tour plays by itself.
   std::optional<TourTransition> transition;  // Absent: `move`.
   double transition_s = 2;  // How long a `move` takes.
-  std::optional<std::vector<std::string>> layers;  // Offered for swiping, in this order: slugs or ids. None twice.
+  // Offered for swiping, in this order: slugs or ids. None twice.
+  std::optional<std::vector<std::string>> layers;
   std::optional<std::vector<TourRecords>> records;  // Each of another table of the project.
   bool operator==(const TourStopCreate&) const = default;
 };
@@ -1930,7 +2000,8 @@ inline constexpr Schema kSchemaOf<TourStopCreate> = Schema::TourStopCreate;
 struct TourCreate {
   std::string name;
   std::optional<std::string> text;  // Plain text: what it is about, for those who choose one.
-  std::vector<std::string> languages;  // The first one is that of who chooses none; every stop has a title in it. None twice.
+  // The first one is that of who chooses none; every stop has a title in it. None twice.
+  std::vector<std::string> languages;
   int idle_s = 60;  // So long after the last touch the tour begins anew and plays by itself.
   std::vector<TourStopCreate> stops;
   bool operator==(const TourCreate&) const = default;
@@ -1944,7 +2015,8 @@ inline constexpr Schema kSchemaOf<TourCreate> = Schema::TourCreate;
 struct TourPatch {
   std::optional<std::string> name;
   std::optional<std::string> text;  // Plain text: what it is about, for those who choose one.
-  std::optional<std::vector<std::string>> languages;  // The first one is that of who chooses none; every stop has a title in it. None twice.
+  // The first one is that of who chooses none; every stop has a title in it. None twice.
+  std::optional<std::vector<std::string>> languages;
   std::optional<int> idle_s;
   std::optional<std::vector<TourStopCreate>> stops;
   bool operator==(const TourPatch&) const = default;
@@ -2009,12 +2081,20 @@ struct LayerPatch {
   std::optional<nlohmann::json> palette;
   std::optional<double> opacity;
   std::optional<bool> visible;
-  std::optional<bool> locked;  // true: from the answer on nobody below curator changes its texels, until it is unlocked. false, on a computed layer: from now on it is edited by hand, which stays known (`edited_by_hand`), and is not computed again by itself.
-  std::optional<bool> review;  // true: what annotators change from now on waits for a curator's review. What waits already keeps waiting when it becomes false.
+  // true: from the answer on nobody below curator changes its texels, until it is unlocked. false,
+  // on a computed layer: from now on it is edited by hand, which stays known (`edited_by_hand`),
+  // and is not computed again by itself.
+  std::optional<bool> locked;
+  // true: what annotators change from now on waits for a curator's review. What waits already keeps
+  // waiting when it becomes false.
+  std::optional<bool> review;
   std::optional<strata::Visibility> visibility;  // Counts at once, for open pages too.
   std::optional<int> order;
-  std::optional<strata::ValueType> type;  // Alone: a layer of u8 or u16 gets room for larger keys or values (u16, u32), its history too.
-  std::optional<std::string> expression;  // Of a computed layer, which it has to be computed by anew; empty: the layer keeps its values and is edited by hand from now on.
+  // Alone: a layer of u8 or u16 gets room for larger keys or values (u16, u32), its history too.
+  std::optional<strata::ValueType> type;
+  // Of a computed layer, which it has to be computed by anew; empty: the layer keeps its values and
+  // is edited by hand from now on.
+  std::optional<std::string> expression;
   std::optional<Recompute> recompute;
   bool operator==(const LayerPatch&) const = default;
 };
@@ -2110,7 +2190,8 @@ inline constexpr Schema kSchemaOf<ReviewQueue> = Schema::ReviewQueue;
 // A decision about edits of a layer.
 struct Review {
   ReviewDecision decision{};
-  std::optional<std::vector<std::int64_t>> edits;  // Sequences: of a stroke any of its batches stands for all.
+  // Sequences: of a stroke any of its batches stands for all.
+  std::optional<std::vector<std::int64_t>> edits;
   std::optional<std::string> user;  // All that waits of this person. Not with reopen.
   std::optional<std::string> reason;
   bool operator==(const Review&) const = default;
@@ -2335,8 +2416,11 @@ struct Statistics {
   std::optional<double> max;
   std::optional<double> mean;
   std::optional<double> std;
-  std::optional<std::int64_t> pieces;  // Where asked for: connected areas, of one value each in layers of whole numbers.
-  std::optional<double> perimeter_m;  // Where asked for: around what is valid, along the surface; an open edge of the mesh counts, a seam of the atlas does not.
+  // Where asked for: connected areas, of one value each in layers of whole numbers.
+  std::optional<std::int64_t> pieces;
+  // Where asked for: around what is valid, along the surface; an open edge of the mesh counts, a
+  // seam of the atlas does not.
+  std::optional<double> perimeter_m;
   std::optional<Quantiles> quantiles;
   std::vector<HistogramBin> histogram;
   std::vector<KeyStatistics> keys;
@@ -2381,7 +2465,8 @@ inline constexpr Schema kSchemaOf<ProfileRequest> = Schema::ProfileRequest;
 
 // Place on a profile.
 struct ProfileSample {
-  double along_mm = 0;  // On the surface, from the beginning. Where the line leaves the surface nothing is added.
+  // On the surface, from the beginning. Where the line leaves the surface nothing is added.
+  double along_mm = 0;
   SurfacePoint point;
   bool operator==(const ProfileSample&) const = default;
 };
@@ -2463,8 +2548,10 @@ nlohmann::json to_json(const FrameRequestFormat& value);
 // One rendered picture.
 struct FrameRequest {
   strata::Camera camera;  // Its width × height is the size of the picture.
-  std::optional<std::vector<LayerRef>> layers;  // Exactly these are drawn, bottom to top; absent: those visible by default.
-  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
+  // Exactly these are drawn, bottom to top; absent: those visible by default.
+  std::optional<std::vector<LayerRef>> layers;
+  // Exactly these, bottom to top; absent: those visible by default.
+  std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Absent: museum.
   std::optional<Background> background;  // Absent: light grey.
   std::optional<std::vector<LayerHighlight>> highlights;
@@ -2514,25 +2601,37 @@ nlohmann::json to_json(const FigureRequestOrientation& value);
 // A measured figure. A drawing without perspective, to scale, on a sheet with scale bar, legend and caption. What is shown, and where nothing else says so the direction, come from a named view or from camera, layers, looks and light; without any it is what the model shows by default, from the top.
 struct FigureRequest {
   std::optional<std::string> view;  // A named view: slug or id.
-  std::optional<strata::Camera> camera;  // In place of a view: its direction and its section count, and what lies in the middle.
+  // In place of a view: its direction and its section count, and what lies in the middle.
+  std::optional<strata::Camera> camera;
   std::optional<std::vector<LayerOverride>> layers;  // Layers not listed show their defaults.
-  std::optional<std::vector<LookShown>> looks;  // Exactly these, bottom to top; absent: those visible by default.
+  // Exactly these, bottom to top; absent: those visible by default.
+  std::optional<std::vector<LookShown>> looks;
   std::optional<strata::Light> light;  // Absent: museum.
   std::optional<At> at;
   std::optional<FigureDirection> direction;  // In place of the camera's or view's.
-  std::optional<glm::dvec3> normal;  // In place of a direction: surface that faces this way (world) is seen square.
-  std::optional<glm::dvec3> center;  // In the middle of the drawing (world). Absent: of the direction of a camera or view what lies in its middle, otherwise the middle of what is seen.
-  std::optional<double> scale;  // 50 is 1 : 50. Absent: the largest of 1, 2, 2.5, 5, 10, 20, 25, 50 … at which all of it is on the sheet.
+  // In place of a direction: surface that faces this way (world) is seen square.
+  std::optional<glm::dvec3> normal;
+  // In the middle of the drawing (world). Absent: of the direction of a camera or view what lies in
+  // its middle, otherwise the middle of what is seen.
+  std::optional<glm::dvec3> center;
+  // 50 is 1 : 50. Absent: the largest of 1, 2, 2.5, 5, 10, 20, 25, 50 … at which all of it is on
+  // the sheet.
+  std::optional<double> scale;
   FigureRequestPaper paper = FigureRequestPaper::a4;
-  std::optional<FigureRequestOrientation> orientation;  // Absent: the one with room for the larger scale.
+  // Absent: the one with room for the larger scale.
+  std::optional<FigureRequestOrientation> orientation;
   int dpi = 300;  // Pixels an inch; of SVG and PDF of the drawing in them.
   std::optional<FigureFormat> format;  // Absent: pdf.
   std::optional<std::string> title;  // Absent: the model's name.
   std::optional<std::string> caption;
   std::optional<std::string> credit;  // Absent: the model's.
-  bool legend = true;  // Of the layers and classes that the drawing shows: not of what an opaque layer above covers wholly, or of what is not in the drawing.
-  std::string provisional = "Provisional";  // What the legend calls what waits for review, which is hatched.
-  std::string continued = "(continued)";  // What the legend puts behind the title of a list that goes on in another column.
+  // Of the layers and classes that the drawing shows: not of what an opaque layer above covers
+  // wholly, or of what is not in the drawing.
+  bool legend = true;
+  // What the legend calls what waits for review, which is hatched.
+  std::string provisional = "Provisional";
+  // What the legend puts behind the title of a list that goes on in another column.
+  std::string continued = "(continued)";
   std::optional<FigureLabels> labels;
   bool operator==(const FigureRequest&) const = default;
 };
