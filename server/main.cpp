@@ -1,11 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <map>
+#include <string>
 
 #include "cli/commands.h"
+#include "core/version.h"
 
 int main(int argc, char** argv) {
   CLI::App app{"Strata: GIS layers on the surface of 3D heritage models"};
-  app.set_version_flag("--version", "strata " STRATA_VERSION);
+  app.set_version_flag("--version", "strata " + std::string(strata::version()));
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
 

@@ -1,6 +1,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/version.h"
 #include "net/docs_page.h"
 #include "net/routes.h"
 
@@ -42,6 +43,9 @@ void add_system_routes(Router& router, const RouteContext& context) {
     return text_response("ok\n", "text/plain; charset=utf-8");
   });
   open("/readyz", [&context](const Request&) -> Result<Response> { return readiness(context); });
+  open("/api/v1/version", [](const Request&) -> Result<Response> {
+    return json_response({{"version", version()}});
+  });
   open("/metrics", [&context](const Request&) -> Result<Response> {
     return text_response(
         metrics_text(context.metrics,

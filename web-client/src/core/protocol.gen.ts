@@ -2821,6 +2821,12 @@ export interface Readiness {
   reasons: string[];
 }
 
+/** Which release of Strata runs. */
+export interface ServerVersion {
+  /** Semantic version of the release. */
+  version: string;
+}
+
 export type ClientMessage =
   | Hello
   | CameraUpdate

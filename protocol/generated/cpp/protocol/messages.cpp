@@ -3423,6 +3423,16 @@ nlohmann::json to_json(const Readiness& value) {
   return json;
 }
 
+void read(const nlohmann::json& json, ServerVersion& value) {
+  read_member(json, "version", value.version);
+}
+
+nlohmann::json to_json(const ServerVersion& value) {
+  nlohmann::json json = nlohmann::json::object();
+  write_member(json, "version", value.version);
+  return json;
+}
+
 std::optional<Schema> client_message_schema(std::string_view op) {
   if (op == Hello::kOp) return Schema::Hello;
   if (op == CameraUpdate::kOp) return Schema::CameraUpdate;

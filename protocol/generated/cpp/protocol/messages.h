@@ -312,8 +312,9 @@ enum class Schema {
   Quantiles,
   Statistics,
   Readiness,
+  ServerVersion,
 };
-constexpr int kSchemaCount = 287;
+constexpr int kSchemaCount = 288;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
@@ -2678,6 +2679,16 @@ void read(const nlohmann::json& json, Readiness& value);
 nlohmann::json to_json(const Readiness& value);
 template <>
 inline constexpr Schema kSchemaOf<Readiness> = Schema::Readiness;
+
+// Which release of Strata runs.
+struct ServerVersion {
+  std::string version;  // Semantic version of the release.
+  bool operator==(const ServerVersion&) const = default;
+};
+void read(const nlohmann::json& json, ServerVersion& value);
+nlohmann::json to_json(const ServerVersion& value);
+template <>
+inline constexpr Schema kSchemaOf<ServerVersion> = Schema::ServerVersion;
 
 using ClientMessage = std::variant<Hello, CameraUpdate, LayersUpdate, StrokeBegin, StrokeExtend, StrokeEnd, EditRequest, Undo, Redo, RecordEdit, Ack, PresenceUpdate, Pick>;
 // The schema of the message with this `op`; nothing when the op is unknown.

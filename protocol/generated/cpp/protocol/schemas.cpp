@@ -292,6 +292,7 @@ std::string_view name(Schema schema) {
     case Schema::Quantiles: return "Quantiles";
     case Schema::Statistics: return "Statistics";
     case Schema::Readiness: return "Readiness";
+    case Schema::ServerVersion: return "ServerVersion";
   }
   return {};
 }
@@ -584,7 +585,8 @@ std::string_view schema_bundle() {
 "KeyStatistics":{"type":"object","additionalProperties":false,"required":["key","texels","area_m2","centroid","bounds"],"properties":{"key":{"type":"number","minimum":-3.5e+38,"maximum":3.5e+38},"texels":{"type":"integer","minimum":0,"maximum":9007199254740991},"area_m2":{"type":"number","minimum":0,"maximum":1e+30},"centroid":{"$ref":"#/definitions/Point3"},"bounds":{"$ref":"#/definitions/Bounds"},"pieces":{"type":"integer","minimum":0,"maximum":9007199254740991},"perimeter_m":{"type":"number","minimum":0,"maximum":1e+30}}},
 "Quantiles":{"type":"object","additionalProperties":false,"required":["p5","p25","p50","p75","p95"],"properties":{"p5":{"type":"number","minimum":-3.5e+38,"maximum":3.5e+38},"p25":{"type":"number","minimum":-3.5e+38,"maximum":3.5e+38},"p50":{"type":"number","minimum":-3.5e+38,"maximum":3.5e+38},"p75":{"type":"number","minimum":-3.5e+38,"maximum":3.5e+38},"p95":{"type":"number","minimum":-3.5e+38,"maximum":3.5e+38}}},
 "Statistics":{"type":"object","additionalProperties":false,"required":["texels","area_m2","histogram","keys"],"properties":{"texels":{"type":"integer","minimum":0,"maximum":9007199254740991},"area_m2":{"type":"number","minimum":0,"maximum":1e+30},"min":{"type":"number","minimum":-3.5e+38,"maximum":3.5e+38},"max":{"type":"number","minimum":-3.5e+38,"maximum":3.5e+38},"mean":{"type":"number","minimum":-3.5e+38,"maximum":3.5e+38},"std":{"type":"number","minimum":0,"maximum":3.5e+38},"pieces":{"type":"integer","minimum":0,"maximum":9007199254740991},"perimeter_m":{"type":"number","minimum":0,"maximum":1e+30},"quantiles":{"$ref":"#/definitions/Quantiles"},"histogram":{"type":"array","minItems":0,"maxItems":65536,"items":{"$ref":"#/definitions/HistogramBin"}},"keys":{"type":"array","minItems":0,"maxItems":65536,"items":{"$ref":"#/definitions/KeyStatistics"}}}},
-"Readiness":{"type":"object","additionalProperties":false,"required":["ready","reasons"],"properties":{"ready":{"type":"boolean"},"reasons":{"type":"array","minItems":0,"maxItems":20,"items":{"type":"string","maxLength":500}}}}
+"Readiness":{"type":"object","additionalProperties":false,"required":["ready","reasons"],"properties":{"ready":{"type":"boolean"},"reasons":{"type":"array","minItems":0,"maxItems":20,"items":{"type":"string","maxLength":500}}}},
+"ServerVersion":{"type":"object","additionalProperties":false,"required":["version"],"properties":{"version":{"type":"string","pattern":"^[0-9]+[.][0-9]+[.][0-9]+$","maxLength":32}}}
 }})json";
 }
 
