@@ -43,13 +43,12 @@ Result<Source> find_source(const DataOptions& options) {
   const auto state = store::Cluster::inspect(options.data);
   if (state.running) return Source{nullptr, state.dsn};
   if (state.version == 0)
-    return fail(404, "No database",
+    return fail(ErrorCode::not_found, "No database",
                 "There is no database in " + fs::absolute(options.data).string() +
                     ". Name the server's folder with --data, or its database with --database.");
-  auto cluster = store::Cluster::start(fs::absolute(options.data));
-  if (!cluster) return tl::unexpected(cluster.error());
-  std::string dsn = (*cluster)->dsn();
-  return Source{std::move(*cluster), std::move(dsn)};
+  auto cluster = STRATA_TRY(store::Cluster::start(fs::absolute(options.data)));
+  std::string dsn = cluster->dsn();
+  return Source{std::move(cluster), std::move(dsn)};
 }
 
 int backup(const BackupOptions& options) {
@@ -74,20 +73,19 @@ Result<void> restore_into_folder(const BackupOptions& options, const store::Back
                  beside = data / "restoring";
   std::error_code error;
   if (fs::exists(place, error))
-    return fail(409, "Data are there",
+    return fail(ErrorCode::conflict, "Data are there",
                 data.string() +
                     " holds a site already, which stays as it is. Name a new folder with --data.",
                 "--data");
   fs::remove_all(beside, error);  // of one that was killed
   const auto restored = [&]() -> Result<void> {
-    auto cluster = store::Cluster::start(beside);
-    if (!cluster) return tl::unexpected(cluster.error());
-    return store::restore_backup(options.folder, facts, (*cluster)->dsn(), progress);
+    auto cluster = STRATA_TRY(store::Cluster::start(beside));
+    return store::restore_backup(options.folder, facts, cluster->dsn(), progress);
   }();
   if (restored) {
     fs::rename(beside / "postgres", place, error);
     if (error)
-      return fail(500, "Not restored",
+      return fail(ErrorCode::internal, "Not restored",
                   "Cannot name the folder " + place.string() + ": " + error.message() + ".");
   }
   std::error_code ignored;
@@ -109,7 +107,7 @@ int restore(const BackupOptions& options) {
   const auto known = store::newest_migration(install_dirs().migrations);
   if (!known) return report(known.error());
   if (facts->schema_version > *known)
-    return report({409,
+    return report({ErrorCode::conflict,
                    "Newer backup",
                    "The backup has schema " + std::to_string(facts->schema_version) +
                        ", this program knows " + std::to_string(*known) +

@@ -22,11 +22,9 @@ struct ImportOptions {
 
 Result<std::string> import_locally(store::Store& store, const jobs::ImportRequest& request,
                                    Progress& progress) {
-  auto model = jobs::import_model(store, request, progress);
-  if (!model) return tl::unexpected(model.error());
-  auto project = store.project(std::to_string(model->project_id));
-  if (!project) return tl::unexpected(project.error());
-  return to_json(*model, project->slug).dump(2);
+  auto model = STRATA_TRY(jobs::import_model(store, request, progress));
+  auto project = STRATA_TRY(store.project(std::to_string(model.project_id)));
+  return to_json(model, project.slug).dump(2);
 }
 
 // One list of files a model. The files that a mesh names come with it by themselves; others that
@@ -36,7 +34,8 @@ Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(
   std::vector<std::vector<jobs::ImportFile>> scans;
   std::vector<std::filesystem::path> others;
   for (const std::filesystem::path path : paths) {
-    if (!std::filesystem::is_regular_file(path)) return fail(400, "No such file", path.string());
+    if (!std::filesystem::is_regular_file(path))
+      return fail(ErrorCode::malformed, "No such file", path.string());
     if (mesh::input_kind(path.filename().string()) == mesh::InputKind::companion &&
         paths.size() > 1)
       others.push_back(path);
@@ -53,7 +52,7 @@ Result<std::vector<std::vector<jobs::ImportFile>>> group_scans(
     if (std::ranges::any_of(scans, has)) continue;
     if (scans.size() != 1)
       return fail(
-          400, "Whose file is this?",
+          ErrorCode::malformed, "Whose file is this?",
           path.string() +
               " is named by none of the scans. Import the scan that it belongs to on its own.");
     scans[0].push_back({path.filename().string(), path});

@@ -20,32 +20,28 @@ struct KioskOptions {
 Result<void> create(store::Store& store, const KioskOptions& options) {
   const auto slash = options.tour.find('/');
   if (slash == std::string::npos)
-    return fail(400, "No tour", "A tour is named with its model: MODEL/TOUR, as in its address.",
-                "tour");
-  const auto model = store.model(options.tour.substr(0, slash));
-  if (!model) return tl::unexpected(model.error());
-  const auto tour = store.tours().find(model->id, options.tour.substr(slash + 1));
-  if (!tour) return tl::unexpected(tour.error());
+    return fail(ErrorCode::malformed, "No tour",
+                "A tour is named with its model: MODEL/TOUR, as in its address.", "tour");
+  const auto model = STRATA_TRY(store.model(options.tour.substr(0, slash)));
+  const auto tour = STRATA_TRY(store.tours().find(model.id, options.tour.substr(slash + 1)));
   std::optional<std::chrono::seconds> lifetime;
   if (options.days > 0) lifetime = std::chrono::hours(24 * options.days);
-  const auto made = store.kiosks().create(tour->id, options.name, "owner", lifetime);
-  if (!made) return tl::unexpected(made.error());
-  std::cout << "For " << made->kiosk.name << ", told this once:\n"
-            << options.url << "/kiosk/" << made->secret << std::endl;
+  const auto made = STRATA_TRY(store.kiosks().create(tour.id, options.name, "owner", lifetime));
+  std::cout << "For " << made.kiosk.name << ", told this once:\n"
+            << options.url << "/kiosk/" << made.secret << std::endl;
   return {};
 }
 
 Result<void> list(store::Store& store, const KioskOptions&) {
   constexpr int kPage = 1000;
   for (int offset = 0;; offset += kPage) {
-    const auto page = store.kiosks().all({}, kPage, offset);
-    if (!page) return tl::unexpected(page.error());
-    for (const store::Kiosk& kiosk : page->kiosks)
+    const auto page = STRATA_TRY(store.kiosks().all({}, kPage, offset));
+    for (const store::Kiosk& kiosk : page.kiosks)
       std::cout << std::left << std::setw(8) << kiosk.id << std::setw(32)
                 << kiosk.model + "/" + kiosk.tour << " " << (kiosk.revoked ? "revoked " : "until ")
                 << std::setw(12) << day_of(kiosk.revoked ? kiosk.revoked : kiosk.expires)
                 << "last seen " << std::setw(12) << day_of(kiosk.last_seen) << kiosk.name << "\n";
-    if (offset + kPage >= page->total) return {};
+    if (offset + kPage >= page.total) return {};
   }
 }
 
@@ -54,8 +50,7 @@ Result<void> revoke(store::Store& store, const KioskOptions& options) {
 }
 
 Result<void> reload(store::Store& store, const KioskOptions& options) {
-  const auto asked = store.kiosks().ask_reload(options.id);
-  if (!asked) return tl::unexpected(asked.error());
+  STRATA_TRY(store.kiosks().ask_reload(options.id));
   return {};
 }
 

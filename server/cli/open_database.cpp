@@ -24,14 +24,14 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options) 
   std::error_code error;
   std::filesystem::create_directories(options.data, error);
   if (error)
-    return fail(500, "Data folder cannot be made",
+    return fail(ErrorCode::internal, "Data folder cannot be made",
                 options.data.string() + ": " + error.message() + ". Name another with --data.");
   store::StoreOptions store_options;
   store_options.dsn = options.database;
   if (options.database.empty()) {
-    auto cluster = store::Cluster::start(std::filesystem::absolute(options.data), options.sql);
-    if (!cluster) return tl::unexpected(cluster.error());
-    open->cluster = std::move(*cluster);
+    auto cluster =
+        STRATA_TRY(store::Cluster::start(std::filesystem::absolute(options.data), options.sql));
+    open->cluster = std::move(cluster);
     store_options.dsn = open->cluster->dsn();
   }
   auto store = store::Store::open(store_options, install_dirs().migrations);
@@ -48,15 +48,14 @@ Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& op
   if (!options.database.empty()) return open_database(options);
   const auto state = store::Cluster::inspect(options.data);
   if (!state.running && state.version == 0 && !state.trouble)
-    return fail(404, "No database",
+    return fail(ErrorCode::not_found, "No database",
                 "There is no database in " + std::filesystem::absolute(options.data).string() +
                     ". Name the server's folder with --data, or start the server once.");
   if (!state.running) return open_database(options);
   // The server's database is brought to another version by its own start, not under its feet.
-  const auto schema = store::inspect_database(state.dsn, install_dirs().migrations);
-  if (!schema) return tl::unexpected(schema.error());
-  if (schema->schema_version != schema->known_version)
-    return fail(409, "Another version",
+  const auto schema = STRATA_TRY(store::inspect_database(state.dsn, install_dirs().migrations));
+  if (schema.schema_version != schema.known_version)
+    return fail(ErrorCode::conflict, "Another version",
                 "The server that runs on " + options.data.string() +
                     " is of another version than this program. Use its own, or restart it.");
   DataOptions beside = options;
@@ -64,7 +63,7 @@ Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& op
   return open_database(beside);
 }
 
-int report(const Problem& problem) {
+int report(const Error& problem) {
   std::cerr << "strata: " << problem.title << ": " << problem.detail
             << (problem.field.empty() ? "" : " (" + problem.field + ")") << std::endl;
   return 1;

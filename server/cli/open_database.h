@@ -29,6 +29,6 @@ Result<std::unique_ptr<OpenDatabase>> open_database(const DataOptions& options);
 Result<std::unique_ptr<OpenDatabase>> open_database_beside(const DataOptions& options);
 
 // "title: detail" on stderr; returns 1.
-int report(const Problem& problem);
+int report(const Error& problem);
 
 }  // namespace strata::cli

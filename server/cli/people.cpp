@@ -42,8 +42,7 @@ Result<std::optional<std::string>> given_password(const PeopleOptions& options,
   std::string password{std::istreambuf_iterator<char>(std::cin), {}};
   while (!password.empty() && (password.back() == '\n' || password.back() == '\r'))
     password.pop_back();
-  if (auto good = store::check_password(password, name, "--password-stdin"); !good)
-    return tl::unexpected(good.error());
+  STRATA_TRY(store::check_password(password, name, "--password-stdin"));
   return password;
 }
 
@@ -64,12 +63,10 @@ Result<void> let_in(store::Store& store, const PeopleOptions& options, const sto
 
 Result<void> add_person(store::Store& store, const PeopleOptions& options) {
   // before there is anybody who would be left without
-  const auto password = given_password(options, options.name);
-  if (!password) return tl::unexpected(password.error());
-  const auto person = store.create_person(options.name, options.full_name,
-                                          parse_role(options.role).value_or(Role::annotator));
-  if (!person) return tl::unexpected(person.error());
-  return let_in(store, options, *person, *password);
+  const auto password = STRATA_TRY(given_password(options, options.name));
+  const auto person = STRATA_TRY(store.create_person(
+      options.name, options.full_name, parse_role(options.role).value_or(Role::annotator)));
+  return let_in(store, options, person, password);
 }
 
 Result<void> renew(store::Store& store, const PeopleOptions& options, const store::Person& person) {
@@ -89,21 +86,17 @@ void print(const store::Person& person, Role role) {
 
 Result<void> list_people(store::Store& store, const PeopleOptions& options) {
   if (!options.project.empty()) {
-    const auto project = store.project(options.project);
-    if (!project) return tl::unexpected(project.error());
-    const auto members = store.members(project->id);
-    if (!members) return tl::unexpected(members.error());
-    for (const store::Membership& member : *members) print(member.person, member.role);
-    const auto groups = store.groups().of_project(project->id);
-    if (!groups) return tl::unexpected(groups.error());
-    for (const store::ProjectGroup& group : *groups)
+    const auto project = STRATA_TRY(store.project(options.project));
+    const auto members = STRATA_TRY(store.members(project.id));
+    for (const store::Membership& member : members) print(member.person, member.role);
+    const auto groups = STRATA_TRY(store.groups().of_project(project.id));
+    for (const store::ProjectGroup& group : groups)
       std::cout << "group " << std::left << std::setw(18) << group.group.name << std::setw(15)
                 << name(group.role) << group.group.people << " people\n";
     return {};
   }
-  const auto people = store.people();
-  if (!people) return tl::unexpected(people.error());
-  for (const store::Person& person : *people) print(person, person.role);
+  const auto people = STRATA_TRY(store.people());
+  for (const store::Person& person : people) print(person, person.role);
   return {};
 }
 
@@ -112,28 +105,26 @@ Work<PeopleOptions> changing(
     std::function<Result<void>(store::Store&, const PeopleOptions&, const store::Person&)> change) {
   return [change = std::move(change)](store::Store& store,
                                       const PeopleOptions& options) -> Result<void> {
-    const auto person = store.person(options.name);
-    if (!person) return tl::unexpected(person.error());
-    return change(store, options, *person);
+    const auto person = STRATA_TRY(store.person(options.name));
+    return change(store, options, person);
   };
 }
 
 Result<void> change(store::Store& store, const store::Person& person,
                     const store::PersonChange& change) {
   if (person.role == Role::owner)
-    return fail(409, "The owner", "The owner stays the owner, and may always come in.");
-  if (auto done = store.change_person(person.id, change); !done)
-    return tl::unexpected(done.error());
+    return fail(ErrorCode::conflict, "The owner",
+                "The owner stays the owner, and may always come in.");
+  STRATA_TRY(store.change_person(person.id, change));
   return {};
 }
 
 Result<void> set_role_in_project(store::Store& store, const PeopleOptions& options,
                                  const store::Person& person) {
-  const auto project = store.project(options.project);
-  if (!project) return tl::unexpected(project.error());
-  if (options.role == "none") return store.remove_member(project->id, person.name);
+  const auto project = STRATA_TRY(store.project(options.project));
+  if (options.role == "none") return store.remove_member(project.id, person.name);
   const auto put =
-      store.put_member(project->id, person.name, parse_role(options.role).value_or(Role::guest));
+      store.put_member(project.id, person.name, parse_role(options.role).value_or(Role::guest));
   if (!put) return tl::unexpected(put.error());
   return {};
 }
@@ -142,7 +133,8 @@ Result<void> set_role(store::Store& store, const PeopleOptions& options,
                       const store::Person& person) {
   if (!options.project.empty()) return set_role_in_project(store, options, person);
   if (options.role == "none")
-    return fail(400, "No role", "Whoever is to see no project is a guest.", "role");
+    return fail(ErrorCode::malformed, "No role", "Whoever is to see no project is a guest.",
+                "role");
   return change(store, person, {.full_name = {}, .role = parse_role(options.role), .disabled = {}});
 }
 
@@ -154,47 +146,41 @@ Work<PeopleOptions> disabling(bool disabled) {
 }
 
 Result<void> remove_person(store::Store& store, const PeopleOptions&, const store::Person& person) {
-  if (auto out = change(store, person, {.full_name = {}, .role = {}, .disabled = true}); !out)
-    return out;
+  STRATA_TRY(change(store, person, {.full_name = {}, .role = {}, .disabled = true}));
   return store.delete_person(person.name);
 }
 
 // What somebody may do in a project: by their own role, by one there, and by those of their groups.
 Result<Role> role_there(store::Store& store, const store::Person& person, std::int64_t project) {
   Role role = person.role;
-  const auto members = store.members(project);
-  if (!members) return tl::unexpected(members.error());
-  for (const store::Membership& member : *members)
+  const auto members = STRATA_TRY(store.members(project));
+  for (const store::Membership& member : members)
     if (member.person.name == person.name) role = std::max(role, member.role);
-  const auto given = store.groups().roles_of(person.name);
-  if (!given) return tl::unexpected(given.error());
-  for (const store::GivenRole& one : *given)
+  const auto given = STRATA_TRY(store.groups().roles_of(person.name));
+  for (const store::GivenRole& one : given)
     if (one.project_id == project) role = std::max(role, one.role);
   return role;
 }
 
 Result<void> add_token_of(store::Store& store, const PeopleOptions& options) {
-  const auto person = store.person(options.user);
-  if (!person) return tl::unexpected(person.error());
-  Role own = person->role, usual = own;
+  const auto person = STRATA_TRY(store.person(options.user));
+  Role own = person.role, usual = own;
   std::optional<std::int64_t> only;
   if (!options.project.empty()) {
-    const auto project = store.project(options.project);
-    if (!project) return tl::unexpected(project.error());
-    only = project->id;
-    const auto there = role_there(store, *person, project->id);
-    if (!there) return tl::unexpected(there.error());
-    own = *there;
+    const auto project = STRATA_TRY(store.project(options.project));
+    only = project.id;
+    const auto there = STRATA_TRY(role_there(store, person, project.id));
+    own = there;
     usual = std::min(own, Role::curator);
   }
   const Role role = parse_role(options.role).value_or(usual);
   if (role > own)
-    return fail(400, "Role above the person's",
-                person->name + " is " + std::string(name(own)) + (only ? " there" : "") +
+    return fail(ErrorCode::malformed, "Role above the person's",
+                person.name + " is " + std::string(name(own)) + (only ? " there" : "") +
                     ": a token can do no more.",
                 "--role");
   const auto made =
-      store.create_token(TokenKind::script, person->name, role,
+      store.create_token(TokenKind::script, person.name, role,
                          std::chrono::hours(24 * options.days), options.name, {}, only);
   if (!made) return tl::unexpected(made.error());
   std::cout << made->secret << std::endl;
@@ -202,11 +188,9 @@ Result<void> add_token_of(store::Store& store, const PeopleOptions& options) {
 }
 
 Result<void> list_tokens(store::Store& store, const PeopleOptions& options) {
-  const auto person = store.person(options.user);
-  if (!person) return tl::unexpected(person.error());
-  const auto tokens = store.tokens(person->name, TokenKind::script);
-  if (!tokens) return tl::unexpected(tokens.error());
-  for (const store::Token& token : *tokens)
+  const auto person = STRATA_TRY(store.person(options.user));
+  const auto tokens = STRATA_TRY(store.tokens(person.name, TokenKind::script));
+  for (const store::Token& token : tokens)
     std::cout << std::left << std::setw(8) << token.id << std::setw(15) << name(token.role)
               << "until " << std::setw(12) << day_of(token.expires) << "last used " << std::setw(12)
               << day_of(token.last_used) << token.label
@@ -215,9 +199,8 @@ Result<void> list_tokens(store::Store& store, const PeopleOptions& options) {
 }
 
 Result<void> revoke_token(store::Store& store, const PeopleOptions& options) {
-  const auto person = store.person(options.user);
-  if (!person) return tl::unexpected(person.error());
-  return store.revoke_token(person->name, TokenKind::script, options.id);
+  const auto person = STRATA_TRY(store.person(options.user));
+  return store.revoke_token(person.name, TokenKind::script, options.id);
 }
 
 }  // namespace

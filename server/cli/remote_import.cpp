@@ -10,6 +10,8 @@
 #include <sstream>
 #include <thread>
 
+#include "protocol/problem.h"
+
 namespace strata::cli {
 namespace {
 
@@ -18,9 +20,9 @@ struct Reply {
   std::string body;
 };
 
-tl::unexpected<Problem> not_strata(const std::string& what) {
+tl::unexpected<Error> not_strata(const std::string& what) {
   return fail(
-      502, "Not a Strata server",
+      ErrorCode::bad_gateway, "Not a Strata server",
       what +
           " is not what a Strata server answers. Is the address right, and is nothing in between?");
 }
@@ -42,9 +44,11 @@ std::string text_of(const nlohmann::json& object, const char* member) {
 }
 
 // As the server tells it; of what it does not tell, the status and what is known here.
-Problem problem_of(const nlohmann::json& json, int status, const std::string& title,
-                   const std::string& detail) {
-  Problem problem{status, text_of(json, "title"), text_of(json, "detail"), text_of(json, "field")};
+Error problem_of(const nlohmann::json& json, int status, const std::string& title,
+                 const std::string& detail) {
+  const auto code = protocol::code_of_problem_type(text_of(json, "type"));
+  Error problem{code.value_or(protocol::code_of_http_status(status)), text_of(json, "title"),
+                text_of(json, "detail"), text_of(json, "field")};
   if (problem.title.empty()) problem.title = title;
   if (problem.detail.empty()) problem.detail = detail;
   return problem;
@@ -92,7 +96,7 @@ class Client {
     std::unique_ptr<curl_mime, void (*)(curl_mime*)> form{nullptr, &curl_mime_free};
     if (files.size() == 1) {
       in.reset(std::fopen(files[0].path.c_str(), "rb"));
-      if (!in) return fail(400, "File cannot be read", files[0].path.string());
+      if (!in) return fail(ErrorCode::malformed, "File cannot be read", files[0].path.string());
       curl_easy_setopt(curl_.get(), CURLOPT_POST, 1L);
       curl_easy_setopt(curl_.get(), CURLOPT_READDATA, in.get());
       curl_easy_setopt(curl_.get(), CURLOPT_POSTFIELDSIZE_LARGE,
@@ -103,7 +107,7 @@ class Client {
         curl_mimepart* part = curl_mime_addpart(form.get());
         curl_mime_name(part, "files");
         if (curl_mime_filedata(part, file.path.c_str()) != CURLE_OK)
-          return fail(400, "File cannot be read", file.path.string());
+          return fail(ErrorCode::malformed, "File cannot be read", file.path.string());
         curl_mime_filename(part, file.filename.c_str());
       }
       curl_easy_setopt(curl_.get(), CURLOPT_MIMEPOST, form.get());
@@ -139,7 +143,8 @@ class Client {
     curl_easy_setopt(curl_.get(), CURLOPT_WRITEDATA, &reply.body);
     const CURLcode code = curl_easy_perform(curl_.get());
     if (code != CURLE_OK)
-      return fail(503, "Server not reached", base_ + ": " + curl_easy_strerror(code));
+      return fail(ErrorCode::unavailable, "Server not reached",
+                  base_ + ": " + curl_easy_strerror(code));
     curl_easy_getinfo(curl_.get(), CURLINFO_RESPONSE_CODE, &reply.status);
     if (reply.status >= 400) {
       return tl::unexpected(problem_of(
@@ -176,32 +181,27 @@ std::string import_path(Client& client, const jobs::ImportRequest& request) {
 Result<std::string> import_remotely(const std::string& server_url, const std::string& token,
                                     const jobs::ImportRequest& request, Progress& progress) {
   Client client(server_url, token);
-  auto posted = client.post_files(import_path(client, request), request.files, progress);
-  if (!posted) return tl::unexpected(posted.error());
-  const auto accepted = object_in(*posted, {"id"});
-  if (!accepted) return tl::unexpected(accepted.error());
-  const std::string job_path = "/api/v1/jobs/" + accepted->at("id").dump();
+  auto posted =
+      STRATA_TRY(client.post_files(import_path(client, request), request.files, progress));
+  const auto accepted = STRATA_TRY(object_in(posted, {"id"}));
+  const std::string job_path = "/api/v1/jobs/" + accepted.at("id").dump();
   while (true) {
-    auto polled = client.get(job_path);
-    if (!polled) return tl::unexpected(polled.error());
-    const auto job = object_in(*polled, {"state", "progress"});
-    if (!job) return tl::unexpected(job.error());
-    const std::string state = text_of(*job, "state");
+    auto polled = STRATA_TRY(client.get(job_path));
+    const auto job = STRATA_TRY(object_in(polled, {"state", "progress"}));
+    const std::string state = text_of(job, "state");
     if (state == "done") {
-      if (!job->contains("model")) return not_strata("A job that is done without a model");
-      auto answer = client.get("/api/v1/models/" + job->at("model").dump());
-      if (!answer) return tl::unexpected(answer.error());
-      const auto model = object_in(*answer, {"id", "name"});
-      if (!model) return tl::unexpected(model.error());
-      return model->dump(2);
+      if (!job.contains("model")) return not_strata("A job that is done without a model");
+      auto answer = STRATA_TRY(client.get("/api/v1/models/" + job.at("model").dump()));
+      const auto model = STRATA_TRY(object_in(answer, {"id", "name"}));
+      return model.dump(2);
     }
     if (state == "failed" || state == "cancelled")
       return tl::unexpected(
-          problem_of(job->value("problem", nlohmann::json()), 422, "Import " + state, state));
+          problem_of(job.value("problem", nlohmann::json()), 422, "Import " + state, state));
     if (state != "queued" && state != "running")
       return not_strata("A job of the state `" + state + "`");
-    progress.report(job->at("progress").is_number() ? job->at("progress").get<double>() : 0,
-                    text_of(*job, "message"));
+    progress.report(job.at("progress").is_number() ? job.at("progress").get<double>() : 0,
+                    text_of(job, "message"));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
 }

@@ -43,7 +43,8 @@ bool is_loopback(const std::string& host) {
 Result<Address> parse_address(const std::string& text, const std::string& option) {
   const auto colon = text.rfind(':');
   if (colon == std::string::npos)
-    return fail(400, "Listen address", "Give HOST:PORT, for example 127.0.0.1:8080.", option);
+    return fail(ErrorCode::malformed, "Listen address",
+                "Give HOST:PORT, for example 127.0.0.1:8080.", option);
   Address address{text.substr(0, colon), 0};
   if (address.host.size() > 2 && address.host.front() == '[')
     address.host = address.host.substr(1, address.host.size() - 2);
@@ -51,8 +52,8 @@ Result<Address> parse_address(const std::string& text, const std::string& option
   char* end = nullptr;
   const long number = std::strtol(port.c_str(), &end, 10);
   if (port.empty() || *end != '\0' || number < 0 || number > 65535)
-    return fail(400, "Listen address", "The port is a number from 0 (any free one) to 65535.",
-                option);
+    return fail(ErrorCode::malformed, "Listen address",
+                "The port is a number from 0 (any free one) to 65535.", option);
   address.port = static_cast<std::uint16_t>(number);
   return address;
 }
@@ -62,9 +63,8 @@ Result<Address> parse_listen(const std::string& text) { return parse_address(tex
 // A server that others can reach is protected by its accounts alone.
 Result<void> check_reach(store::Store& store, const Address& address, bool has_tls) {
   if (is_loopback(address.host)) return {};
-  const auto has_account = store.administrator_has_password();
-  if (!has_account) return tl::unexpected(has_account.error());
-  if (*has_account) {
+  const auto has_account = STRATA_TRY(store.administrator_has_password());
+  if (has_account) {
     if (!has_tls)
       log::warning(
           "listening on " + address.host +
@@ -72,7 +72,7 @@ Result<void> check_reach(store::Store& store, const Address& address, bool has_t
     return {};
   }
   return fail(
-      403, "No account",
+      ErrorCode::forbidden, "No account",
       "Others can reach " + address.host +
           ", and nobody has an account with a password who could let them in. Make one: strata user add NAME --role "
           "administrator --password-stdin. Or listen on 127.0.0.1.",
@@ -80,25 +80,25 @@ Result<void> check_reach(store::Store& store, const Address& address, bool has_t
 }
 
 Result<store::Cluster::SqlListen> parse_sql_listen(const std::string& text) {
-  auto address = parse_address(text, "--sql-listen");
-  if (!address) return tl::unexpected(address.error());
-  if (address->port == 0)
-    return fail(400, "Listen address",
+  auto address = STRATA_TRY(parse_address(text, "--sql-listen"));
+  if (address.port == 0)
+    return fail(ErrorCode::malformed, "Listen address",
                 "The database needs a port of its own: give one from 1 to 65535.", "--sql-listen");
-  if (!is_loopback(address->host))
+  if (!is_loopback(address.host))
     return fail(
-        403, "Listen address not allowed",
+        ErrorCode::forbidden, "Listen address not allowed",
         "Passwords and answers would travel unencrypted, so SQL is served on loopback only (127.0.0.1). Reach it from "
         "elsewhere through an SSH tunnel: ssh -L 5433:127.0.0.1:5433 HOST.",
         "--sql-listen");
-  return store::Cluster::SqlListen{address->host, address->port};
+  return store::Cluster::SqlListen{address.host, address.port};
 }
 
 // For CLI11: what cannot be an address is wrong usage.
 template <class Parse>
 std::string usage_of(Parse parse, const std::string& text) {
   const auto address = parse(text);
-  return address || address.error().status != 400 ? std::string() : address.error().detail;
+  return address || address.error().code != ErrorCode::malformed ? std::string()
+                                                                 : address.error().detail;
 }
 
 std::string owner_token() {
@@ -142,7 +142,7 @@ int run(ServeOptions options) {
     if (!sql) return report(sql.error());
     if (!options.data.database.empty())
       return report(
-          {400, "Not a private database",
+          {ErrorCode::malformed, "Not a private database",
            "With --database, let analysts into that PostgreSQL itself: docs/sql.md has the statements.",
            "--sql-listen"});
     options.data.sql = std::move(*sql);

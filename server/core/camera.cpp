@@ -31,33 +31,33 @@ bool is_invertible(const glm::dmat4& m) {
 Result<void> validate(const Camera& camera, const std::string& field) {
   auto size = [&](int value, const char* side) -> Result<void> {
     if (value < 1 || value > kMaxViewSize)
-      return fail(422, "Size out of range",
+      return fail(ErrorCode::invalid, "Size out of range",
                   "A camera's window is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.",
                   field + "." + side);
     return {};
   };
-  if (auto ok = size(camera.width, "width"); !ok) return ok;
-  if (auto ok = size(camera.height, "height"); !ok) return ok;
+  STRATA_TRY(size(camera.width, "width"));
+  STRATA_TRY(size(camera.height, "height"));
   auto matrix = [&](const glm::dmat4& m, const char* name) -> Result<void> {
     if (!is_finite(m))
-      return fail(422, "Matrix not finite", "Every element must be a finite number.",
+      return fail(ErrorCode::invalid, "Matrix not finite", "Every element must be a finite number.",
                   field + "." + name);
     if (!is_invertible(m))
-      return fail(422, "Matrix is singular",
+      return fail(ErrorCode::invalid, "Matrix is singular",
                   "The matrix has no inverse, so nothing can be seen with it.", field + "." + name);
     return {};
   };
-  if (auto ok = matrix(camera.view, "view"); !ok) return ok;
-  if (auto ok = matrix(camera.projection, "projection"); !ok) return ok;
+  STRATA_TRY(matrix(camera.view, "view"));
+  STRATA_TRY(matrix(camera.projection, "projection"));
   if (camera.section.size() > kMaxSectionPlanes)
-    return fail(422, "Too many planes",
+    return fail(ErrorCode::invalid, "Too many planes",
                 "A section has at most " + std::to_string(kMaxSectionPlanes) + " planes.",
                 field + ".section");
   for (std::size_t i = 0; i < camera.section.size(); ++i) {
     const glm::dvec4& plane = camera.section[i];
     const double length = glm::length(glm::dvec3(plane));
     if (!std::isfinite(length) || !std::isfinite(plane.w) || !(length > kShortestNormal))
-      return fail(422, "Plane without a direction",
+      return fail(ErrorCode::invalid, "Plane without a direction",
                   "A plane is [a, b, c, d] with finite numbers and a, b, c not all 0.",
                   field + ".section[" + std::to_string(i) + "]");
   }

@@ -16,9 +16,10 @@ namespace {
 
 using nlohmann::json;
 
-tl::unexpected<Problem> refuse(const Column& column, const std::string& what,
-                               const std::string& field) {
-  return fail(422, "Bad value", "\"" + column.name + "\" holds " + what + ".", field);
+tl::unexpected<Error> refuse(const Column& column, const std::string& what,
+                             const std::string& field) {
+  return fail(ErrorCode::invalid, "Bad value", "\"" + column.name + "\" holds " + what + ".",
+              field);
 }
 
 std::string number_text(double number) {
@@ -29,10 +30,10 @@ std::string number_text(double number) {
 Result<json> check_limits(const Column& column, double number, json value,
                           const std::string& field) {
   if (column.minimum && number < *column.minimum)
-    return fail(422, "Value out of range",
+    return fail(ErrorCode::invalid, "Value out of range",
                 "\"" + column.name + "\" is at least " + number_text(*column.minimum) + ".", field);
   if (column.maximum && number > *column.maximum)
-    return fail(422, "Value out of range",
+    return fail(ErrorCode::invalid, "Value out of range",
                 "\"" + column.name + "\" is at most " + number_text(*column.maximum) + ".", field);
   return value;
 }
@@ -163,27 +164,26 @@ Result<json> check_present(const Column& column, const json& value, const std::s
     case ColumnKind::point: return check_marks(column, value, field);
     default: break;
   }
-  auto text = check_text(column, value, "text", field);
-  if (!text) return tl::unexpected(text.error());
-  if (trimmed(*text).empty()) return json();
+  auto text = STRATA_TRY(check_text(column, value, "text", field));
+  if (trimmed(text).empty()) return json();
   switch (column.kind) {
     case ColumnKind::date:
-      return day_of(*text) ? Result<json>(*text)
-                           : refuse(column, "dates as 2024-02-29, from year 1 on", field);
+      return day_of(text) ? Result<json>(text)
+                          : refuse(column, "dates as 2024-02-29, from year 1 on", field);
     case ColumnKind::timestamp: {
-      auto utc = utc_timestamp(*text);
+      auto utc = utc_timestamp(text);
       return utc ? Result<json>(std::move(*utc))
                  : refuse(column, "times as 2024-02-29T12:00:00Z", field);
     }
     case ColumnKind::period: {
-      auto period = parse_edtf(*text);
-      if (period) return json(std::move(*text));
+      auto period = parse_edtf(text);
+      if (period) return json(std::move(text));
       period.error().field = field;
       return tl::unexpected(period.error());
     }
     case ColumnKind::enumeration: {
-      if (std::find(column.choices.begin(), column.choices.end(), *text) != column.choices.end())
-        return json(*text);
+      if (std::find(column.choices.begin(), column.choices.end(), text) != column.choices.end())
+        return json(text);
       std::string choices;
       for (const auto& choice : column.choices) {
         if (choices.size() > 200) {
@@ -194,8 +194,8 @@ Result<json> check_present(const Column& column, const json& value, const std::s
       }
       return refuse(column, "one of: " + choices, field);
     }
-    case ColumnKind::url: return check_url(column, *text, field);
-    default: return json(std::move(*text));
+    case ColumnKind::url: return check_url(column, text, field);
+    default: return json(std::move(text));
   }
 }
 
@@ -244,7 +244,8 @@ Result<json> check_value(const Column& column, const json& value, const std::str
   Result<json> checked =
       value.is_null() ? Result<json>(json()) : check_present(column, value, field);
   if (checked && checked->is_null() && column.required)
-    return fail(422, "Value missing", "\"" + column.name + "\" must have a value.", field);
+    return fail(ErrorCode::invalid, "Value missing", "\"" + column.name + "\" must have a value.",
+                field);
   return checked;
 }
 

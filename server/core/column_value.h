@@ -14,7 +14,7 @@ inline constexpr std::size_t kMostAttached = 1000;    // files in one cell
 // what every reader of JSON keeps exactly
 inline constexpr std::int64_t kGreatestInteger = 1ll << 53;
 
-// `value` as the column keeps it, or a Problem (422) that names `field`: another type of JSON, a
+// `value` as the column keeps it, or an Error (invalid) that names `field`: another type of JSON, a
 // date that is none, a number outside of the column's limits, what is no choice. Null is no value,
 // which only a required column refuses. Forms are made one: timestamps come out in UTC, keys of a
 // relation ascending and once, attachments once. Whether keys have records, and ids attachments, is
@@ -32,7 +32,7 @@ Result<nlohmann::json> parse_value(const Column& column, std::string_view text, 
 std::string print_value(const Column& column, const nlohmann::json& value);
 
 // The value of a column in another kind's column: by its text, except where one has less to say
-// (timestamp to date, whole numbers). A Problem where it cannot be kept.
+// (timestamp to date, whole numbers). An Error where it cannot be kept.
 Result<nlohmann::json> convert_value(const Column& from, const Column& to,
                                      const nlohmann::json& value, const std::string& field);
 

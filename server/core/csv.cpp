@@ -32,7 +32,8 @@ class Reader {
 
   Result<CsvText> read() {
     if (rest_.starts_with("\xff\xfe") || rest_.starts_with("\xfe\xff"))
-      return fail(422, "Not UTF-8", "The text is UTF-16. Save it as \"CSV UTF-8\".", "body");
+      return fail(ErrorCode::invalid, "Not UTF-8", "The text is UTF-16. Save it as \"CSV UTF-8\".",
+                  "body");
     if (rest_.starts_with(kUtf8Mark)) rest_.remove_prefix(kUtf8Mark.size());
     if (rest_.size() >= 5 && rest_.starts_with("sep=") &&
         (rest_.size() == 5 || ends_row(rest_[5]))) {
@@ -44,14 +45,14 @@ class Reader {
     }
     if (std::find(kSeparators.begin(), kSeparators.end(), out_.separator) == kSeparators.end())
       return refuse("Cells are separated by comma, semicolon or tab");
-    while (!rest_.empty())
-      if (auto good = read_row(); !good) return tl::unexpected(good.error());
+    while (!rest_.empty()) STRATA_TRY(read_row());
     return std::move(out_);
   }
 
  private:
-  tl::unexpected<Problem> refuse(const std::string& why) const {
-    return fail(422, "Not CSV", why + " (line " + std::to_string(line_) + ").", "body");
+  tl::unexpected<Error> refuse(const std::string& why) const {
+    return fail(ErrorCode::invalid, "Not CSV", why + " (line " + std::to_string(line_) + ").",
+                "body");
   }
 
   void take_row_end() {
@@ -66,11 +67,10 @@ class Reader {
     for (bool more = true; more;) {
       if (row.cells.size() == limits_.columns)
         return refuse("A row has at most " + std::to_string(limits_.columns) + " cells");
-      auto cell = rest_.starts_with('"') ? quoted_cell() : bare_cell();
-      if (!cell) return tl::unexpected(cell.error());
-      if (!is_utf8(*cell)) return refuse("A cell is not UTF-8; save the text as \"CSV UTF-8\"");
-      if (cell->find('\0') != std::string::npos) return refuse("A cell holds U+0000");
-      row.cells.push_back(std::move(*cell));
+      auto cell = STRATA_TRY(rest_.starts_with('"') ? quoted_cell() : bare_cell());
+      if (!is_utf8(cell)) return refuse("A cell is not UTF-8; save the text as \"CSV UTF-8\"");
+      if (cell.find('\0') != std::string::npos) return refuse("A cell holds U+0000");
+      row.cells.push_back(std::move(cell));
       more = rest_.starts_with(out_.separator);
       if (more) rest_.remove_prefix(1);
     }

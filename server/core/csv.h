@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata {
 
@@ -25,8 +25,8 @@ struct CsvText {
 
 // Reads RFC 4180 as it is met: UTF-8 with or without a byte order mark; rows end with LF, CRLF or
 // CR; cells are separated by comma, semicolon or tab, whichever stands most often in the first row
-// outside of quotes, or is named by a first row `sep=;` as Excel writes it. A Problem (422) names
-// the line: bytes that are not UTF-8, a quote that does not end, text behind one.
+// outside of quotes, or is named by a first row `sep=;` as Excel writes it. An Error (invalid)
+// names the line: bytes that are not UTF-8, a quote that does not end, text behind one.
 Result<CsvText> parse_csv(std::string_view text, const CsvLimits& limits = {});
 
 inline constexpr std::string_view kUtf8Mark =

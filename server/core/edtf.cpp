@@ -124,7 +124,7 @@ int days_in_month(std::int64_t year, int month) {
 Result<Period> parse_edtf(std::string_view text) {
   const auto refuse = [&] {
     return fail(
-        422, "Not a period",
+        ErrorCode::invalid, "Not a period",
         "\"" + mended_utf8(text.substr(0, kLongestPeriod)) +
             "\" is no date of EDTF such as 1560, 1560~, 156X, 1560-04-12, -0043, 1560/1580 or 1560/..",
         {});

@@ -14,9 +14,9 @@ void collect(const Expression& expression, std::vector<std::string>& layers) {
 
 }  // namespace
 
-Problem expression_problem(const std::string& what, std::size_t at, const std::string& field) {
-  Problem problem{422, "Expression not understood",
-                  what + " (at character " + std::to_string(at + 1) + ").", field};
+Error expression_problem(const std::string& what, std::size_t at, const std::string& field) {
+  Error problem{ErrorCode::invalid, "Expression not understood",
+                what + " (at character " + std::to_string(at + 1) + ").", field};
   problem.offset = at;
   return problem;
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata {
 
@@ -116,9 +116,9 @@ struct Expression {
   bool operator==(const Expression&) const = default;
 };
 
-// What is wrong at a character (from 0) of the text of an expression: a Problem (422) that says
+// What is wrong at a character (from 0) of the text of an expression: an Error (invalid) that says
 // where.
-Problem expression_problem(const std::string& what, std::size_t at, const std::string& field);
+Error expression_problem(const std::string& what, std::size_t at, const std::string& field);
 
 // Slugs of the layers that it reads, each once, in order of their first use.
 std::vector<std::string> layers_of(const Expression& expression);

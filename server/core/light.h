@@ -2,7 +2,7 @@
 
 #include <glm/glm.hpp>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata {
 

@@ -12,8 +12,8 @@
 namespace strata {
 namespace {
 
-tl::unexpected<Problem> unreadable(std::string detail) {
-  return fail(422, "File not readable", std::move(detail), "file");
+tl::unexpected<Error> unreadable(std::string detail) {
+  return fail(ErrorCode::invalid, "File not readable", std::move(detail), "file");
 }
 
 }  // namespace

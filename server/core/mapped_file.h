@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata {
 
@@ -13,7 +13,7 @@ namespace strata {
 // before they are read.
 class MappedFile {
  public:
-  // A Problem 422 that says why a file cannot be read. An empty file has no bytes.
+  // An Error `invalid` that says why a file cannot be read. An empty file has no bytes.
   static Result<MappedFile> open(const std::filesystem::path& file);
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&&) = delete;

@@ -5,8 +5,6 @@
 namespace strata {
 namespace {
 
-constexpr std::string_view kUsedUp = " used up";
-
 std::string mib(std::uint64_t bytes) {
   return std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB";
 }
@@ -45,18 +43,14 @@ Result<MemoryLedger::Share> MemoryLedger::reserve(std::uint64_t bytes, std::stri
   }
 }
 
-Problem MemoryLedger::used_up(std::uint64_t bytes, std::string_view what) const {
-  return {503,
-          kind_ + std::string(kUsedUp),
+Error MemoryLedger::used_up(std::uint64_t bytes, std::string_view what) const {
+  return {ErrorCode::out_of_memory,
+          kind_ + " used up",
           "The budget of " + mib(budget_bytes_) + " of " + kind_ + " is used up: " + mib(bytes) +
               " more are needed for " + std::string(what) + ", and " + mib(used_bytes_) +
               " are in use. Close models or layers, or start the " + "server with a larger " +
               option_ + ".",
           {}};
-}
-
-bool is_used_up(const Problem& problem) {
-  return problem.status == 503 && problem.title.ends_with(kUsedUp);
 }
 
 }  // namespace strata

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata {
 
@@ -47,9 +47,10 @@ class MemoryLedger {
   // Frees one thing that is not used or can be made again; false when there is none. Called by
   // `reserve`, on its thread.
   void set_evictor(std::function<bool()> evict_one) { evict_one_ = std::move(evict_one); }
-  // A Problem 503 when `bytes` do not fit even after eviction; `what` names their use in it.
+  // An Error `out_of_memory` when `bytes` do not fit even after eviction; `what` names their use in
+  // it.
   Result<Share> reserve(std::uint64_t bytes, std::string_view what);
-  Problem used_up(std::uint64_t bytes, std::string_view what) const;
+  Error used_up(std::uint64_t bytes, std::string_view what) const;
 
  private:
   const std::string kind_, option_;
@@ -57,8 +58,5 @@ class MemoryLedger {
   std::atomic<std::uint64_t> used_bytes_{0};
   std::function<bool()> evict_one_;
 };
-
-// Whether something was refused because a budget is used up.
-bool is_used_up(const Problem& problem);
 
 }  // namespace strata

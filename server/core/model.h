@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/role.h"
 
 namespace strata {
@@ -52,7 +52,7 @@ struct AtlasReport {
   // from lowest_resolution up; empty in models of before it was measured
   std::vector<TexelSize> texel_sizes;
   // empty where 60 % and more are used, and in models of before it was said
-  std::vector<Limit> limits;
+  std::vector<Limit> limits{};
 };
 
 // Why a unit or an up direction is proposed.

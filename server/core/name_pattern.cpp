@@ -17,7 +17,8 @@ bool stands_at(std::string_view name, std::size_t at, std::string_view text) {
 
 Result<NamePattern> NamePattern::parse(std::string_view text, const std::string& field) {
   const auto wrong = [&](const std::string& what) {
-    return fail(422, "Bad pattern", what + " A pattern is like {code}_{view}_{n}.jpg.", field);
+    return fail(ErrorCode::invalid, "Bad pattern",
+                what + " A pattern is like {code}_{view}_{n}.jpg.", field);
   };
   NamePattern pattern;
   std::size_t words = 0;

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata {
 
@@ -16,8 +16,8 @@ class NamePattern {
  public:
   static constexpr std::size_t kMostWords = 8;
 
-  // 422 (`field`): no word, a word twice, two words without anything between them, braces that do
-  // not fit.
+  // `invalid` (`field`): no word, a word twice, two words without anything between them, braces
+  // that do not fit.
   static Result<NamePattern> parse(std::string_view text, const std::string& field);
 
   bool has(std::string_view word) const;

@@ -24,7 +24,7 @@ constexpr const char* kPatterns[] = {"solid", "hatch", "dots", "outline"};
 Result<void> read_pattern(const nlohmann::json& item, PaletteMode mode, const std::string& field,
                           Palette::Point& point) {
   auto wrong = [&](const char* member, std::string detail) {
-    return fail(422, "Palette not usable", std::move(detail), field + "." + member);
+    return fail(ErrorCode::invalid, "Palette not usable", std::move(detail), field + "." + member);
   };
   if (const auto asked = item.find("pattern"); asked != item.end()) {
     const auto known =
@@ -73,7 +73,8 @@ Rgba mix(const Rgba& a, const Rgba& b, double t) {
 
 Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field) {
   auto wrong = [&] {
-    return fail(422, "Not a colour", "A colour is \"#rrggbb\" or \"#rrggbbaa\".", field);
+    return fail(ErrorCode::invalid, "Not a colour", "A colour is \"#rrggbb\" or \"#rrggbbaa\".",
+                field);
   };
   if (!json.is_string()) return wrong();
   const auto& text = json.get_ref<const std::string&>();
@@ -97,9 +98,10 @@ Result<Rgba> parse_color(const nlohmann::json& json, const std::string& field) {
 
 Result<Palette> palette_from_json(const nlohmann::json& json, const std::string& field) {
   auto wrong = [&](const char* member, std::string detail) {
-    return fail(422, "Palette not usable", std::move(detail), field + "." + member);
+    return fail(ErrorCode::invalid, "Palette not usable", std::move(detail), field + "." + member);
   };
-  if (!json.is_object()) return fail(422, "Palette not usable", "A palette is an object.", field);
+  if (!json.is_object())
+    return fail(ErrorCode::invalid, "Palette not usable", "A palette is an object.", field);
   Palette palette;
   const std::string mode = json.value("mode", std::string("linear"));
   if (mode == "linear")
@@ -121,16 +123,14 @@ Result<Palette> palette_from_json(const nlohmann::json& json, const std::string&
       if (!item.is_object() || !item.contains("at") || !item["at"].is_number() ||
           !item.contains("color"))
         return wrong(at_field.c_str(), "A point has a number `at` and a `color`.");
-      auto color = parse_color(item["color"], field + "." + at_field + ".color");
-      if (!color) return tl::unexpected(color.error());
+      auto color = STRATA_TRY(parse_color(item["color"], field + "." + at_field + ".color"));
       const double at = item["at"].get<double>();
       if (!palette.points.empty() && at <= palette.points.back().at)
         return wrong(at_field.c_str(),
                      "Points go upward: each `at` is larger than the one before.");
-      Palette::Point point{at, *color, item.value("label", std::string()),
+      Palette::Point point{at, color, item.value("label", std::string()),
                            item.value("value", std::string())};
-      if (auto read = read_pattern(item, palette.mode, field + "." + at_field, point); !read)
-        return tl::unexpected(read.error());
+      STRATA_TRY(read_pattern(item, palette.mode, field + "." + at_field, point));
       palette.points.push_back(std::move(point));
     }
   }
@@ -143,9 +143,8 @@ Result<Palette> palette_from_json(const nlohmann::json& json, const std::string&
     return wrong("max", "The upper limit is a number that is not below the lower limit.");
   palette.column = json.value("column", std::string());
   if (const auto others = json.find("others"); others != json.end()) {
-    auto color = parse_color(*others, field + ".others");
-    if (!color) return tl::unexpected(color.error());
-    palette.others = *color;
+    auto color = STRATA_TRY(parse_color(*others, field + ".others"));
+    palette.others = color;
   }
   return palette;
 }

@@ -109,10 +109,9 @@ bool says_premature_end(std::string why) {
 Result<Picture> decode_jpeg(std::span<const std::uint8_t> bytes, int largest_side,
                             int divisor = 1) {
   int space = 0;
-  const auto info = inspect_jpeg(bytes, largest_side, &space);
-  if (!info) return tl::unexpected(info.error());
+  const auto info = STRATA_TRY(inspect_jpeg(bytes, largest_side, &space));
   const tjscalingfactor scale{1, divisor};
-  Picture picture{TJSCALED(info->width, scale), TJSCALED(info->height, scale), {}};
+  Picture picture{TJSCALED(info.width, scale), TJSCALED(info.height, scale), {}};
   picture.rgba.resize(std::size_t(picture.width) * std::size_t(picture.height) * 4);
   const tjhandle handle = decompressor();
   const bool is_cmyk = space == TJCS_CMYK || space == TJCS_YCCK;
@@ -132,11 +131,10 @@ Result<Picture> decode_jpeg(std::span<const std::uint8_t> bytes, int largest_sid
 
 Result<Picture> decode_png(std::span<const std::uint8_t> bytes, int largest_side) {
   PngReader reader;
-  const auto info = begin_png(reader, bytes, largest_side);
-  if (!info) return tl::unexpected(info.error());
+  const auto info = STRATA_TRY(begin_png(reader, bytes, largest_side));
   reader.image.format = PNG_FORMAT_RGBA;
   reader.image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // what writers of photographs mean by 16 bits
-  Picture picture{info->width, info->height, {}};
+  Picture picture{info.width, info.height, {}};
   picture.rgba.resize(PNG_IMAGE_SIZE(reader.image));
   if (!png_image_finish_read(&reader.image, nullptr, picture.rgba.data(), 0, nullptr))
     return damaged_picture(PictureFormat::png, reader.image.message);
@@ -170,14 +168,14 @@ constexpr std::array kOtherFormats{
     OtherFormat{4, "JXL \r\n\x87\n"sv, "a JPEG XL picture"},
 };
 
-tl::unexpected<Problem> no_format(std::span<const std::uint8_t> bytes) {
+tl::unexpected<Error> no_format(std::span<const std::uint8_t> bytes) {
   for (const OtherFormat& other : kOtherFormats)
     if (starts_with(bytes, other.magic, other.at))
       return fail(
-          415, "Picture format not taken",
+          ErrorCode::unsupported, "Picture format not taken",
           "The picture is " + std::string(other.name) +
               ", which is not read; save it as JPEG or PNG, and a model with such textures, too.");
-  return fail(415, "Picture format not taken",
+  return fail(ErrorCode::unsupported, "Picture format not taken",
               "The picture is none of JPEG, PNG, TIFF, WebP, BMP and TGA; save it as one of them.");
 }
 
@@ -195,9 +193,9 @@ std::string_view media_type(PictureFormat format) {
   return "application/octet-stream";
 }
 
-tl::unexpected<Problem> damaged_picture(PictureFormat format, const std::string& why) {
+tl::unexpected<Error> damaged_picture(PictureFormat format, const std::string& why) {
   constexpr std::array kNames{"JPEG", "PNG", "TIFF", "WebP", "BMP", "TGA"};
-  return fail(422, "Picture not readable",
+  return fail(ErrorCode::invalid, "Picture not readable",
               std::string("The ") + kNames.at(static_cast<std::size_t>(format)) +
                   " cannot be read: " + why + ".");
 }
@@ -205,7 +203,7 @@ tl::unexpected<Problem> damaged_picture(PictureFormat format, const std::string&
 Result<PictureInfo> sized_picture(PictureFormat format, std::uint64_t width, std::uint64_t height,
                                   int largest_side) {
   if (width < 1 || height < 1 || std::max(width, height) > static_cast<std::uint64_t>(largest_side))
-    return fail(422, "Picture size not usable",
+    return fail(ErrorCode::invalid, "Picture size not usable",
                 "The picture has " + std::to_string(width) + " × " + std::to_string(height) +
                     " pixels; 1 to " + std::to_string(largest_side) + " a side are taken.");
   return PictureInfo{format, static_cast<int>(width), static_cast<int>(height)};
@@ -254,11 +252,10 @@ Result<Picture> decode_picture(std::span<const std::uint8_t> bytes, int largest_
 }
 
 Result<Picture> decode_coarse(std::span<const std::uint8_t> bytes, int side) {
-  const auto info = inspect_picture(bytes);
-  if (!info) return tl::unexpected(info.error());
-  if (info->format != PictureFormat::jpeg) return decode_picture(bytes);
+  const auto info = STRATA_TRY(inspect_picture(bytes));
+  if (info.format != PictureFormat::jpeg) return decode_picture(bytes);
   int divisor = 1;
-  while (divisor < 8 && std::max(info->width, info->height) / (2 * divisor) >= side) divisor *= 2;
+  while (divisor < 8 && std::max(info.width, info.height) / (2 * divisor) >= side) divisor *= 2;
   return decode_jpeg(bytes, kLargestPictureSide, divisor);
 }
 

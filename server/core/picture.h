@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata {
 
@@ -42,14 +42,14 @@ struct PictureInfo {
 
 constexpr int kLargestPictureSide = 16384;
 
-// The size, from the header alone. 415: none of the formats, by its name where it is a known one;
-// 422: damaged, or a side of more than `largest_side`.
+// The size, from the header alone. unsupported: none of the formats, by its name where it is a
+// known one; invalid: damaged, or a side of more than `largest_side`.
 Result<PictureInfo> inspect_picture(std::span<const std::uint8_t> bytes,
                                     int largest_side = kLargestPictureSide);
 
 // Whole, as RGBA8. Refused as above, where the data ends before the picture does, and where it is
-// of a kind that is not read (422, which names it). Sizes are checked before anything is allocated;
-// takes at most twice the pixels' memory.
+// of a kind that is not read (invalid, which names it). Sizes are checked before anything is
+// allocated; takes at most twice the pixels' memory.
 Result<Picture> decode_picture(std::span<const std::uint8_t> bytes,
                                int largest_side = kLargestPictureSide);
 

@@ -131,8 +131,7 @@ Result<PictureInfo> inspect_bitmap(PictureFormat format, std::span<const std::ui
     return sized_picture(format, header.width, header.height, largest_side);
   }
   const BmpHeader header = bmp_header(bytes);
-  auto info = sized_picture(format, header.width, header.height, largest_side);
-  if (!info) return info;
+  auto info = STRATA_TRY(sized_picture(format, header.width, header.height, largest_side));
   if (header.compression == 1 || header.compression == 2)
     return damaged_picture(format,
                            "its pixels are packed as run lengths; save it without compression");
@@ -145,8 +144,7 @@ Result<PictureInfo> inspect_bitmap(PictureFormat format, std::span<const std::ui
 
 Result<Picture> decode_bitmap(PictureFormat format, std::span<const std::uint8_t> bytes,
                               int largest_side) {
-  const auto info = inspect_bitmap(format, bytes, largest_side);
-  if (!info) return tl::unexpected(info.error());
+  const auto info = STRATA_TRY(inspect_bitmap(format, bytes, largest_side));
   if (!(format == PictureFormat::bmp ? is_whole_bmp(bytes) : is_whole_tga(bytes)))
     return damaged_picture(format, "it ends too early");
   if (bytes.size() > INT_MAX) return damaged_picture(format, "it has more than 2 GB");
@@ -156,7 +154,7 @@ Result<Picture> decode_bitmap(PictureFormat format, std::span<const std::uint8_t
                             &channels, 4),
       std::free);
   if (!pixels) return damaged_picture(format, stbi_failure_reason());
-  if (width != info->width || height != info->height)
+  if (width != info.width || height != info.height)
     return damaged_picture(format, "its header contradicts itself");
   const std::size_t size = std::size_t(width) * std::size_t(height) * 4;
   return Picture{width, height, {pixels.get(), pixels.get() + size}};

@@ -8,8 +8,8 @@ namespace strata {
 
 // The readers behind core/picture.h, for its own files only: one unit for each library.
 
-tl::unexpected<Problem> damaged_picture(PictureFormat format, const std::string& why);  // 422
-// 422 where a side is none, or more than `largest_side`.
+tl::unexpected<Error> damaged_picture(PictureFormat format, const std::string& why);  // invalid
+// `invalid` where a side is none, or more than `largest_side`.
 Result<PictureInfo> sized_picture(PictureFormat format, std::uint64_t width, std::uint64_t height,
                                   int largest_side);
 

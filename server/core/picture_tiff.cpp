@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kMostSamples = 8;
 
-tl::unexpected<Problem> damaged(const TiffMemory& file) {
+tl::unexpected<Error> damaged(const TiffMemory& file) {
   return damaged_picture(PictureFormat::tiff,
                          file.complaint.empty() ? "it is damaged" : file.complaint);
 }
@@ -24,9 +24,9 @@ bool is_read_codec(int compression) {
 
 // Of the first page, as far as libtiff makes colours of it.
 Result<PictureInfo> describe(TIFF* tiff, int largest_side) {
-  auto info = sized_picture(PictureFormat::tiff, tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
-                            tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH), largest_side);
-  if (!info) return info;
+  auto info = STRATA_TRY(
+      sized_picture(PictureFormat::tiff, tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
+                    tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH), largest_side));
   const int samples = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL),
             bits = tiff_tag<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE),
             kind = tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT),
@@ -71,12 +71,11 @@ Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, int lar
   TiffMemory file{bytes, nullptr, 0, {}};
   const Tiff tiff = open_tiff(file, "rm");
   if (!tiff) return damaged(file);
-  const auto info = describe(tiff.get(), largest_side);
-  if (!info) return tl::unexpected(info.error());
-  const auto width = static_cast<std::uint32_t>(info->width),
-             height = static_cast<std::uint32_t>(info->height);
+  const auto info = STRATA_TRY(describe(tiff.get(), largest_side));
+  const auto width = static_cast<std::uint32_t>(info.width),
+             height = static_cast<std::uint32_t>(info.height);
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
-  Picture picture{info->width, info->height, std::vector<std::uint8_t>(pixels * 4)};
+  Picture picture{info.width, info.height, std::vector<std::uint8_t>(pixels * 4)};
   // libtiff writes its 32-bit words where the pixels are to be, and they are taken apart in place.
   auto* words = reinterpret_cast<std::uint32_t*>(picture.rgba.data());
   if (!TIFFReadRGBAImageOriented(tiff.get(), width, height, words, ORIENTATION_TOPLEFT, 1))

@@ -31,16 +31,15 @@ Result<PictureInfo> inspect_webp(std::span<const std::uint8_t> bytes, int larges
 }
 
 Result<Picture> decode_webp(std::span<const std::uint8_t> bytes, int largest_side) {
-  const auto info = inspect_webp(bytes, largest_side);
-  if (!info) return tl::unexpected(info.error());
+  const auto info = STRATA_TRY(inspect_webp(bytes, largest_side));
   WebPDecoderConfig config;
   if (!WebPInitDecoderConfig(&config))
     return damaged_picture(PictureFormat::webp, "libwebp is of another version");
-  Picture picture{info->width, info->height, {}};
-  picture.rgba.resize(std::size_t(info->width) * std::size_t(info->height) * 4);
+  Picture picture{info.width, info.height, {}};
+  picture.rgba.resize(std::size_t(info.width) * std::size_t(info.height) * 4);
   config.output.colorspace = MODE_RGBA;
   config.output.is_external_memory = 1;
-  config.output.u.RGBA = {picture.rgba.data(), 4 * info->width, picture.rgba.size()};
+  config.output.u.RGBA = {picture.rgba.data(), 4 * info.width, picture.rgba.size()};
   if (const auto status = WebPDecode(bytes.data(), bytes.size(), &config); status != VP8_STATUS_OK)
     return damaged_picture(PictureFormat::webp, meaning(status));
   return picture;

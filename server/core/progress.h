@@ -5,7 +5,7 @@
 #include <mutex>
 #include <string>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata {
 
@@ -49,8 +49,8 @@ class Progress {
   std::int64_t job_ = 0;
 };
 
-inline tl::unexpected<Problem> cancelled_problem() {
-  return fail(499, "Cancelled", "The work was cancelled.");
+inline tl::unexpected<Error> cancelled_problem() {
+  return fail(ErrorCode::cancelled, "Cancelled", "The work was cancelled.");
 }
 
 }  // namespace strata

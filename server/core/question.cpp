@@ -32,7 +32,7 @@ Question::Question(std::string asker, QuestionLimits limits, std::shared_ptr<Que
   place_.asker = asker_;
 }
 
-void Question::end(Problem why) {
+void Question::end(Error why) {
   {
     const std::lock_guard lock(mutex_);
     if (ended_) return;
@@ -42,7 +42,7 @@ void Question::end(Problem why) {
   if (turns_) turns_->give_up(place_);
 }
 
-std::optional<Problem> Question::why() const {
+std::optional<Error> Question::why() const {
   const std::lock_guard lock(mutex_);
   return ended_ ? std::optional(why_) : std::nullopt;
 }
@@ -54,7 +54,7 @@ void Question::throw_ended() {
 
 void Question::check() {
   if (has_deadline_ && Clock::now() - begin_ > limits_.time)
-    end({503,
+    end({ErrorCode::timed_out,
          "Question takes too long",
          "An answer may take " + std::to_string(limits_.time.count() / 1000) +
              " seconds, for which others may have been served meanwhile. Ask of a smaller area, of a coarser layer or with a shorter "
@@ -67,7 +67,7 @@ void Question::check() {
 void Question::spend(std::uint64_t steps) {
   const std::uint64_t all = steps_ += steps;
   if (limits_.steps == 0 || all <= limits_.steps) return;
-  end({422,
+  end({ErrorCode::invalid,
        "Question too large",
        "This takes " + in_millions(all) +
            " million steps, a step being a part of the condition at a texel; a question may take " +
@@ -81,7 +81,7 @@ void Question::hold(std::int64_t bytes) {
   const std::int64_t held = bytes_ += bytes;
   if (bytes <= 0 || limits_.bytes == 0 || held <= static_cast<std::int64_t>(limits_.bytes)) return;
   bytes_ -= bytes;
-  end({422,
+  end({ErrorCode::invalid,
        "Question too large",
        "The answer takes " + in_millions(static_cast<std::uint64_t>(held)) +
            " MB of main memory while it is made; a question may take " +

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/question_turns.h"
 #include "core/role.h"
 
@@ -29,12 +29,12 @@ QuestionLimits limits_of(Role role);
 // was begun.
 class QuestionEnded : public std::exception {
  public:
-  explicit QuestionEnded(Problem problem) : problem_(std::move(problem)) {}
-  const Problem& problem() const { return problem_; }
+  explicit QuestionEnded(Error problem) : problem_(std::move(problem)) {}
+  const Error& problem() const { return problem_; }
   const char* what() const noexcept override { return problem_.title.c_str(); }
 
  private:
-  const Problem problem_;
+  const Error problem_;
 };
 
 // A question that somebody asks, for as long as it is worked on: whose it is, what it may still
@@ -50,9 +50,9 @@ class Question : public std::enable_shared_from_this<Question> {
 
   const std::string& asker() const { return asker_; }
   // Its answer is not wanted any more, or cannot be given. The first reason counts.
-  void end(Problem why);
+  void end(Error why);
   bool ended() const { return ended_; }
-  std::optional<Problem> why() const;  // it ended; nothing: it did not
+  std::optional<Error> why() const;  // it ended; nothing: it did not
   // From now on it may take any time: its answer is on its way to a client who reads it as quickly
   // as they can.
   void let_take_time() { has_deadline_ = false; }
@@ -62,15 +62,15 @@ class Question : public std::enable_shared_from_this<Question> {
 
   // Throws QuestionEnded where it is over; waits where it is another's turn.
   void check();
-  // So many steps are about to be taken: refused as a whole (QuestionEnded, 422) where that is more
-  // than it may.
+  // So many steps are about to be taken: refused as a whole (QuestionEnded, `invalid`) where that
+  // is more than it may.
   void spend(std::uint64_t steps);
   // Steps that were taken, for those who count what the server does.
   void took(std::uint64_t steps) {
     if (turns_) turns_->took(steps);
   }
-  // Refused (QuestionEnded, 422) where what it holds is more than it may. Given back with `bytes`
-  // below 0.
+  // Refused (QuestionEnded, `invalid`) where what it holds is more than it may. Given back with
+  // `bytes` below 0.
   void hold(std::int64_t bytes);
 
   // The question that this thread works on; null: none, and nothing limits the work.
@@ -112,7 +112,7 @@ class Question : public std::enable_shared_from_this<Question> {
   std::atomic<std::uint64_t> steps_{0};
   std::atomic<std::int64_t> bytes_{0};
   mutable std::mutex mutex_;
-  Problem why_;
+  Error why_;
   std::atomic<int> turns_held_{0};  // by the thread that works on it, and its helpers meanwhile
   QuestionTurns::Place place_;
 };

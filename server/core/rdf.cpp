@@ -113,7 +113,7 @@ Result<void> read_rdf(std::string_view text, RdfSyntax syntax,
                       const std::function<bool(const Triple&)>& sink) {
   const char* name = syntax == RdfSyntax::turtle ? "Turtle" : "RDF/XML";
   const auto refuse = [&](const std::string& why) {
-    return fail(422, std::string("Not ") + name,
+    return fail(ErrorCode::invalid, std::string("Not ") + name,
                 "It cannot be read as " + std::string(name) + ": " + why, "body");
   };
   if (!is_utf8(text) || text.find('\0') != std::string_view::npos)
@@ -126,12 +126,14 @@ Result<void> read_rdf(std::string_view text, RdfSyntax syntax,
   const Parser parser(
       world ? raptor_new_parser(world.get(), syntax == RdfSyntax::turtle ? "turtle" : "rdfxml")
             : nullptr);
-  if (!parser) return fail(500, "RDF not readable", "libraptor2 could not be started.");
+  if (!parser)
+    return fail(ErrorCode::internal, "RDF not readable", "libraptor2 could not be started.");
   for (const auto& [option, value] :
        {std::pair(RAPTOR_OPTION_NO_NET, 1), std::pair(RAPTOR_OPTION_NO_FILE, 1),
         std::pair(RAPTOR_OPTION_LOAD_EXTERNAL_ENTITIES, 0)})
     if (raptor_parser_set_option(parser.get(), option, nullptr, value) != 0)
-      return fail(500, "RDF not readable", "libraptor2 cannot be kept from fetching.");
+      return fail(ErrorCode::internal, "RDF not readable",
+                  "libraptor2 cannot be kept from fetching.");
   const Uri base = new_uri(world.get(), kRelativeBase);
   Reading reading{sink, parser.get()};
   raptor_parser_set_statement_handler(parser.get(), &reading, take);
@@ -152,7 +154,7 @@ Result<void> read_rdf(std::string_view text, RdfSyntax syntax,
 Result<std::string> write_turtle(std::span<const Triple> triples,
                                  std::span<const RdfPrefix> prefixes) {
   const auto failed = [] {
-    return fail(500, "Turtle not written", "libraptor2 could not write the terms.");
+    return fail(ErrorCode::internal, "Turtle not written", "libraptor2 could not write the terms.");
   };
   const std::lock_guard lock(one_at_a_time());
   Complaint complaint;

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata {
 
@@ -24,7 +24,7 @@ struct Triple {
 inline constexpr std::string_view kRelativeBase = "http://relative.invalid/";
 
 // Reads a graph by libraptor2, triple by triple, until the sink says false. Nothing is ever fetched
-// or included: neither addresses nor files nor external entities. A Problem (422) says where the
+// or included: neither addresses nor files nor external entities. An Error (invalid) says where the
 // text stops being what it should be. One at a time in the process.
 Result<void> read_rdf(std::string_view text, RdfSyntax syntax,
                       const std::function<bool(const Triple&)>& sink);

@@ -31,7 +31,7 @@ std::vector<std::uint8_t> compress(std::uint8_t version, int width,
 Result<std::vector<std::uint8_t>> decompress(std::uint8_t version, int width, std::size_t raw_bytes,
                                              std::span<const std::uint8_t> bytes) {
   auto damaged = [](const char* why) {
-    return fail(500, "Damaged tile", std::string("A stored tile ") + why);
+    return fail(ErrorCode::internal, "Damaged tile", std::string("A stored tile ") + why);
   };
   if (bytes.size() < kHeaderBytes) return damaged("is too short.");
   if (bytes[0] != version) return damaged("has an unknown version.");
@@ -75,12 +75,11 @@ std::vector<std::uint8_t> encode_revision(const TileRevision& revision) {
 Result<TileRevision> decode_revision(TileAddress address, ValueType type,
                                      std::span<const std::uint8_t> bytes) {
   TileRevision revision{address, {}, TileData(type)};
-  auto raw = decompress(kRevisionVersion, bytes_per_texel(type),
-                        2 * mask_bytes() + revision.difference.values.size(), bytes);
-  if (!raw) return tl::unexpected(raw.error());
-  std::memcpy(revision.written.words.data(), raw->data(), mask_bytes());
-  std::memcpy(revision.difference.valid.words.data(), raw->data() + mask_bytes(), mask_bytes());
-  std::memcpy(revision.difference.values.data(), raw->data() + 2 * mask_bytes(),
+  auto raw = STRATA_TRY(decompress(kRevisionVersion, bytes_per_texel(type),
+                                   2 * mask_bytes() + revision.difference.values.size(), bytes));
+  std::memcpy(revision.written.words.data(), raw.data(), mask_bytes());
+  std::memcpy(revision.difference.valid.words.data(), raw.data() + mask_bytes(), mask_bytes());
+  std::memcpy(revision.difference.values.data(), raw.data() + 2 * mask_bytes(),
               revision.difference.values.size());
   return revision;
 }

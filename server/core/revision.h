@@ -22,7 +22,7 @@ TileRevision make_revision(TileAddress address, const TileData& before, const Ti
                            const TileMask& written);
 void apply(const TileRevision& revision, TileData& tile);
 
-// Storage form (zstd, versioned). Decoding checks every bound: damaged bytes are a Problem, never a
+// Storage form (zstd, versioned). Decoding checks every bound: damaged bytes are an Error, never a
 // crash.
 std::vector<std::uint8_t> encode_revision(const TileRevision& revision);
 Result<TileRevision> decode_revision(TileAddress address, ValueType type,

@@ -77,7 +77,7 @@ Result<ShapeBits> shape_of(const Picture& picture, std::optional<ShapePart> part
   }
   if (!any)
     return fail(
-        422, "Empty shape",
+        ErrorCode::invalid, "Empty shape",
         "No part of the picture is the tool: it is what is opaque, or else what is light. Say `part=dark` for a dark "
         "shape on a light ground.",
         "body");

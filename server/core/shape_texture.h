@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/error.h"
 #include "core/picture.h"
-#include "core/problem.h"
 
 namespace strata {
 
@@ -22,7 +22,7 @@ enum class ShapePart { opaque, light, dark };
 
 // The largest centred square around the picture becomes the raster (what lies beside the picture is
 // no tool); each cell is the mean of what it covers. Without a `part`: what is opaque where the
-// picture has transparency, else what is light. 422 where nothing of the picture is the tool.
+// picture has transparency, else what is light. `invalid` where nothing of the picture is the tool.
 Result<ShapeBits> shape_of(const Picture& picture, std::optional<ShapePart> part);
 
 // White where the tool is, transparent elsewhere.

@@ -33,7 +33,7 @@ bool is_language_tag(std::string_view tag) {
 Result<void> check_short(const std::string& text, const std::string& field,
                          std::size_t longest = kLongestColumnText) {
   if (text.size() <= longest && is_utf8(text) && text.find('\0') == std::string::npos) return {};
-  return fail(422, "Bad text",
+  return fail(ErrorCode::invalid, "Bad text",
               "`" + field + "` must be UTF-8 of at most " + std::to_string(longest) +
                   " bytes, without U+0000.",
               field);
@@ -42,17 +42,17 @@ Result<void> check_short(const std::string& text, const std::string& field,
 Result<void> check_choices(const Column& column) {
   if (column.kind != ColumnKind::enumeration) {
     if (column.choices.empty()) return {};
-    return fail(422, "Choices without enumeration",
+    return fail(ErrorCode::invalid, "Choices without enumeration",
                 "Only columns of kind `enumeration` have choices.", "choices");
   }
   if (column.choices.empty() || column.choices.size() > kMostChoices)
-    return fail(422, "Bad choices",
+    return fail(ErrorCode::invalid, "Bad choices",
                 "An enumeration has 1 to " + std::to_string(kMostChoices) + " choices.", "choices");
   std::set<std::string> known;
   for (const std::string& choice : column.choices) {
-    if (auto good = check_short(choice, "choices"); !good) return good;
+    STRATA_TRY(check_short(choice, "choices"));
     if (choice.empty() || !known.insert(choice).second)
-      return fail(422, "Bad choices",
+      return fail(ErrorCode::invalid, "Bad choices",
                   "Choices must not be empty and must differ: \"" + choice + "\".", "choices");
   }
   return {};
@@ -61,38 +61,41 @@ Result<void> check_choices(const Column& column) {
 Result<void> check_limits(const Column& column) {
   if (!is_number(column.kind)) {
     if (!column.unit.empty())
-      return fail(422, "Unit without number", "Only numbers have a unit.", "unit");
+      return fail(ErrorCode::invalid, "Unit without number", "Only numbers have a unit.", "unit");
     if (column.minimum)
-      return fail(422, "Limit without number", "Only numbers have a minimum.", "minimum");
+      return fail(ErrorCode::invalid, "Limit without number", "Only numbers have a minimum.",
+                  "minimum");
     if (column.maximum)
-      return fail(422, "Limit without number", "Only numbers have a maximum.", "maximum");
+      return fail(ErrorCode::invalid, "Limit without number", "Only numbers have a maximum.",
+                  "maximum");
     return {};
   }
   if (column.minimum && column.maximum && *column.minimum > *column.maximum)
-    return fail(422, "Limits cross", "`minimum` must not be greater than `maximum`.", "minimum");
+    return fail(ErrorCode::invalid, "Limits cross", "`minimum` must not be greater than `maximum`.",
+                "minimum");
   return {};
 }
 
 Result<void> check_kind(const Column& column) {
   if (names_records(column.kind) != column.target.has_value())
     return names_records(column.kind)
-               ? fail(422, "Target missing",
+               ? fail(ErrorCode::invalid, "Target missing",
                       "A column of this kind names a table of the project as `target`.", "target")
-               : fail(422, "Target without relation",
+               : fail(ErrorCode::invalid, "Target without relation",
                       "Only columns of kind `term` or `relation` have a target.", "target");
   if ((holds_attachments(column.kind) || holds_marks(column.kind)) &&
       !column.default_value.is_null())
-    return fail(422, "No default",
+    return fail(ErrorCode::invalid, "No default",
                 holds_marks(column.kind) ? "Lines and points are drawn for single records."
                                          : "Files are attached to single records.",
                 "default");
   if (column.unique && (column.kind == ColumnKind::boolean || holds_lists(column.kind)))
-    return fail(422, "Cannot be unique",
+    return fail(ErrorCode::invalid, "Cannot be unique",
                 "Columns of kind `" + std::string(name(column.kind)) +
                     "` hold the same value in many records.",
                 "unique");
   if (column.unique && !column.default_value.is_null())
-    return fail(422, "Default of a unique column",
+    return fail(ErrorCode::invalid, "Default of a unique column",
                 "A second record could not have the default, too.", "default");
   return {};
 }
@@ -114,40 +117,39 @@ Result<void> check_labels(const Labels& labels, const std::string& field) {
 Result<void> check_texts_by_language(const Labels& texts, std::size_t longest,
                                      const std::string& field) {
   if (texts.size() > 100)
-    return fail(422, "Too many labels", "A thing has at most 100 labels.", field);
+    return fail(ErrorCode::invalid, "Too many labels", "A thing has at most 100 labels.", field);
   for (const auto& [tag, text] : texts) {
     if (!is_language_tag(tag))
-      return fail(422, "Bad language",
+      return fail(ErrorCode::invalid, "Bad language",
                   "\"" + mended_utf8(tag) + "\" is no language tag such as `es` or `pt-BR`.",
                   field);
-    if (auto good = check_short(text, field + "." + tag, longest); !good) return good;
+    STRATA_TRY(check_short(text, field + "." + tag, longest));
   }
   return {};
 }
 
 Result<void> check_column(Column& column) {
   if (column.name.empty())
-    return fail(422, "Bad name",
+    return fail(ErrorCode::invalid, "Bad name",
                 "A column has a name of 1 to " + std::to_string(kLongestColumnText) + " bytes.",
                 "name");
-  if (auto good = check_short(column.name, "name"); !good) return good;
-  if (auto good = check_short(column.unit, "unit"); !good) return good;
-  if (auto good = check_short(column.comment, "comment"); !good) return good;
-  if (auto good = check_labels(column.labels); !good) return good;
-  if (auto good = check_choices(column); !good) return good;
-  if (auto good = check_limits(column); !good) return good;
-  if (auto good = check_kind(column); !good) return good;
+  STRATA_TRY(check_short(column.name, "name"));
+  STRATA_TRY(check_short(column.unit, "unit"));
+  STRATA_TRY(check_short(column.comment, "comment"));
+  STRATA_TRY(check_labels(column.labels));
+  STRATA_TRY(check_choices(column));
+  STRATA_TRY(check_limits(column));
+  STRATA_TRY(check_kind(column));
   // Who writes records must be able to.
   if (column.required && column.visibility == Visibility::curators &&
       column.default_value.is_null())
     return fail(
-        422, "Required and private",
+        ErrorCode::invalid, "Required and private",
         "Who does not see the column could make no records: give it a default, or let it be empty.",
         "visibility");
   if (column.default_value.is_null()) return {};
-  auto value = check_value(column, column.default_value, "default");
-  if (!value) return tl::unexpected(value.error());
-  column.default_value = std::move(*value);
+  auto value = STRATA_TRY(check_value(column, column.default_value, "default"));
+  column.default_value = std::move(value);
   return {};
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/labels.h"
-#include "core/problem.h"
 #include "core/visibility.h"
 
 namespace strata {
@@ -98,7 +98,7 @@ struct Record {
 };
 
 // What a column says of itself fits together: choices, target and limits belong to its kind, the
-// default is a value of it. Puts the default into its canonical form. The field of a Problem is the
+// default is a value of it. Puts the default into its canonical form. The field of an Error is the
 // column's own ("choices", "default").
 Result<void> check_column(Column& column);
 Result<void> check_labels(const Labels& labels, const std::string& field = "labels");

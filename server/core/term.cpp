@@ -38,16 +38,17 @@ std::optional<std::string> clean_color(std::string_view text) {
 
 Result<void> check_term(Term& term) {
   if (term.code.empty() || term.code.size() > kLongestCode)
-    return fail(422, "Bad code",
+    return fail(ErrorCode::invalid, "Bad code",
                 "A term has a code of 1 to " + std::to_string(kLongestCode) + " bytes.", "code");
   if (!term.color.empty()) {
     const auto color = clean_color(term.color);
-    if (!color) return fail(422, "Bad colour", "A colour is like #c04020.", "color");
+    if (!color) return fail(ErrorCode::invalid, "Bad colour", "A colour is like #c04020.", "color");
     term.color = *color;
   }
   if (!term.pattern.empty() && std::find(std::begin(kTermPatterns), std::end(kTermPatterns),
                                          term.pattern) == std::end(kTermPatterns))
-    return fail(422, "Bad pattern", "A pattern is solid, hatch, dots or outline.", "pattern");
+    return fail(ErrorCode::invalid, "Bad pattern", "A pattern is solid, hatch, dots or outline.",
+                "pattern");
   return {};
 }
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/table.h"
 
 namespace strata {
@@ -37,7 +37,7 @@ struct TermMistake {
   int line = 0;  // 0: nothing there has lines
   std::string code;
   std::string column;
-  Problem problem;
+  Error problem;
 };
 
 // Terms as a text has them.

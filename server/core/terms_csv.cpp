@@ -48,20 +48,21 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, TermList& list) {
     auto head = head_of(cell);
     if (!head)
       return fail(
-          422, "Unknown column",
+          ErrorCode::invalid, "Unknown column",
           "\"" + cell +
               "\" is none of code, parent, label, label-es (or another language), definition, uri, color, pattern.",
           "body");
     if (!list.columns.insert(head->slug).second)
-      return fail(422, "Column named twice",
+      return fail(ErrorCode::invalid, "Column named twice",
                   "\"" + head->slug + "\" stands twice in the first row.", "body");
     languages += !head->language.empty();
     heads.push_back(std::move(*head));
   }
   if (!list.columns.contains("code"))
-    return fail(422, "No codes", "The first row must name the column `code`.", "body");
+    return fail(ErrorCode::invalid, "No codes", "The first row must name the column `code`.",
+                "body");
   if (languages > kMostTermLanguages)
-    return fail(422, "Too many languages",
+    return fail(ErrorCode::invalid, "Too many languages",
                 "A list of terms has labels in at most " + std::to_string(kMostTermLanguages) +
                     " languages.",
                 "body");
@@ -71,21 +72,20 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, TermList& list) {
 }  // namespace
 
 Result<TermList> read_terms_csv(std::string_view text) {
-  auto csv = parse_csv(text, {kMostTerms + 1, std::size(kParts) + kMostTermLanguages + 1});
-  if (!csv) return tl::unexpected(csv.error());
-  if (csv->rows.empty())
-    return fail(422, "Empty table", "The first row names the columns.", "body");
+  auto csv =
+      STRATA_TRY(parse_csv(text, {kMostTerms + 1, std::size(kParts) + kMostTermLanguages + 1}));
+  if (csv.rows.empty())
+    return fail(ErrorCode::invalid, "Empty table", "The first row names the columns.", "body");
   TermList list;
-  auto heads = read_heads(csv->rows.front(), list);
-  if (!heads) return tl::unexpected(heads.error());
-  list.rows = csv->rows.size() - 1;
+  auto heads = STRATA_TRY(read_heads(csv.rows.front(), list));
+  list.rows = csv.rows.size() - 1;
   std::map<std::string, int> lines;
-  for (std::size_t r = 1; r < csv->rows.size(); ++r) {
-    const CsvRow& row = csv->rows[r];
+  for (std::size_t r = 1; r < csv.rows.size(); ++r) {
+    const CsvRow& row = csv.rows[r];
     Term term;
     term.line = row.line;
-    for (std::size_t c = 0; c < std::min(row.cells.size(), heads->size()); ++c) {
-      const Head& head = (*heads)[c];
+    for (std::size_t c = 0; c < std::min(row.cells.size(), heads.size()); ++c) {
+      const Head& head = heads[c];
       std::string value = unguard_formula(trimmed(row.cells[c]));
       if (head.part)
         term.*head.part = std::move(value);
@@ -93,15 +93,15 @@ Result<TermList> read_terms_csv(std::string_view text) {
         term.labels[head.language] = std::move(value);
     }
     Result<void> good;
-    if (row.cells.size() != heads->size())
-      good = fail(422, "Cells missing or too many",
+    if (row.cells.size() != heads.size())
+      good = fail(ErrorCode::invalid, "Cells missing or too many",
                   "The row has " + std::to_string(row.cells.size()) + " cells, the first row " +
-                      std::to_string(heads->size()) + ".");
+                      std::to_string(heads.size()) + ".");
     if (good) good = check_term(term);
     if (good)
       if (const auto [first, is_new] = lines.emplace(term.code, row.line); !is_new)
         good =
-            fail(422, "Code twice",
+            fail(ErrorCode::invalid, "Code twice",
                  "\"" + term.code + "\" stands in line " + std::to_string(first->second) + ", too.",
                  "code");
     if (good)

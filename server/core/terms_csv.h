@@ -9,7 +9,7 @@
 namespace strata {
 
 // CSV with the columns code, parent, label, label-es (or another language), definition, uri, color,
-// pattern, in any order; only `code` must be there. Parents are named by their codes. A Problem
+// pattern, in any order; only `code` must be there. Parents are named by their codes. An Error
 // where the text is no CSV or its first row cannot be understood.
 Result<TermList> read_terms_csv(std::string_view text);
 

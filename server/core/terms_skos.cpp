@@ -129,17 +129,17 @@ std::string iri_text(std::string_view text) {
 Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
   Concepts read;
   bool too_much = false;
-  auto done = read_rdf(text, syntax,
-                       [&](const Triple& triple) { return !(too_much = !read.take(triple)); });
-  if (!done) return tl::unexpected(done.error());
+  STRATA_TRY(read_rdf(text, syntax,
+                      [&](const Triple& triple) { return !(too_much = !read.take(triple)); }));
   auto& concepts = read.all();
   std::erase_if(concepts, [](const auto& entry) {
     return !entry.second.is_described || entry.second.is_other;
   });
   if (too_much || concepts.size() > kMostTerms)
-    return fail(413, "Too many terms",
+    return fail(ErrorCode::too_large, "Too many terms",
                 "A list takes at most " + std::to_string(kMostTerms) + " terms.", "body");
-  if (concepts.empty()) return fail(422, "No terms", "There is no skos:Concept in it.", "body");
+  if (concepts.empty())
+    return fail(ErrorCode::invalid, "No terms", "There is no skos:Concept in it.", "body");
 
   TermList list;
   list.rows = concepts.size();
@@ -188,7 +188,7 @@ Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax) {
       list.mistakes.push_back({0, term.code, good.error().field, good.error()});
   }
   if (languages.size() > kMostTermLanguages)
-    return fail(422, "Too many languages",
+    return fail(ErrorCode::invalid, "Too many languages",
                 "A list of terms has labels in at most " + std::to_string(kMostTermLanguages) +
                     " languages.",
                 "body");

@@ -13,7 +13,7 @@ namespace strata {
 // the IRI; codes that are met twice get a number. `label` is the preferred label without a
 // language, otherwise the English one, otherwise the first. Of several broader concepts the first
 // by name is kept, and of several preferred labels of one language: the others are counted in
-// `left_out`. 422: it cannot be read, there is no concept in it, or one has more than `limits`
+// `left_out`. invalid: it cannot be read, there is no concept in it, or one has more than `limits`
 // take.
 Result<TermList> read_terms_skos(std::string_view text, RdfSyntax syntax);
 

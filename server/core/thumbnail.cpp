@@ -72,20 +72,18 @@ Picture turned(Picture picture, int orientation) {
 
 Result<std::vector<std::uint8_t>> make_thumbnail(std::span<const std::uint8_t> bytes,
                                                  int largest_side, ThumbnailLimits limits) {
-  const auto info = inspect_picture(bytes);
-  if (!info) return tl::unexpected(info.error());
-  const bool is_jpeg = info->format == PictureFormat::jpeg;
+  const auto info = STRATA_TRY(inspect_picture(bytes));
+  const bool is_jpeg = info.format == PictureFormat::jpeg;
   const JpegFacts facts = is_jpeg ? read_jpeg_facts(bytes) : JpegFacts();
-  const std::int64_t pixels = std::int64_t{info->width} * info->height;
+  const std::int64_t pixels = std::int64_t{info.width} * info.height;
   const std::int64_t most = is_jpeg && !facts.progressive ? limits.coarse : limits.whole;
   if (pixels > most)
-    return fail(422, "Picture too large",
+    return fail(ErrorCode::invalid, "Picture too large",
                 "The picture has " + std::to_string(pixels / 1'000'000) +
                     " million pixels; small ones are made of at most " +
                     std::to_string(most / 1'000'000) + " million.");
-  auto picture = decode_coarse(bytes, largest_side);
-  if (!picture) return tl::unexpected(picture.error());
-  const Picture small = turned(shrunk(*picture, largest_side), facts.orientation);
+  auto picture = STRATA_TRY(decode_coarse(bytes, largest_side));
+  const Picture small = turned(shrunk(picture, largest_side), facts.orientation);
   return encode_jpeg(small.rgba, small.width, small.height, {kQuality, false});
 }
 

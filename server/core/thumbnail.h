@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata {
 
@@ -16,8 +16,8 @@ struct ThumbnailLimits {
 };
 
 // A JPEG of at most `largest_side` pixels a side of a picture, turned as its Exif data says,
-// transparent places white. Every pixel is the mean of those it stands for. 415: neither of the
-// formats; 422: damaged, or too many pixels.
+// transparent places white. Every pixel is the mean of those it stands for. unsupported: neither of
+// the formats; invalid: damaged, or too many pixels.
 Result<std::vector<std::uint8_t>> make_thumbnail(std::span<const std::uint8_t> picture,
                                                  int largest_side, ThumbnailLimits limits = {});
 

@@ -55,9 +55,10 @@ std::optional<ValueType> parse_value_type(std::string_view name) {
 Result<std::uint32_t> encode_value(ValueType type, double value) {
   const Traits& t = traits(type);
   if (!std::isfinite(value))
-    return fail(422, "Value not finite", "A value must be a finite number.", "value");
+    return fail(ErrorCode::invalid, "Value not finite", "A value must be a finite number.",
+                "value");
   if (value < t.lowest || value > t.highest)
-    return fail(422, "Value out of range",
+    return fail(ErrorCode::invalid, "Value out of range",
                 "This layer holds values of type " + std::string(t.name) + ", from " +
                     std::to_string(t.lowest) + " to " + std::to_string(t.highest) + "." +
                     (widens_to(type, ValueType::u32) && value > 0
@@ -65,7 +66,7 @@ Result<std::uint32_t> encode_value(ValueType type, double value) {
                          : ""),
                 "value");
   if (!t.floating && value != std::floor(value))
-    return fail(422, "Value not a whole number",
+    return fail(ErrorCode::invalid, "Value not a whole number",
                 "This layer holds whole numbers (" + std::string(t.name) +
                     "); give one without a fraction.",
                 "value");

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata {
 

@@ -15,7 +15,7 @@ class Scanner {
       at_ = std::min(text_.find('<', at_), text_.size());
       if (skip("<!--", "-->") || skip("<![CDATA[", "]]>") || skip("<?", "?>")) continue;
       if (rest().starts_with("<!")) {
-        if (auto good = declarations(); !good) return good;
+        STRATA_TRY(declarations());
         continue;
       }
       const bool ends = rest().starts_with("</");
@@ -23,7 +23,7 @@ class Scanner {
       const bool is_empty = tag();
       if (is_tag) depth += ends ? -1 : is_empty ? 0 : 1;
       if (depth > kDeepestXml)
-        return fail(422, "Nested too deep",
+        return fail(ErrorCode::invalid, "Nested too deep",
                     "its elements are nested more than " + std::to_string(kDeepestXml) + " deep",
                     "body");
     }
@@ -65,7 +65,7 @@ class Scanner {
       const char c = text_[at_];
       if (skip("<!--", "-->") || skip("<?", "?>")) continue;
       if (rest().starts_with("<!ENTITY")) {
-        if (auto good = entity(); !good) return good;
+        STRATA_TRY(entity());
       } else if (c == '<') {
         tag();
       } else if (c == '"' || c == '\'') {
@@ -93,7 +93,8 @@ class Scanner {
                           declared.find("SYSTEM") == std::string_view::npos &&
                           declared.find("PUBLIC") == std::string_view::npos;
     if (is_plain) return {};
-    return fail(422, "Entity not taken", "it has an entity that is more than plain text", "body");
+    return fail(ErrorCode::invalid, "Entity not taken",
+                "it has an entity that is more than plain text", "body");
   }
 
   const std::string_view text_;

@@ -51,8 +51,8 @@ std::vector<std::uint8_t> drawing_jpeg(const Picture& drawing) {
   return encode_jpeg(drawing.rgba, drawing.width, drawing.height, kPrint);
 }
 
-tl::unexpected<Problem> unwritable() {
-  return fail(507, "Figure not written",
+tl::unexpected<Error> unwritable() {
+  return fail(ErrorCode::storage_full, "Figure not written",
               "The server's disk does not take the file. Free some of it, or ask for fewer dpi.");
 }
 

@@ -19,6 +19,6 @@ Result<void> write_pdf(const Sheet& sheet, const Picture& drawing, const Documen
 
 // The drawing within SVG and PDF.
 std::vector<std::uint8_t> drawing_jpeg(const Picture& drawing);
-tl::unexpected<Problem> unwritable();  // 507
+tl::unexpected<Error> unwritable();  // storage_full
 
 }  // namespace strata::figure

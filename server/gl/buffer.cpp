@@ -16,14 +16,14 @@ Result<Buffer> Buffer::create(std::size_t bytes, Use use, std::string_view label
   const GLbitfield flags =
       use == Use::read_back ? kMapping | GL_CLIENT_STORAGE_BIT : GL_DYNAMIC_STORAGE_BIT;
   glNamedBufferStorage(id, static_cast<GLsizeiptr>(bytes), nullptr, flags);
-  if (auto fits = check_memory(label, bytes); !fits) return tl::unexpected(fits.error());
+  STRATA_TRY(check_memory(label, bytes));
   buffer.object_.label(label);
   buffer.size_ = bytes;
   if (use == Use::read_back) {
     buffer.mapped_ = static_cast<const std::byte*>(
         glMapNamedBufferRange(id, 0, static_cast<GLsizeiptr>(bytes), kMapping));
     if (!buffer.mapped_) {
-      return fail(503, "GPU out of memory",
+      return fail(ErrorCode::out_of_memory, "GPU out of memory",
                   "The driver could not map the buffer '" + std::string(label) + "'.");
     }
   }

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "gl/object.h"
 
 namespace strata::gl {
@@ -19,7 +19,7 @@ class Buffer {
   };
 
   Buffer() = default;
-  // A Problem 503 when the driver has no memory for it.
+  // An Error `out_of_memory` when the driver has no memory for it.
   static Result<Buffer> create(std::size_t bytes, Use use, std::string_view label);
 
   GLuint id() const { return object_.id(); }

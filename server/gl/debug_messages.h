@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::gl {
 
@@ -20,7 +20,8 @@ class DebugMessages {
   std::atomic<int> errors_{0};
 };
 
-// After an allocation: a Problem 503 that names `what` when the driver had no memory for `bytes`.
+// After an allocation: an Error `out_of_memory` that names `what` when the driver had no memory for
+// `bytes`.
 Result<void> check_memory(std::string_view what, std::size_t bytes);
 
 }  // namespace strata::gl

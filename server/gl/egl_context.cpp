@@ -128,7 +128,7 @@ Result<EglContext> EglContext::create(const EglOptions& options) {
     return context;
   }
   return fail(
-      503, "No GPU context",
+      ErrorCode::unavailable, "No GPU context",
       "No OpenGL 4.5 context could be made. Tried: " +
           (tried.empty() ? "no EGL platform was found" : tried) +
           ". Install a driver (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri), and let this user open "

@@ -26,7 +26,7 @@ Result<Framebuffer> Framebuffer::create(std::initializer_list<const Texture*> co
   }
   const GLenum status = glCheckNamedFramebufferStatus(id, GL_FRAMEBUFFER);
   if (status == GL_FRAMEBUFFER_COMPLETE) return framebuffer;
-  return fail(503, "GPU cannot draw",
+  return fail(ErrorCode::unavailable, "GPU cannot draw",
               "The driver does not take the framebuffer '" + std::string(label) + "' (status " +
                   std::to_string(status) + "). Update the graphics driver.");
 }

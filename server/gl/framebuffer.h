@@ -3,7 +3,7 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "gl/object.h"
 #include "gl/texture.h"
 
@@ -13,7 +13,7 @@ namespace strata::gl {
 class Framebuffer {
  public:
   Framebuffer() = default;
-  // `depth` may be null. A Problem 503 when the driver cannot draw into these together.
+  // `depth` may be null. An Error `unavailable` when the driver cannot draw into these together.
   static Result<Framebuffer> create(std::initializer_list<const Texture*> colors,
                                     const Texture* depth, std::string_view label);
 

@@ -33,17 +33,17 @@ Result<Shader> compile(const std::filesystem::path& directory, const std::string
                        const std::vector<std::string>& defines) {
   const GLenum stage = stage_of(file);
   if (stage == GL_NONE)
-    return fail(500, kTitle, file + ": the ending must be .vert, .frag or .comp.");
-  auto text = load_shader(directory, file, defines);
-  if (!text) return tl::unexpected(text.error());
+    return fail(ErrorCode::internal, kTitle, file + ": the ending must be .vert, .frag or .comp.");
+  auto text = STRATA_TRY(load_shader(directory, file, defines));
   Shader shader(glCreateShader(stage));
-  const char* source = text->c_str();
+  const char* source = text.c_str();
   glShaderSource(shader.id(), 1, &source, nullptr);
   glCompileShader(shader.id());
   GLint compiled = GL_FALSE;
   glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &compiled);
   if (!compiled)
-    return fail(500, kTitle, file + ": " + log_of(shader.id(), glGetShaderiv, glGetShaderInfoLog));
+    return fail(ErrorCode::internal, kTitle,
+                file + ": " + log_of(shader.id(), glGetShaderiv, glGetShaderInfoLog));
   shader.label(file);
   return shader;
 }
@@ -58,17 +58,16 @@ Result<Program> Program::load(const std::filesystem::path& directory,
   std::vector<Shader> shaders;
   std::string name;
   for (const std::string& file : files) {
-    auto shader = compile(directory, file, defines);
-    if (!shader) return tl::unexpected(shader.error());
-    glAttachShader(program.id(), shader->id());
-    shaders.push_back(std::move(*shader));
+    auto shader = STRATA_TRY(compile(directory, file, defines));
+    glAttachShader(program.id(), shader.id());
+    shaders.push_back(std::move(shader));
     name += (name.empty() ? "" : "+") + file;
   }
   glLinkProgram(program.id());
   GLint linked = GL_FALSE;
   glGetProgramiv(program.id(), GL_LINK_STATUS, &linked);
   if (!linked)
-    return fail(500, kTitle,
+    return fail(ErrorCode::internal, kTitle,
                 name + ": " + log_of(program.id(), glGetProgramiv, glGetProgramInfoLog));
   for (const Shader& shader : shaders) glDetachShader(program.id(), shader.id());
   program.object_.label(name);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "gl/object.h"
 
 namespace strata::gl {

@@ -50,9 +50,8 @@ Result<Readback> ReadbackPool::begin(std::size_t bytes) {
     readback.buffer_ = std::move(*fitting);
     free_.erase(fitting);
   } else {
-    auto buffer = Buffer::create(capacity, Buffer::Use::read_back, "readback");
-    if (!buffer) return tl::unexpected(buffer.error());
-    readback.buffer_ = std::move(*buffer);
+    auto buffer = STRATA_TRY(Buffer::create(capacity, Buffer::Use::read_back, "readback"));
+    readback.buffer_ = std::move(buffer);
   }
   readback.pool_ = this;
   return readback;

@@ -13,11 +13,11 @@ constexpr const char* kTitle = "Shader cannot be built";
 Result<void> append(const std::filesystem::path& directory, const std::string& file,
                     std::set<std::string>& seen, std::string& text) {
   if (file.find("..") != std::string::npos)
-    return fail(500, kTitle, "'" + file + "' leaves the shader folder.");
+    return fail(ErrorCode::internal, kTitle, "'" + file + "' leaves the shader folder.");
   std::ifstream stream(directory / file);
   if (!stream) {
     return fail(
-        500, kTitle,
+        ErrorCode::internal, kTitle,
         "'" + (directory / file).string() + "' cannot be read. Is the shader folder right?");
   }
   std::string line;
@@ -30,11 +30,12 @@ Result<void> append(const std::filesystem::path& directory, const std::string& f
     }
     const auto end = line.find('"', kInclude.size());
     if (end == std::string::npos)
-      return fail(500, kTitle, file + ": unfinished #include in line " + std::to_string(number));
+      return fail(ErrorCode::internal, kTitle,
+                  file + ": unfinished #include in line " + std::to_string(number));
     const std::string name = line.substr(kInclude.size(), end - kInclude.size());
     if (seen.insert(name).second) {
       text += "#line 1 " + std::to_string(seen.size()) + "\n";
-      if (auto included = append(directory, name, seen, text); !included) return included;
+      STRATA_TRY(append(directory, name, seen, text));
     }
     text += "#line " + std::to_string(number + 1) + " 0\n";
   }
@@ -47,10 +48,9 @@ Result<std::string> load_shader(const std::filesystem::path& directory, const st
                                 const std::vector<std::string>& defines) {
   std::string text;
   std::set<std::string> seen;
-  if (auto loaded = append(directory, file, seen, text); !loaded)
-    return tl::unexpected(loaded.error());
+  STRATA_TRY(append(directory, file, seen, text));
   if (!text.starts_with("#version"))
-    return fail(500, kTitle, file + ": the first line must be #version.");
+    return fail(ErrorCode::internal, kTitle, file + ": the first line must be #version.");
   std::string head;
   for (const std::string& define : defines) head += "#define " + define + "\n";
   const auto after_version = text.find('\n') + 1;

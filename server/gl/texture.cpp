@@ -24,10 +24,9 @@ Result<Texture> Texture::create_2d(GLenum format, int width, int height, std::st
 
 Result<Texture> Texture::create_mipmapped(GLenum format, int width, int height, int levels,
                                           std::string_view label) {
-  auto texture = make_2d(format, width, height, levels, label);
-  if (!texture) return texture;
-  glTextureParameteri(texture->id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glTextureParameteri(texture->id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  auto texture = STRATA_TRY(make_2d(format, width, height, levels, label));
+  glTextureParameteri(texture.id(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTextureParameteri(texture.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   return texture;
 }
 
@@ -61,7 +60,7 @@ Result<Texture> Texture::create_array(GLenum format, int width, int height, int 
 }
 
 Result<Texture> Texture::finish(Texture texture, std::string_view label) {
-  if (auto fits = check_memory(label, texture.bytes()); !fits) return tl::unexpected(fits.error());
+  STRATA_TRY(check_memory(label, texture.bytes()));
   const GLuint id = texture.id();
   glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_NEAREST);

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "gl/object.h"
 
 namespace strata::gl {
@@ -13,7 +13,7 @@ namespace strata::gl {
 class Texture {
  public:
   Texture() = default;
-  // A Problem 503 when the driver has no memory for it.
+  // An Error `out_of_memory` when the driver has no memory for it.
   static Result<Texture> create_2d(GLenum format, int width, int height, std::string_view label);
   static Result<Texture> create_mipmapped(GLenum format, int width, int height, int levels,
                                           std::string_view label);

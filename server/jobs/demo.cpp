@@ -54,7 +54,7 @@ Layer cracks_layer() {
 
 Result<Project> demo_project(store::Store& store) {
   auto project = store.project(kProject);
-  if (project || project.error().status != 404) return project;
+  if (project || project.error().code != ErrorCode::not_found) return project;
   Project fresh;
   fresh.name = "Demo";
   fresh.slug = kProject;
@@ -68,9 +68,8 @@ Result<Model> create_pot(store::Store& store, const Project& project, double det
   progress.report(0, "Making the pot");
   const mesh::TriangleMesh pot = mesh::make_demo_pot(detail);
   progress.begin_stage(0.05, 0.5);
-  auto atlas = mesh::make_atlas(pot, kResolution, progress);
-  if (!atlas) return tl::unexpected(atlas.error());
-  const mesh::Geometry geometry = mesh::build_geometry(pot, *atlas);
+  auto atlas = STRATA_TRY(mesh::make_atlas(pot, kResolution, progress));
+  const mesh::Geometry geometry = mesh::build_geometry(pot, atlas);
 
   store::Store::NewModel fresh;
   Model& model = fresh.model;
@@ -80,29 +79,27 @@ Result<Model> create_pot(store::Store& store, const Project& project, double det
   model.unit = Unit::mm;
   model.unit_assumed = false;
   model.scale_verified = true;
-  model.atlas = atlas->report;
+  model.atlas = atlas.report;
   model.default_resolution = kResolution;
   model.creator = kAuthor;
   model.method = "Made by formula, not scanned";
   progress.begin_stage(0.5, 0.6);
   progress.report(0, "Saving the pot");
-  if (auto put = put_geometry(geometry, progress, fresh); !put) return tl::unexpected(put.error());
+  STRATA_TRY(put_geometry(geometry, progress, fresh));
   return store.create_model(fresh, [&progress] { return progress.cancelled(); });
 }
 
 Result<Model> find_or_create_pot(store::Store& store, double detail, Progress& progress) {
-  const auto project = demo_project(store);
-  if (!project) return tl::unexpected(project.error());
-  const auto models = store.models(project->id);
-  if (!models) return tl::unexpected(models.error());
-  const auto pot = std::find_if(models->begin(), models->end(),
+  const auto project = STRATA_TRY(demo_project(store));
+  const auto models = STRATA_TRY(store.models(project.id));
+  const auto pot = std::find_if(models.begin(), models.end(),
                                 [](const Model& model) { return model.name == kModel; });
-  return pot != models->end() ? *pot : create_pot(store, *project, detail, progress);
+  return pot != models.end() ? *pot : create_pot(store, project, detail, progress);
 }
 
 Result<Layer> find_or_create_layer(store::Store& store, const Model& model, Layer wanted) {
   auto layer = store.layer(model.id, wanted.slug, Role::owner);
-  if (layer || layer.error().status != 404) return layer;
+  if (layer || layer.error().code != ErrorCode::not_found) return layer;
   wanted.model_id = model.id;
   wanted.type = ValueType::u8;
   wanted.resolution = kResolution;
@@ -154,11 +151,10 @@ store::JournalEntry fill_by_rule(const mesh::SurfaceMap& map, const Layer& layer
 
 Result<void> write_entry(store::Store& store, const Model& model, const Layer& layer,
                          const char* rule, store::JournalEntry entry) {
-  const auto last = store.last_sequence(model.id);
-  if (!last) return tl::unexpected(last.error());
+  const auto last = STRATA_TRY(store.last_sequence(model.id));
   entry.model_id = model.id;
   entry.layer_id = layer.id;
-  entry.sequence = *last + 1;
+  entry.sequence = last + 1;
   entry.id = entry.stroke = random_uuid();
   entry.user = kAuthor;
   entry.op = "fill";
@@ -169,59 +165,52 @@ Result<void> write_entry(store::Store& store, const Model& model, const Layer& l
   store::JournalWriter writer(store, {});
   if (!writer.submit(std::move(entry),
                      [&saved](Result<void> result) { saved.set_value(std::move(result)); }))
-    return fail(503, "Database unavailable", "The demo's layers were not saved. Try again.");
+    return fail(ErrorCode::unavailable, "Database unavailable",
+                "The demo's layers were not saved. Try again.");
   return saved.get_future().get();
 }
 
 }  // namespace
 
 Result<Model> make_demo(store::Store& store, Progress& progress, double detail) {
-  const auto pot = find_or_create_pot(store, detail, progress);
-  if (!pot) return pot;
-  const auto pieces = find_or_create_layer(store, *pot, sherds_layer());
-  if (!pieces) return tl::unexpected(pieces.error());
-  const auto cracks = find_or_create_layer(store, *pot, cracks_layer());
-  if (!cracks) return tl::unexpected(cracks.error());
+  const auto pot = STRATA_TRY(find_or_create_pot(store, detail, progress));
+  const auto pieces = STRATA_TRY(find_or_create_layer(store, pot, sherds_layer()));
+  const auto cracks = STRATA_TRY(find_or_create_layer(store, pot, cracks_layer()));
   // A layer that someone has painted on, or emptied, stays as it is.
-  if (pieces->sequence == 0 || cracks->sequence == 0) {
-    const auto stored = store.geometry(pot->id);
-    if (!stored) return tl::unexpected(stored.error());
-    const auto geometry = mesh::decode_geometry(*stored);
-    if (!geometry) return tl::unexpected(geometry.error());
+  if (pieces.sequence == 0 || cracks.sequence == 0) {
+    const auto stored = STRATA_TRY(store.geometry(pot.id));
+    const auto geometry = STRATA_TRY(mesh::decode_geometry(stored));
     progress.begin_stage(0.6, 0.75);
     progress.report(0, "Mapping the surface");
-    const auto map = mesh::bake_surface_map(*geometry, kResolution, progress);
-    if (!map) return tl::unexpected(map.error());
+    const auto map = STRATA_TRY(mesh::bake_surface_map(geometry, kResolution, progress));
 
     std::vector<glm::vec3> surface;
-    for (const auto& vertex : geometry->vertices) surface.push_back(vertex.position);
+    for (const auto& vertex : geometry.vertices) surface.push_back(vertex.position);
     const DemoRules rules(surface);
     progress.begin_stage(0.75, 1);
     progress.report(0, "Painting the demo's layers");
-    if (pieces->sequence == 0) {
-      auto entry = fill_by_rule(*map, *pieces, pot->metres(),
+    if (pieces.sequence == 0) {
+      auto entry = fill_by_rule(map, pieces, pot.metres(),
                                 [&](const glm::vec3& p) { return rules.at(p).sherd; });
       if (progress.cancelled()) return cancelled_problem();
-      if (auto saved =
-              write_entry(store, *pot, *pieces, "sherds of the demo pot", std::move(entry));
+      if (auto saved = write_entry(store, pot, pieces, "sherds of the demo pot", std::move(entry));
           !saved)
         return tl::unexpected(saved.error());
     }
     progress.report(0.5, "Painting the demo's layers");
-    if (cracks->sequence == 0) {
-      auto entry = fill_by_rule(*map, *cracks, pot->metres(), [&](const glm::vec3& p) {
+    if (cracks.sequence == 0) {
+      auto entry = fill_by_rule(map, cracks, pot.metres(), [&](const glm::vec3& p) {
         return std::uint8_t(rules.at(p).crack);
       });
       if (progress.cancelled()) return cancelled_problem();
-      if (auto saved =
-              write_entry(store, *pot, *cracks, "cracks of the demo pot", std::move(entry));
+      if (auto saved = write_entry(store, pot, cracks, "cracks of the demo pot", std::move(entry));
           !saved)
         return tl::unexpected(saved.error());
     }
   }
   progress.begin_stage(0, 1);
   progress.report(1, "Done");
-  return store.model(std::to_string(pot->id));
+  return store.model(std::to_string(pot.id));
 }
 
 }  // namespace strata::jobs

@@ -65,7 +65,7 @@ Result<void> refuse_faults(const std::vector<Repair>& repairs) {
     if (mesh::is_fault(repair))
       list += (list.empty() ? "" : ", ") + repair.what + " (" + std::to_string(repair.count) + ")";
   if (list.empty()) return {};
-  return fail(422, "File needs repair",
+  return fail(ErrorCode::invalid, "File needs repair",
               "It would be imported only after this: " + list +
                   ". Mend the file, or import it without `strict`.",
               "strict");
@@ -79,7 +79,7 @@ Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair
     progress.report(0, "Checking the texture coordinates");
     auto kept = mesh::keep_uvs(mesh, kLowestResolution, progress);
     if (kept) repairs.insert(repairs.end(), kept->repairs.begin(), kept->repairs.end());
-    if (kept || kept.error().status == 499) return kept;
+    if (kept || kept.error().code == ErrorCode::cancelled) return kept;
     repairs.push_back(
         {"texture coordinates not kept: " + kept.error().detail, mesh.triangle_count()});
   }
@@ -91,40 +91,37 @@ Result<mesh::Atlas> atlas_for(const mesh::TriangleMesh& mesh, std::vector<Repair
 
 Result<void> check(const ImportRequest& request) {
   if (request.name.size() > kLongestName)
-    return fail(422, "Name too long", "A name has at most 200 bytes.", "name");
+    return fail(ErrorCode::invalid, "Name too long", "A name has at most 200 bytes.", "name");
   if (!request.up.empty() && !is_up(request.up))
-    return fail(422, "Unknown direction", "`up` is one of x, y, z, -x, -y and -z.", "up");
+    return fail(ErrorCode::invalid, "Unknown direction", "`up` is one of x, y, z, -x, -y and -z.",
+                "up");
   if (!request.crs.empty() && !is_crs(request.crs))
-    return fail(422, "Unknown coordinate system",
+    return fail(ErrorCode::invalid, "Unknown coordinate system",
                 "A coordinate system is given as EPSG:n, for example EPSG:25830.", "crs");
   if (!(request.weld_distance >= 0 && request.weld_distance < 1e15))
-    return fail(422, "Distance not usable", "The distance to weld within is a number of 0 or more.",
-                "weld");
+    return fail(ErrorCode::invalid, "Distance not usable",
+                "The distance to weld within is a number of 0 or more.", "weld");
   const int resolution = request.resolution;
   if (resolution != 0 && (resolution < kLowestResolution || resolution > kHighestResolution ||
                           !std::has_single_bit(unsigned(resolution))))
-    return fail(422, "Resolution not usable",
+    return fail(ErrorCode::invalid, "Resolution not usable",
                 "The resolution of layers is 2048, 4096, 8192 or 16384.", "resolution");
-  if (auto scan = mesh::pick_scan(names_of(request.files)); !scan)
-    return tl::unexpected(scan.error());
+  STRATA_TRY(mesh::pick_scan(names_of(request.files)));
   return {};
 }
 
 Result<Model> import_model(store::Store& store, const ImportRequest& request, Progress& progress,
                            const store::FirstAnswer<Model>& answer, MemoryLedger* memory) {
-  if (auto good = check(request); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check(request));
   const ImportFile& scan = request.files[*mesh::pick_scan(names_of(request.files))];
-  const auto project = store.project(request.project);
-  if (!project) return tl::unexpected(project.error());
+  const auto project = STRATA_TRY(store.project(request.project));
 
   progress.begin_stage(0, kRead);
   progress.report(0, "Reading the file");
-  auto loaded = mesh::load_mesh(request.files, progress, {request.weld_distance});
-  if (!loaded) return tl::unexpected(loaded.error());
-  if (request.strict)
-    if (auto good = refuse_faults(loaded->repairs); !good) return tl::unexpected(good.error());
+  auto loaded = STRATA_TRY(mesh::load_mesh(request.files, progress, {request.weld_distance}));
+  if (request.strict) STRATA_TRY(refuse_faults(loaded.repairs));
 
-  ScaleProposal proposal = mesh::propose_scale(*loaded, request.crs);
+  ScaleProposal proposal = mesh::propose_scale(loaded, request.crs);
   if (request.unit) {
     proposal.unit = *request.unit;
     proposal.unit_reason = ScaleReason::given;
@@ -138,32 +135,31 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   if (progress.cancelled()) return cancelled_problem();
 
   progress.begin_stage(kRead, kUnfolded);
-  auto atlas = atlas_for(loaded->mesh, loaded->repairs, progress);
-  if (!atlas) return tl::unexpected(atlas.error());
+  auto atlas = STRATA_TRY(atlas_for(loaded.mesh, loaded.repairs, progress));
 
   progress.begin_stage(kUnfolded, kPainted);
   store::Store::NewModel fresh;
-  auto base_color = mesh::bake_base_color(loaded->mesh, *atlas, loaded->repairs, progress, memory);
-  if (!base_color) return tl::unexpected(base_color.error());
-  if (auto& color = *base_color)
+  auto base_color =
+      STRATA_TRY(mesh::bake_base_color(loaded.mesh, atlas, loaded.repairs, progress, memory));
+  if (auto& color = base_color)
     fresh.looks.push_back({"Base colour", std::string(media_type(color->format)),
                            std::move(color->bytes), color->width, color->height});
 
   progress.begin_stage(kPainted, kBuilt);
   progress.report(0, "Building the model");
   if (progress.cancelled()) return cancelled_problem();
-  const mesh::Geometry geometry = mesh::build_geometry(loaded->mesh, *atlas);
-  loaded->mesh = {};  // it is in the geometry now; large scans need the memory
-  atlas->corner_uvs = {};
+  const mesh::Geometry geometry = mesh::build_geometry(loaded.mesh, atlas);
+  loaded.mesh = {};  // it is in the geometry now; large scans need the memory
+  atlas.corner_uvs = {};
 
   Model& model = fresh.model;
-  model.project_id = project->id;
+  model.project_id = project.id;
   model.name = request.name.empty() ? stem(scan.filename) : request.name;
   model.slug = make_slug(model.name);
-  const auto unit = request.unit ? request.unit : loaded->unit;
+  const auto unit = request.unit ? request.unit : loaded.unit;
   model.unit = unit.value_or(request.unit_proposed ? proposal.unit : Unit::m);
   model.unit_assumed = !unit;
-  const std::string& up = request.up.empty() ? loaded->up : request.up;
+  const std::string& up = request.up.empty() ? loaded.up : request.up;
   if (!up.empty())
     model.up = up;
   else if (request.up_proposed)
@@ -171,9 +167,9 @@ Result<Model> import_model(store::Store& store, const ImportRequest& request, Pr
   model.proposal = proposal;
   model.crs = request.crs;
   model.default_resolution = request.resolution == 0 ? kLowestResolution : request.resolution;
-  model.atlas = atlas->report;
-  model.repairs = loaded->repairs;
-  if (auto put = put_geometry(geometry, progress, fresh); !put) return tl::unexpected(put.error());
+  model.atlas = atlas.report;
+  model.repairs = loaded.repairs;
+  STRATA_TRY(put_geometry(geometry, progress, fresh));
 
   progress.begin_stage(kBuilt, 1);
   progress.report(0, "Saving");

@@ -30,8 +30,8 @@ struct ImportRequest {
   bool strict = false;       // refuse a file that needs repair
 };
 
-// Whether everything but the files' content can be used, before they travel: 422 or 415, with the
-// field's name. Only the files' names are looked at.
+// Whether everything but the files' content can be used, before they travel: `invalid` or
+// unsupported, with the field's name. Only the files' names are looked at.
 Result<void> check(const ImportRequest& request);
 
 // Files → mesh → atlas → geometry → one transaction, which also keeps the caller's answer.

@@ -23,32 +23,46 @@ constexpr std::size_t kMaxRemembered = 1000;
 constexpr std::string_view kKinds[] = {"import", "layers", "look", "figure"};
 
 // What a restart of the server left of a job.
-Problem lost_problem(JobKind kind) {
+Error lost_problem(JobKind kind) {
   constexpr const char* kTitle = "Server was restarted";
   switch (kind) {
     case JobKind::import:
       return {
-          503,
+          ErrorCode::unavailable,
           kTitle,
           "The server was restarted before this import was finished; nothing of it was kept. Start it again.",
           {}};
     case JobKind::layers:
       return {
-          503,
+          ErrorCode::unavailable,
           kTitle,
           "The server was restarted before this was finished. Layers that it had begun are on the model, hidden and incomplete: delete "
           "them and start it again.",
           {}};
     case JobKind::look:
       return {
-          503,
+          ErrorCode::unavailable,
           kTitle,
           "The server was restarted before this picture was finished; nothing of it was kept. Start it again.",
           {}};
     case JobKind::figure: break;
   }
-  return {
-      503, kTitle, "The server was restarted before this figure was finished. Start it again.", {}};
+  return {ErrorCode::unavailable,
+          kTitle,
+          "The server was restarted before this figure was finished. Start it again.",
+          {}};
+}
+
+ErrorCode code_of(const nlohmann::json& stored) {
+  if (const auto code = error_code_named(stored.value("code", std::string()))) return *code;
+  // Jobs of release 0.1, which are kept for seven days, hold an HTTP status.
+  switch (stored.value("status", 500)) {
+    case 422: return ErrorCode::invalid;
+    case 499: return ErrorCode::cancelled;
+    case 503: return ErrorCode::unavailable;
+    case 507: return ErrorCode::storage_full;
+    default: return ErrorCode::internal;
+  }
 }
 
 JobStatus status_of(const store::StoredJob& stored) {
@@ -63,10 +77,10 @@ JobStatus status_of(const store::StoredJob& stored) {
                                                : JobState::failed;
   if (stored.state == "lost") status.problem = lost_problem(status.kind);
   if (stored.problem.is_object())
-    status.problem = Problem{stored.problem.value("status", 500),
-                             stored.problem.value("title", std::string("Job failed")),
-                             stored.problem.value("detail", std::string()),
-                             stored.problem.value("field", std::string())};
+    status.problem =
+        Error{code_of(stored.problem), stored.problem.value("title", std::string("Job failed")),
+              stored.problem.value("detail", std::string()),
+              stored.problem.value("field", std::string())};
   status.message = status.problem ? status.problem->title : "Done";
   if (status.state == JobState::done) status.progress = 1;
   if (stored.result.is_object()) {
@@ -88,7 +102,7 @@ store::StoredJob stored_of(const JobStatus& status) {
                  : status.state == JobState::cancelled ? "cancelled"
                                                        : "failed";
   if (status.problem)
-    stored.problem = {{"status", status.problem->status},
+    stored.problem = {{"code", name(status.problem->code)},
                       {"title", status.problem->title},
                       {"detail", status.problem->detail},
                       {"field", status.problem->field}};
@@ -124,12 +138,12 @@ Result<JobResult> run(const JobQueue::Work& work, Progress& progress) {
     return work(progress);
   } catch (const std::bad_alloc&) {
     return fail(
-        507, "Not enough memory",
+        ErrorCode::out_of_memory, "Not enough memory",
         "The server has not enough memory for this. Make the file smaller, or give the server more.");
   } catch (const std::exception& error) {
     log::error(std::string("A job failed unexpectedly: ") + error.what());
     return fail(
-        500, "Job failed",
+        ErrorCode::internal, "Job failed",
         "The server could not finish this because of a fault of its own; its log says more.");
   }
 }
@@ -171,10 +185,12 @@ struct JobQueue::Impl {
   }
 
   Result<void> may_add() const {
-    if (stopping) return fail(503, "Server stops", "The server is stopping and takes no new work.");
+    if (stopping)
+      return fail(ErrorCode::unavailable, "Server stops",
+                  "The server is stopping and takes no new work.");
     if (waiting.size() + coming >= kMaxWaiting)
       return fail(
-          503, "Too much waiting work",
+          ErrorCode::busy, "Too much waiting work",
           std::to_string(kMaxWaiting) + " jobs wait already. Try again when some are done.");
     return {};
   }
@@ -190,7 +206,8 @@ struct JobQueue::Impl {
       return;
     }
     status.progress = job.progress->fraction();
-    status.state = result.error().status == 499 ? JobState::cancelled : JobState::failed;
+    status.state =
+        result.error().code == ErrorCode::cancelled ? JobState::cancelled : JobState::failed;
     status.message = result.error().title;
     status.problem = std::move(result.error());
   }
@@ -219,7 +236,7 @@ struct JobQueue::Impl {
       auto result = run(work, *progress);
       work = nullptr;
       lock.lock();
-      const bool cut_short = stopping && !result && result.error().status == 499;
+      const bool cut_short = stopping && !result && result.error().code == ErrorCode::cancelled;
       JobStatus ended = job.status;
       end(job, std::move(result), ended);
       lock.unlock();
@@ -256,7 +273,7 @@ Result<std::int64_t> JobQueue::add(std::int64_t project, Work work, std::string 
   JobStatus status;
   {
     std::lock_guard lock(impl_->mutex);
-    if (auto may = impl_->may_add(); !may) return tl::unexpected(may.error());
+    STRATA_TRY(impl_->may_add());
     status.id = ++impl_->last_id;
     ++impl_->coming;
   }
@@ -269,7 +286,8 @@ Result<std::int64_t> JobQueue::add(std::int64_t project, Work work, std::string 
   --impl_->coming;
   if (!kept) return tl::unexpected(kept.error());
   if (impl_->stopping)
-    return fail(503, "Server stops", "The server is stopping and takes no new work.");
+    return fail(ErrorCode::unavailable, "Server stops",
+                "The server is stopping and takes no new work.");
   const std::int64_t id = status.id;
   Job& job = impl_->jobs[id];
   job.work = std::move(work);

@@ -53,7 +53,7 @@ struct JobStatus {
   JobState state = JobState::queued;
   double progress = 0;
   std::string message;
-  std::optional<Problem> problem;
+  std::optional<Error> problem;
   std::optional<JobResult> result;
 };
 
@@ -69,7 +69,7 @@ class JobQueue {
   explicit JobQueue(store::Jobs* store = nullptr);
   ~JobQueue();  // cancels what runs, joins
   using Work = std::function<Result<JobResult>(Progress&)>;
-  // Refused (503) when 64 wait, or as the store refuses. Blocks while the store is written.
+  // Refused (unavailable) when 64 wait, or as the store refuses. Blocks while the store is written.
   Result<std::int64_t> add(std::int64_t project, Work work, std::string user = {},
                            JobKind kind = JobKind::import);
   std::optional<JobStatus> status(std::int64_t id) const;

@@ -16,9 +16,8 @@ Result<void> put_geometry(const mesh::Geometry& geometry, Progress& progress,
     model.bounds_min = glm::min(model.bounds_min, position);
     model.bounds_max = glm::max(model.bounds_max, position);
   }
-  const auto levels = mesh::make_detail_levels(geometry, progress);
-  if (!levels) return tl::unexpected(levels.error());
-  for (const mesh::Geometry& level : *levels)
+  const auto levels = STRATA_TRY(mesh::make_detail_levels(geometry, progress));
+  for (const mesh::Geometry& level : levels)
     fresh.detail_levels.push_back(mesh::encode_geometry(level));
   fresh.geometry = mesh::encode_geometry(geometry);
   return {};

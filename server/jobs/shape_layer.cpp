@@ -71,7 +71,7 @@ class Measure {
       case ShapeKind::model_distance: return to_model();
       case ShapeKind::vertex_property: return property();
     }
-    return fail(500, "Unknown kind", "This kind of layer is not known.");
+    return fail(ErrorCode::internal, "Unknown kind", "This kind of layer is not known.");
   }
   std::string other_model() const { return other_model_; }
   std::string source() const { return source_; }
@@ -95,9 +95,9 @@ class Measure {
 
   Result<SurfaceValue> sampled(float spacing, const mesh::PointFunction& function) {
     const mesh::SurfaceNormals normals(geometry_);
-    auto field = mesh::SampledField::make(geometry_, normals, spacing, function, progress_);
-    if (!field) return tl::unexpected(field.error());
-    auto shared = std::make_shared<const mesh::SampledField>(std::move(*field));
+    auto field =
+        STRATA_TRY(mesh::SampledField::make(geometry_, normals, spacing, function, progress_));
+    auto shared = std::make_shared<const mesh::SampledField>(std::move(field));
     return SurfaceValue(
         [shared](std::uint32_t triangle, const glm::vec3& w) { return shared->at(triangle, w); });
   }
@@ -131,9 +131,8 @@ class Measure {
   Result<SurfaceValue> fitted() {
     const auto radius = static_cast<float>(in_units(*recipe_.radius_mm));
     progress_.begin_stage(0, kPrepared);
-    const auto made = mesh::SurfaceSamples::make(*geometry_, radius, progress_);
-    if (!made) return tl::unexpected(made.error());
-    const mesh::SurfaceSamples& samples = *made;
+    const auto made = STRATA_TRY(mesh::SurfaceSamples::make(*geometry_, radius, progress_));
+    const mesh::SurfaceSamples& samples = made;
     progress_.begin_stage(kPrepared, kMeasured);
     const auto curvature = [&](auto part) {
       return [&samples, part](const glm::vec3& p, const glm::vec3& n) {
@@ -161,19 +160,18 @@ class Measure {
 
   Result<SurfaceValue> openness() {
     progress_.begin_stage(0, kPrepared);
-    auto rays = mesh::Openness::make(geometry_, static_cast<float>(in_units(*recipe_.distance_mm)),
-                                     *recipe_.rays, progress_);
-    if (!rays) return tl::unexpected(rays.error());
+    auto rays = STRATA_TRY(mesh::Openness::make(
+        geometry_, static_cast<float>(in_units(*recipe_.distance_mm)), *recipe_.rays, progress_));
     progress_.begin_stage(kPrepared, kMeasured);
     return sampled(even_spacing(5e5),
-                   [&](const glm::vec3& p, const glm::vec3& n) { return (*rays)->at(p, n); });
+                   [&](const glm::vec3& p, const glm::vec3& n) { return (rays)->at(p, n); });
   }
 
   Result<SurfaceValue> to_boundary() {
     progress_.report(0, "Looking for open edges");
     const mesh::BoundaryDistance distance(*geometry_);
     if (distance.is_closed())
-      return fail(422, "No boundary",
+      return fail(ErrorCode::invalid, "No boundary",
                   "This model is closed: it has no open edge that a distance could be measured to.",
                   "compute.kind");
     return sampled(even_spacing(1e6),
@@ -184,10 +182,10 @@ class Measure {
     auto other = store_.model(recipe_.model);
     if (!other) return refuse_model(other.error());
     if (other->id == model_.id)
-      return fail(422, "The same model", "A model has no distance to itself; name another one.",
-                  "compute.model");
+      return fail(ErrorCode::invalid, "The same model",
+                  "A model has no distance to itself; name another one.", "compute.model");
     if (!other->crs.empty() && !model_.crs.empty() && other->crs != model_.crs)
-      return fail(422, "Other coordinates",
+      return fail(ErrorCode::invalid, "Other coordinates",
                   "This model lies in " + model_.crs + ", the other one in " + other->crs +
                       "; bring both into one coordinate system before importing them.",
                   "compute.model");
@@ -195,16 +193,15 @@ class Measure {
     progress_.report(0, "Reading the other model");
     auto bytes = store_.geometry(other->id);
     if (!bytes) return refuse_model(bytes.error());
-    auto there = mesh::decode_geometry(*bytes);
-    if (!there) return tl::unexpected(there.error());
+    auto there = STRATA_TRY(mesh::decode_geometry(*bytes));
     const mesh::ModelDistance distance(geometry_->origin, model_.metres(),
-                                       std::make_shared<const mesh::Geometry>(std::move(*there)),
+                                       std::make_shared<const mesh::Geometry>(std::move(there)),
                                        other->metres(), in_units(*recipe_.distance_mm));
     return sampled(even_spacing(1e6),
                    [&](const glm::vec3& p, const glm::vec3&) { return distance.at(p); });
   }
-  static tl::unexpected<Problem> refuse_model(Problem problem) {
-    if (problem.status == 404) problem.field = "compute.model";
+  static tl::unexpected<Error> refuse_model(Error problem) {
+    if (problem.code == ErrorCode::not_found) problem.field = "compute.model";
     return tl::unexpected(std::move(problem));
   }
 
@@ -225,7 +222,7 @@ class Measure {
         having.push_back(source.name);
     }
     if (having.size() != 1)
-      return fail(422, having.empty() ? "No such property" : "Several files have it",
+      return fail(ErrorCode::invalid, having.empty() ? "No such property" : "Several files have it",
                   having.empty() ? "No source file of this model has vertices with a number \"" +
                                        recipe_.property + "\"."
                                  : "Name the source file whose property \"" + recipe_.property +
@@ -233,11 +230,9 @@ class Measure {
                   having.empty() ? "compute.property" : "compute.source");
     source_ = having.front();
     progress_.report(0, "Reading the scan");
-    auto file = read_source(store_, model_, source_, progress_);
-    if (!file) return tl::unexpected(file.error());
-    auto column = mesh::read_vertex_property(*file, recipe_.property);
-    if (!column) return tl::unexpected(column.error());
-    return at_vertices(geometry_, mesh::values_at_positions(*geometry_, *column, !is_float(type_)),
+    auto file = STRATA_TRY(read_source(store_, model_, source_, progress_));
+    auto column = STRATA_TRY(mesh::read_vertex_property(file, recipe_.property));
+    return at_vertices(geometry_, mesh::values_at_positions(*geometry_, column, !is_float(type_)),
                        type_);
   }
 
@@ -279,13 +274,12 @@ ValueRange range_of(const TileMap& tiles, ValueType type) {
 Result<TileMap> paint(const mesh::Geometry& geometry, const SurfaceValue& value, ValueType type,
                       int resolution, bool rounds, double from, Progress& progress) {
   progress.begin_stage(from, (1 + from) / 2);
-  const auto owners = mesh::bake_texel_owners(geometry, resolution, progress);
-  if (!owners) return tl::unexpected(owners.error());
+  const auto owners = STRATA_TRY(mesh::bake_texel_owners(geometry, resolution, progress));
   progress.begin_stage((1 + from) / 2, 1);
   std::mutex mutex;
-  std::optional<Problem> unfit;
+  std::optional<Error> unfit;
   const auto bits = [&](std::size_t texel) -> std::optional<std::uint32_t> {
-    const double number = value(owners->triangle[texel], owners->weights_of(texel));
+    const double number = value(owners.triangle[texel], owners.weights_of(texel));
     if (!std::isfinite(number)) return std::nullopt;
     auto encoded = encode_value(type, rounds && !is_float(type) ? std::round(number) : number);
     if (encoded) return *encoded;
@@ -295,7 +289,7 @@ Result<TileMap> paint(const mesh::Geometry& geometry, const SurfaceValue& value,
     progress.cancel();
     return std::nullopt;
   };
-  auto tiles = mesh::paint_texels(*owners, type, bits, progress);
+  auto tiles = mesh::paint_texels(owners, type, bits, progress);
   if (unfit) return tl::unexpected(*unfit);
   return tiles;
 }
@@ -305,11 +299,10 @@ Result<TileMap> paint(const mesh::Geometry& geometry, const SurfaceValue& value,
 Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& model,
                                               const std::string& source, Progress& progress) {
   std::vector<std::uint8_t> file;
-  auto read = store.read_source(model.id, source, [&](std::span<const std::uint8_t> chunk) {
+  STRATA_TRY(store.read_source(model.id, source, [&](std::span<const std::uint8_t> chunk) {
     file.insert(file.end(), chunk.begin(), chunk.end());
     return !progress.cancelled();
-  });
-  if (!read) return tl::unexpected(read.error());
+  }));
   if (progress.cancelled()) return cancelled_problem();
   return file;
 }
@@ -336,14 +329,12 @@ Result<ShapeLayer> compute_shape_layer(store::Store& store, const Model& model,
                                        Progress& progress) {
   progress.begin_stage(0, kMeasured);
   Measure measure(store, model, geometry, recipe, type, progress);
-  const auto value = measure.value();
-  if (!value) return tl::unexpected(value.error());
+  const auto value = STRATA_TRY(measure.value());
   const bool rounds = recipe.kind != ShapeKind::vertex_property;
-  auto tiles = paint(*geometry, *value, type, resolution, rounds, kMeasured, progress);
-  if (!tiles) return tl::unexpected(tiles.error());
+  auto tiles = STRATA_TRY(paint(*geometry, value, type, resolution, rounds, kMeasured, progress));
 
   ShapeLayer layer;
-  layer.tiles = std::move(*tiles);
+  layer.tiles = std::move(tiles);
   layer.unit = unit_of(recipe, model);
   ShapeRecipe used = recipe;
   if (used.kind == ShapeKind::vertex_property) used.source = measure.source();

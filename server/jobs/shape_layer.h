@@ -20,9 +20,9 @@ struct ShapeLayer {
 
 // Computes what the recipe says on the whole surface of the model, as values of `type` at
 // `resolution`. `recipe` is completed; `store` is read for the other model and for source files.
-// Refused (422, 404, naming the member) where the other model or the property cannot be used, where
-// the model is closed and the distance to its boundary is asked for, and where values do not fit
-// the type. Long: reports progress, honours cancel. Thread: any that may block.
+// Refused (invalid, not_found, naming the member) where the other model or the property cannot be
+// used, where the model is closed and the distance to its boundary is asked for, and where values
+// do not fit the type. Long: reports progress, honours cancel. Thread: any that may block.
 Result<ShapeLayer> compute_shape_layer(store::Store& store, const Model& model,
                                        const std::shared_ptr<const mesh::Geometry>& geometry,
                                        const ShapeRecipe& recipe, ValueType type, int resolution,
@@ -37,8 +37,8 @@ Result<std::vector<std::uint8_t>> read_source(store::Store& store, const Model& 
                                               const std::string& source, Progress& progress);
 
 // Paints values of a geometry's welded positions (NaN: none): between them for float types, that of
-// the nearest position for whole numbers, which are keys or classes. 422 naming `type` where one
-// does not fit. Otherwise as above.
+// the nearest position for whole numbers, which are keys or classes. `invalid` naming `type` where
+// one does not fit. Otherwise as above.
 Result<TileMap> paint_vertex_values(const std::shared_ptr<const mesh::Geometry>& geometry,
                                     std::vector<double> values, ValueType type, int resolution,
                                     Progress& progress);

@@ -47,7 +47,7 @@ double rounded(double value) {
 
 Result<void> refuse_foreign(bool is_set, bool takes, const char* member, ShapeKind kind) {
   if (!is_set || takes) return {};
-  return fail(422, "Not of this kind",
+  return fail(ErrorCode::invalid, "Not of this kind",
               "`" + std::string(member) + "` has no meaning for the kind " +
                   std::string(name(kind)) + "; leave it out.",
               "compute." + std::string(member));
@@ -66,12 +66,12 @@ Result<void> check_members(const ShapeRecipe& r) {
                  {!r.property.empty(), kind == ShapeKind::vertex_property, "property"},
                  {!r.source.empty(), kind == ShapeKind::vertex_property, "source"}};
   for (const auto& [is_set, takes, member] : members)
-    if (auto good = refuse_foreign(is_set, takes, member, kind); !good) return good;
+    STRATA_TRY(refuse_foreign(is_set, takes, member, kind));
   if (kind == ShapeKind::model_distance && r.model.empty())
-    return fail(422, "Model missing", "Name the model whose surface the distance is measured to.",
-                "compute.model");
+    return fail(ErrorCode::invalid, "Model missing",
+                "Name the model whose surface the distance is measured to.", "compute.model");
   if (kind == ShapeKind::vertex_property && r.property.empty())
-    return fail(422, "Property missing",
+    return fail(ErrorCode::invalid, "Property missing",
                 "Name the property of the scan's vertices, such as quality.", "compute.property");
   return {};
 }
@@ -83,7 +83,7 @@ double least_radius_mm(const Model& model) {
 
 Result<void> check_length(double value, double least, double most, const char* member) {
   if (value >= least && value <= most) return {};
-  return fail(422, "Out of range for this model",
+  return fail(ErrorCode::invalid, "Out of range for this model",
               "For this model it is from " + short_number(rounded(least * 1.05)) + " to " +
                   short_number(rounded(most)) + " mm.",
               "compute." + std::string(member));
@@ -178,7 +178,7 @@ std::optional<ShapeKind> parse_shape_kind(std::string_view wanted) {
 }
 
 Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model) {
-  if (auto good = check_members(recipe); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_members(recipe));
   const double diagonal = diagonal_mm(model), least = least_radius_mm(model);
   if (takes_radius(recipe.kind)) {
     if (!recipe.radius_mm)
@@ -200,7 +200,8 @@ Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model) {
   if (recipe.kind == ShapeKind::ambient_occlusion) {
     if (!recipe.rays) recipe.rays = kDefaultRays;
     if (*recipe.rays < kFewestRays || *recipe.rays > kMostRays)
-      return fail(422, "Out of range", "From 16 to 1024 rays a point.", "compute.rays");
+      return fail(ErrorCode::invalid, "Out of range", "From 16 to 1024 rays a point.",
+                  "compute.rays");
   }
   return recipe;
 }

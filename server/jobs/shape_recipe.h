@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "core/error.h"
 #include "core/model.h"
 #include "core/palette.h"
-#include "core/problem.h"
 
 namespace strata::jobs {
 
@@ -42,8 +42,8 @@ struct ShapeRecipe {
   std::string property, source;
 };
 
-// 422 naming the member (`compute.radius_mm`) for what does not belong to the kind, is missing, or
-// is out of range for the model.
+// `invalid` naming the member (`compute.radius_mm`) for what does not belong to the kind, is
+// missing, or is out of range for the model.
 Result<ShapeRecipe> completed(ShapeRecipe recipe, const Model& model);
 // as POST …/layers takes it, and as the journal keeps it
 nlohmann::json to_json(const ShapeRecipe& recipe);

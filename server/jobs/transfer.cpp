@@ -88,12 +88,10 @@ class Group {
   // Where on the source each of the target's texels takes its values from.
   Result<void> match(double from, double to) {
     progress_.begin_stage(from, from + 0.2 * (to - from));
-    auto map = target_.surface_map(resolution_);
-    if (!map) return tl::unexpected(map.error());
-    map_ = std::move(*map);
-    auto owners = mesh::bake_texel_owners(*here_.geometry, resolution_, progress_);
-    if (!owners) return tl::unexpected(owners.error());
-    owners_ = std::move(*owners);
+    auto map = STRATA_TRY(target_.surface_map(resolution_));
+    map_ = std::move(map);
+    auto owners = STRATA_TRY(mesh::bake_texel_owners(*here_.geometry, resolution_, progress_));
+    owners_ = std::move(owners);
     source_uv_.assign(owners_.triangle.size(), glm::vec2(kNoUv));
     AreaSum matched(owners_.triangle.size());
     progress_.begin_stage(from + 0.2 * (to - from), to);
@@ -114,23 +112,21 @@ class Group {
   };
   Result<std::vector<Balance>> balance(const std::vector<TileMap>& layers, double from, double to) {
     progress_.begin_stage(from, from + 0.4 * (to - from));
-    auto map = mesh::bake_surface_map(*there_.geometry, source_resolution_, progress_);
-    if (!map) return tl::unexpected(map.error());
-    auto owners = mesh::bake_texel_owners(*there_.geometry, source_resolution_, progress_);
-    if (!owners) return tl::unexpected(owners.error());
-    std::vector<AreaSum> painted(layers.size(), AreaSum(owners->triangle.size())), lost = painted;
+    auto map = STRATA_TRY(mesh::bake_surface_map(*there_.geometry, source_resolution_, progress_));
+    auto owners =
+        STRATA_TRY(mesh::bake_texel_owners(*there_.geometry, source_resolution_, progress_));
+    std::vector<AreaSum> painted(layers.size(), AreaSum(owners.triangle.size())), lost = painted;
     progress_.begin_stage(from + 0.4 * (to - from), to);
     const auto weigh = [&](std::size_t texel) {
       std::optional<bool> is_lost;
       for (std::size_t i = 0; i < layers.size(); ++i) {
-        if (!is_valid(layers[i], *owners, texel)) continue;
-        if (!is_lost)
-          is_lost = !counterpart(there_, there_.spot(*owners, texel), here_, tolerance_);
-        painted[i].add(texel, map->area[texel]);
-        if (*is_lost) lost[i].add(texel, map->area[texel]);
+        if (!is_valid(layers[i], owners, texel)) continue;
+        if (!is_lost) is_lost = !counterpart(there_, there_.spot(owners, texel), here_, tolerance_);
+        painted[i].add(texel, map.area[texel]);
+        if (*is_lost) lost[i].add(texel, map.area[texel]);
       }
     };
-    if (auto done = mesh::for_each_texel(*owners, weigh, "Looking for what is lost", progress_);
+    if (auto done = mesh::for_each_texel(owners, weigh, "Looking for what is lost", progress_);
         !done)
       return tl::unexpected(done.error());
     std::vector<Balance> balances;
@@ -148,11 +144,10 @@ class Group {
       if (found) area.add(texel, map_->area[texel]);
       return found;
     };
-    auto painted = mesh::paint_texels(owners_, layer.type, bits, progress_);
-    if (!painted) return tl::unexpected(painted.error());
+    auto painted = STRATA_TRY(mesh::paint_texels(owners_, layer.type, bits, progress_));
     return TransferredLayer{&layer,
                             resolution_,
-                            std::move(*painted),
+                            std::move(painted),
                             balance.source_m2,
                             area.total() * here_.metres * here_.metres,
                             balance.lost_m2};
@@ -188,12 +183,10 @@ Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarge
                                         const TransferRequest& request, const Deliver& deliver,
                                         Progress& progress) {
   progress.report(0, "Reading the other model");
-  auto bytes = store.geometry(request.source.id);
-  if (!bytes) return tl::unexpected(bytes.error());
-  auto decoded = mesh::decode_geometry(*bytes);
-  if (!decoded) return tl::unexpected(decoded.error());
-  bytes->clear();
-  const auto source = std::make_shared<const mesh::Geometry>(std::move(*decoded));
+  auto bytes = STRATA_TRY(store.geometry(request.source.id));
+  auto decoded = STRATA_TRY(mesh::decode_geometry(bytes));
+  bytes.clear();
+  const auto source = std::make_shared<const mesh::Geometry>(std::move(decoded));
   const Side there(source, std::make_shared<const mesh::SearchTree>(source),
                    request.source.metres());
   const Side here(target.geometry, target.tree, target.model.metres());
@@ -208,23 +201,19 @@ Result<TransferSummary> transfer_layers(store::Store& store, const TransferTarge
       (1 - start) / static_cast<double>(std::max<std::size_t>(1, by_resolution.size()));
   for (const auto& [resolution, layers] : by_resolution) {
     Group group(target, here, there, tolerance, resolution, progress);
-    if (auto matched = group.match(start, start + 0.5 * share); !matched)
-      return tl::unexpected(matched.error());
+    STRATA_TRY(group.match(start, start + 0.5 * share));
     std::vector<TileMap> contents;
     for (const Layer* layer : layers) {
-      auto tiles = store.load_tiles(*layer);
-      if (!tiles) return tl::unexpected(tiles.error());
-      contents.push_back(std::move(tiles->tiles));
+      auto tiles = STRATA_TRY(store.load_tiles(*layer));
+      contents.push_back(std::move(tiles.tiles));
     }
-    auto balances = group.balance(contents, start + 0.5 * share, start + 0.8 * share);
-    if (!balances) return tl::unexpected(balances.error());
+    auto balances = STRATA_TRY(group.balance(contents, start + 0.5 * share, start + 0.8 * share));
     for (std::size_t i = 0; i < layers.size(); ++i) {
       const double step = 0.2 * share / static_cast<double>(layers.size());
       const double from = start + 0.8 * share + static_cast<double>(i) * step;
       progress.begin_stage(from, from + step);
-      auto layer = group.paint(*layers[i], contents[i], (*balances)[i]);
-      if (!layer) return tl::unexpected(layer.error());
-      if (auto taken = deliver(std::move(*layer)); !taken) return tl::unexpected(taken.error());
+      auto layer = STRATA_TRY(group.paint(*layers[i], contents[i], balances[i]));
+      STRATA_TRY(deliver(std::move(layer)));
       contents[i].clear();
     }
     summary.matched_m2 = std::max(summary.matched_m2, group.matched_m2());

@@ -90,9 +90,9 @@ std::vector<int> verified_resolutions(int lowest_resolution) {
   return resolutions;
 }
 
-tl::unexpected<Problem> no_room(std::size_t charts, int resolution) {
+tl::unexpected<Error> no_room(std::size_t charts, int resolution) {
   return fail(
-      422, "Cannot unwrap",
+      ErrorCode::invalid, "Cannot unwrap",
       "The surface falls into " + std::to_string(charts) + " separate pieces, more than " +
           std::to_string(resolution) + " × " + std::to_string(resolution) +
           " texels can hold apart. Weld or clean the mesh, or import it with a higher lowest resolution.",
@@ -215,8 +215,7 @@ Result<Unwrap> unwrap_once(const ChartSurface& surface, int attempt, int lowest_
   if (progress.cancelled()) return cancelled_problem();
   progress.report(options.progress_to + 0.05, "Packing the charts");
   outline(surface, unwrap);
-  if (auto begun = begin_pack_somehow(lowest_resolution, progress, unwrap); !begun)
-    return tl::unexpected(begun.error());
+  STRATA_TRY(begin_pack_somehow(lowest_resolution, progress, unwrap));
   return unwrap;
 }
 
@@ -253,8 +252,7 @@ Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const 
   if (is_long) {
     Unwrap shorter = unwrap;
     squeeze_long(surface, lowest_resolution, shorter);
-    if (auto done = take_denser(lowest_resolution, progress, std::move(shorter), unwrap); !done)
-      return done;
+    STRATA_TRY(take_denser(lowest_resolution, progress, std::move(shorter), unwrap));
   }
   if (is_poor() && surface.mesh.triangle_count() >= kCutsFrom) {
     Unwrap cut = unwrap;
@@ -263,15 +261,13 @@ Result<void> use_more(const ChartSurface& surface, int lowest_resolution, const 
       cut.longest = 0;
       outline(surface, cut);
       squeeze_long(surface, lowest_resolution, cut);
-      if (auto done = take_denser(lowest_resolution, progress, std::move(cut), unwrap); !done)
-        return done;
+      STRATA_TRY(take_denser(lowest_resolution, progress, std::move(cut), unwrap));
     }
   }
   if (is_poor() && unwrap.gap > kNarrowGap) {
     Unwrap nearer = unwrap;
     nearer.gap = kNarrowGap;
-    if (auto done = take_denser(lowest_resolution, progress, std::move(nearer), unwrap); !done)
-      return done;
+    STRATA_TRY(take_denser(lowest_resolution, progress, std::move(nearer), unwrap));
   }
   return {};
 }
@@ -284,7 +280,7 @@ Result<void> pack_again(int lowest_resolution, const Progress& progress, Unwrap&
     if (packing) return unwrap.packing = std::move(*packing), Result<void>{};
     if (progress.cancelled()) return cancelled_problem();
   }
-  if (auto begun = begin_pack_somehow(lowest_resolution, progress, unwrap); !begun) return begun;
+  STRATA_TRY(begin_pack_somehow(lowest_resolution, progress, unwrap));
   return finish_pack(lowest_resolution, progress, unwrap);
 }
 
@@ -295,7 +291,8 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
   const UnitMesh unit = to_unit_mesh(mesh);
   const ChartSurface surface = make_chart_surface(unit, kSmoothing);
   if (surface.original_frames.total_area <= 0)
-    return fail(422, "Cannot unwrap", "No triangle of the mesh has an area.", "file");
+    return fail(ErrorCode::invalid, "Cannot unwrap", "No triangle of the mesh has an area.",
+                "file");
   if (progress.cancelled()) return cancelled_problem();
 
   std::optional<Unwrap> best;
@@ -308,11 +305,9 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     if (is_dense) break;
   }
   if (best->expected_coverage < kGoodCoverage)
-    if (auto done = use_more(surface, lowest_resolution, progress, *best); !done)
-      return tl::unexpected(done.error());
+    STRATA_TRY(use_more(surface, lowest_resolution, progress, *best));
 
-  if (auto packed = finish_pack(lowest_resolution, progress, *best); !packed)
-    return tl::unexpected(packed.error());
+  STRATA_TRY(finish_pack(lowest_resolution, progress, *best));
 
   Atlas atlas;
   const auto resolutions = verified_resolutions(lowest_resolution);
@@ -325,11 +320,9 @@ Result<Atlas> make_atlas(const TriangleMesh& mesh, int lowest_resolution, Progre
     const auto conflicts = faces_in_conflict(best->charts, atlas.corner_uvs, resolutions, kThreads);
     if (conflicts.empty()) break;
     const float footprint = round == 0 ? kStraightFootprint : kNoFootprint;
-    if (auto done = split(surface, conflicts, footprint, lowest_resolution, progress, *best); !done)
-      return tl::unexpected(done.error());
+    STRATA_TRY(split(surface, conflicts, footprint, lowest_resolution, progress, *best));
     outline(surface, *best);
-    if (auto packed = pack_again(lowest_resolution, progress, *best); !packed)
-      return tl::unexpected(packed.error());
+    STRATA_TRY(pack_again(lowest_resolution, progress, *best));
   }
   progress.report(0.95, "Measuring the unfolded surface");
   TexelCounts owners;

@@ -119,7 +119,7 @@ class Baker {
     }
   }
 
-  void note_unreadable(const Texture& texture, const Problem& problem) {
+  void note_unreadable(const Texture& texture, const Error& problem) {
     note(repairs_, "texture not read: " + texture.name + ": " + problem.detail, 1);
   }
 
@@ -141,8 +141,7 @@ class Baker {
     if (!info) return note_unreadable(texture, info.error()), std::nullopt;
     const double pixels = double(info->width) * info->height;
     const bool stays = atlas_.moved.empty() && is_look_format(info->format);
-    auto share = reserved(pixels * (stays ? 4 : kBytesPerTexel));
-    if (!share) return tl::unexpected(share.error());
+    const auto share = STRATA_TRY(reserved(pixels * (stays ? 4 : kBytesPerTexel)));
     auto whole = decode_picture(texture.bytes);
     if (!whole) return note_unreadable(texture, whole.error()), std::nullopt;
     if (stays) return BaseColor{info->format, info->width, info->height, std::move(texture.bytes)};
@@ -220,8 +219,7 @@ class Baker {
                                return std::pair{place_of(t), place_of(t)};
                              });
     int side = 0;
-    const auto memory = reserve_picture(shares, side);
-    if (!memory) return tl::unexpected(memory.error());
+    const auto memory = STRATA_TRY(reserve_picture(shares, side));
     Picture picture{side, side, std::vector<std::uint8_t>(std::size_t(side) * side * 4, 0)};
     bool any_read = !textured_;
     for (std::size_t i = 0; i <= textures; ++i) {

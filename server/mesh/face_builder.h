@@ -27,7 +27,7 @@ class FaceBuilder {
   void reserve(std::size_t faces) { mesh_.triangles.reserve(3 * std::min(faces, max_triangles_)); }
 
   // For readers, before they keep the corners of a face that has more than kMaxPolygonCorners.
-  static tl::unexpected<Problem> too_many_corners(const std::string& place) {
+  static tl::unexpected<Error> too_many_corners(const std::string& place) {
     return refuse_file("The face at " + place + " has more than " +
                        std::to_string(kMaxPolygonCorners) +
                        " corners. Triangulate the mesh before importing it.");

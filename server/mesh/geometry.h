@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "mesh/atlas.h"
 #include "mesh/triangle_mesh.h"
 

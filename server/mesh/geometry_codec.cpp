@@ -26,8 +26,8 @@ constexpr int kLevel = 1;
 constexpr std::size_t kHeaderBytes = 3 * 8 + 3 * 8;
 constexpr std::size_t kPositionBytes = 3 * 8, kVertexBytes = 5 * 4, kIndexBytes = 4;
 
-tl::unexpected<Problem> damaged(const std::string& what) {
-  return fail(500, "Stored geometry is damaged",
+tl::unexpected<Error> damaged(const std::string& what) {
+  return fail(ErrorCode::internal, "Stored geometry is damaged",
               "The stored geometry cannot be read: " + what +
                   ". Restore it from a backup or import the model again.");
 }

@@ -28,19 +28,18 @@ std::string name_of_accessor(std::uint64_t accessor, const std::string& what) {
 
 Result<GltfDocument::Form> GltfDocument::form(std::uint64_t accessor,
                                               const std::string& what) const {
-  const auto found = element("accessors", accessor);
-  if (!found) return tl::unexpected(found.error());
-  const auto type = whole_number(**found, "componentType"), count = whole_number(**found, "count");
+  const auto found = STRATA_TRY(element("accessors", accessor));
+  const auto type = whole_number(*found, "componentType"), count = whole_number(*found, "count");
   if (!type) return tl::unexpected(type.error());
   if (!count) return tl::unexpected(count.error());
   Form form;
   form.component_type = static_cast<int>(std::min<std::uint64_t>(*type, 1u << 30));
-  const std::string shape = text_of(**found, "type");
+  const std::string shape = text_of(*found, "type");
   form.components = components_of(shape);
   form.count = *count;
-  const auto normalized = (*found)->find("normalized");
+  const auto normalized = found->find("normalized");
   form.normalized =
-      normalized != (*found)->end() && normalized->is_boolean() && normalized->get<bool>();
+      normalized != found->end() && normalized->is_boolean() && normalized->get<bool>();
   if (bytes_of_component(form.component_type) == 0)
     return refuse_file(name_of_accessor(accessor, what) + " holds " +
                        name_of_component(form.component_type) + ", which glTF does not have.");
@@ -54,8 +53,7 @@ Result<GltfDocument::Layout> GltfDocument::layout(std::uint64_t accessor, const 
   const auto form = this->form(accessor, what);
   if (!form) return tl::unexpected(form.error());
   const json& source = **element("accessors", accessor);
-  const auto offset = whole_number(source, "byteOffset", 0);
-  if (!offset) return tl::unexpected(offset.error());
+  const auto offset = STRATA_TRY(whole_number(source, "byteOffset", 0));
   const std::string name = name_of_accessor(accessor, what);
   Layout layout{*form, {}, 0};
   const std::uint64_t size =
@@ -67,19 +65,17 @@ Result<GltfDocument::Layout> GltfDocument::layout(std::uint64_t accessor, const 
     if (form->count > most) return refuse_file(name + " has more values than the file can hold.");
     return layout;
   }
-  const auto index = whole_number(source, "bufferView");
-  if (!index) return tl::unexpected(index.error());
-  const auto bytes = view(*index);
-  if (!bytes) return tl::unexpected(bytes.error());
-  if (bytes->stride != 0) layout.stride = bytes->stride;
+  const auto index = STRATA_TRY(whole_number(source, "bufferView"));
+  const auto bytes = STRATA_TRY(view(index));
+  if (bytes.stride != 0) layout.stride = bytes.stride;
   if (layout.stride < size) return refuse_file(name + " has a stride smaller than its values.");
-  const std::uint64_t room = bytes->bytes.size(), count = form->count;
-  if (*offset > room ||
-      (count > 0 && (room - *offset < size || (room - *offset - size) / layout.stride < count - 1)))
+  const std::uint64_t room = bytes.bytes.size(), count = form->count;
+  if (offset > room ||
+      (count > 0 && (room - offset < size || (room - offset - size) / layout.stride < count - 1)))
     return refuse_file(
         name + " announces " + std::to_string(count) +
         " values, but its buffer view ends before them: the file is cut short or damaged.");
-  layout.bytes = bytes->bytes.subspan(*offset);
+  layout.bytes = bytes.bytes.subspan(offset);
   return layout;
 }
 
@@ -142,8 +138,7 @@ Result<GltfDocument::Values> GltfDocument::values(std::uint64_t accessor, const 
       values.numbers[i * components + k] =
           static_cast<float>(gltf_number(stored_number(from + k * size, type), type, normalized));
   };
-  if (auto done = for_each_element(accessor, what, *layout, put); !done)
-    return tl::unexpected(done.error());
+  STRATA_TRY(for_each_element(accessor, what, *layout, put));
   return values;
 }
 
@@ -158,8 +153,7 @@ Result<std::vector<std::uint32_t>> GltfDocument::indices(std::uint64_t accessor)
   const auto put = [&](std::uint64_t i, const std::uint8_t* from) {
     indices[i] = stored_index(from, type);
   };
-  if (auto done = for_each_element(accessor, "indices", *layout, put); !done)
-    return tl::unexpected(done.error());
+  STRATA_TRY(for_each_element(accessor, "indices", *layout, put));
   return indices;
 }
 

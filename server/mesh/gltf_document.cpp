@@ -78,9 +78,8 @@ const json& object_in(const json& object, const char* name) {
 
 Result<GltfDocument> GltfDocument::open(const InputFiles& files) {
   GltfDocument document(files);
-  if (auto read = document.read_container(); !read) return tl::unexpected(read.error());
-  if (auto checked = document.check_version_and_extensions(); !checked)
-    return tl::unexpected(checked.error());
+  STRATA_TRY(document.read_container());
+  STRATA_TRY(document.check_version_and_extensions());
   return document;
 }
 
@@ -157,11 +156,9 @@ Result<const json*> GltfDocument::element(const char* array, std::uint64_t index
 }
 
 Result<std::span<const std::uint8_t>> GltfDocument::buffer(std::uint64_t index) {
-  const auto found = element("buffers", index);
-  if (!found) return tl::unexpected(found.error());
-  const auto length = whole_number(**found, "byteLength");
-  if (!length) return tl::unexpected(length.error());
-  const std::string uri = text_of(**found, "uri"),
+  const auto found = STRATA_TRY(element("buffers", index));
+  const auto length = STRATA_TRY(whole_number(*found, "byteLength"));
+  const std::string uri = text_of(*found, "uri"),
                     name = "Buffer " + std::to_string(index) + " of the glTF";
   std::span<const std::uint8_t> bytes;
   if (uri.empty()) {
@@ -184,16 +181,15 @@ Result<std::span<const std::uint8_t>> GltfDocument::buffer(std::uint64_t index) 
                          "\", which is not among the files. Send it along, or export a GLB.");
     bytes = file->bytes;
   }
-  if (*length > bytes.size())
-    return refuse_file(name + " should have " + std::to_string(*length) + " bytes, but has " +
+  if (length > bytes.size())
+    return refuse_file(name + " should have " + std::to_string(length) + " bytes, but has " +
                        std::to_string(bytes.size()) + ": it is cut short, or another file.");
-  return bytes.first(*length);
+  return bytes.first(length);
 }
 
 Result<GltfDocument::View> GltfDocument::view(std::uint64_t index) {
-  const auto found = element("bufferViews", index);
-  if (!found) return tl::unexpected(found.error());
-  const json& view = **found;
+  const auto found = STRATA_TRY(element("bufferViews", index));
+  const json& view = *found;
   for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
     if (const json& compressed = object_in(object_in(view, "extensions"), extension);
         !compressed.empty())
@@ -204,12 +200,11 @@ Result<GltfDocument::View> GltfDocument::view(std::uint64_t index) {
              stride = whole_number(view, "byteStride", 0);
   for (const auto* number : {&buffer_index, &offset, &length, &stride})
     if (!*number) return tl::unexpected(number->error());
-  const auto bytes = buffer(*buffer_index);
-  if (!bytes) return tl::unexpected(bytes.error());
-  if (*offset > bytes->size() || *length > bytes->size() - *offset)
+  const auto bytes = STRATA_TRY(buffer(*buffer_index));
+  if (*offset > bytes.size() || *length > bytes.size() - *offset)
     return refuse_file("Buffer view " + std::to_string(index) +
                        " of the glTF reaches beyond its buffer.");
-  return View{bytes->subspan(*offset, *length), *stride};
+  return View{bytes.subspan(*offset, *length), *stride};
 }
 
 Result<GltfDocument::View> GltfDocument::decompress(const json& view, const json& extension,
@@ -226,12 +221,11 @@ Result<GltfDocument::View> GltfDocument::decompress(const json& view, const json
   const View shape{{}, view.contains("byteStride") ? *stride : 0};
   if (const auto done = decoded_views_.find(index); done != decoded_views_.end())
     return View{done->second, shape.stride};
-  const auto whole = buffer(*buffer_index);
-  if (!whole) return tl::unexpected(whole.error());
-  if (*offset > whole->size() || *length > whole->size() - *offset)
+  const auto whole = STRATA_TRY(buffer(*buffer_index));
+  if (*offset > whole.size() || *length > whole.size() - *offset)
     return refuse_file(name + " reaches beyond its buffer.");
   auto out =
-      decode_meshopt(whole->subspan(*offset, *length),
+      decode_meshopt(whole.subspan(*offset, *length),
                      {text_of(extension, "mode"), text_of(extension, "filter"), *count, *stride},
                      kMostDecoded - decoded_bytes_);
   if (!out)
@@ -241,9 +235,8 @@ Result<GltfDocument::View> GltfDocument::decompress(const json& view, const json
 }
 
 Result<GltfDocument::Image> GltfDocument::image(std::uint64_t index) {
-  const auto found = element("images", index);
-  if (!found) return tl::unexpected(found.error());
-  const json& source = **found;
+  const auto found = STRATA_TRY(element("images", index));
+  const json& source = *found;
   Image image{text_of(source, "name"), {}, false};
   const std::string uri = text_of(source, "uri");
   if (is_data_uri(uri)) {
@@ -261,11 +254,9 @@ Result<GltfDocument::Image> GltfDocument::image(std::uint64_t index) {
     }
     if (image.name.empty()) image.name = path;
   } else {
-    const auto number = whole_number(source, "bufferView");
-    if (!number) return tl::unexpected(number.error());
-    const auto bytes = view(*number);
-    if (!bytes) return tl::unexpected(bytes.error());
-    image.bytes.assign(bytes->bytes.begin(), bytes->bytes.end());
+    const auto number = STRATA_TRY(whole_number(source, "bufferView"));
+    const auto bytes = STRATA_TRY(view(number));
+    image.bytes.assign(bytes.bytes.begin(), bytes.bytes.end());
   }
   return image;
 }

@@ -92,9 +92,8 @@ Result<DracoPrimitive> decode_draco(std::span<const std::uint8_t> bytes,
   for (draco::FaceIndex face(0); face < mesh->num_faces(); ++face)
     for (int k = 0; k < 3; ++k) primitive.indices.push_back(mesh->face(face)[k].value());
   for (const auto& [name, request] : requests) {
-    auto values = read_attribute(*mesh, name, request);
-    if (!values) return tl::unexpected(values.error());
-    primitive.attributes.emplace(name, std::move(*values));
+    auto values = STRATA_TRY(read_attribute(*mesh, name, request));
+    primitive.attributes.emplace(name, std::move(values));
   }
   return primitive;
 }

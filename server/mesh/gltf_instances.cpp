@@ -46,30 +46,27 @@ Result<GltfInstances> GltfInstances::read(GltfDocument& document, const json& no
        {Part{"TRANSLATION", &instances.translations_, 3},
         Part{"ROTATION", &instances.rotations_, 4}, Part{"SCALE", &instances.scales_, 3}}) {
     if (!attributes.contains(part.name)) continue;
-    const auto accessor = whole_number(attributes, part.name);
-    if (!accessor) return tl::unexpected(accessor.error());
-    const auto form = document.form(*accessor, part.name);
-    if (!form) return tl::unexpected(form.error());
+    const auto accessor = STRATA_TRY(whole_number(attributes, part.name));
+    const auto form = STRATA_TRY(document.form(accessor, part.name));
     const std::string name = std::string(part.name) + " of " + kExtension;
-    const bool whole = form->component_type == kByte || form->component_type == kShort;
+    const bool whole = form.component_type == kByte || form.component_type == kShort;
     const bool allowed =
-        form->component_type == kFloat || (part.components == 4 && whole && form->normalized);
-    if (form->components != part.components || !allowed)
+        form.component_type == kFloat || (part.components == 4 && whole && form.normalized);
+    if (form.components != part.components || !allowed)
       return refuse_file(name + " in the glTF does not hold " + std::to_string(part.components) +
                          (part.components == 4
                               ? " numbers of FLOAT, or of BYTE or SHORT that are normalised."
                               : " numbers of FLOAT."));
-    if (form->count > kMostInstances)
-      return refuse_file("The glTF repeats a mesh " + std::to_string(form->count) + " times by " +
+    if (form.count > kMostInstances)
+      return refuse_file("The glTF repeats a mesh " + std::to_string(form.count) + " times by " +
                          kExtension + "; up to " + std::to_string(kMostInstances) +
                          " are read. Export the parts that you need as meshes.");
-    if (count && *count != form->count)
-      return refuse_file(name + " in the glTF has " + std::to_string(form->count) +
+    if (count && *count != form.count)
+      return refuse_file(name + " in the glTF has " + std::to_string(form.count) +
                          " values, but another attribute has " + std::to_string(*count) + ".");
-    count = form->count;
-    auto values = document.values(*accessor, part.name);
-    if (!values) return tl::unexpected(values.error());
-    *part.values = std::move(*values);
+    count = form.count;
+    auto values = STRATA_TRY(document.values(accessor, part.name));
+    *part.values = std::move(values);
   }
   instances.count_ = count.value_or(1);
   return instances;

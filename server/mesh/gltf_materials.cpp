@@ -39,10 +39,9 @@ class MaterialReader {
       return refuse_file("In the glTF, \"materials\" is not a list of fewer than 65535.");
     for (const json& source : *list) {
       if (!source.is_object()) return refuse_file("A material of the glTF is not an object.");
-      auto material = read_material(source);
-      if (!material) return tl::unexpected(material.error());
-      material->material = static_cast<std::uint16_t>(materials.size());
-      materials.push_back(*material);
+      auto material = STRATA_TRY(read_material(source));
+      material.material = static_cast<std::uint16_t>(materials.size());
+      materials.push_back(material);
     }
     return materials;
   }
@@ -53,20 +52,17 @@ class MaterialReader {
         object_in(object_in(source, "extensions"), "KHR_materials_pbrSpecularGlossiness");
     const json& metallic = object_in(source, "pbrMetallicRoughness");
     const bool is_glossy = metallic.empty() && !glossy.empty();
-    const auto factor = real_numbers(is_glossy ? glossy : metallic,
-                                     is_glossy ? "diffuseFactor" : "baseColorFactor", {1, 1, 1, 1});
-    if (!factor) return tl::unexpected(factor.error());
+    const auto factor =
+        STRATA_TRY(real_numbers(is_glossy ? glossy : metallic,
+                                is_glossy ? "diffuseFactor" : "baseColorFactor", {1, 1, 1, 1}));
     Material material;
     material.name = text_of(source, "name").substr(0, 200);
-    for (int k = 0; k < 3; ++k)
-      material.color[k] = static_cast<float>(srgb_of_linear((*factor)[k]));
-    material.color.a = static_cast<float>(std::clamp((*factor)[3], 0.0, 1.0));
+    for (int k = 0; k < 3; ++k) material.color[k] = static_cast<float>(srgb_of_linear(factor[k]));
+    material.color.a = static_cast<float>(std::clamp(factor[3], 0.0, 1.0));
     GltfMaterial result;
     const json& texture =
         object_in(is_glossy ? glossy : metallic, is_glossy ? "diffuseTexture" : "baseColorTexture");
-    if (!texture.empty())
-      if (auto done = read_texture(texture, material, result); !done)
-        return tl::unexpected(done.error());
+    if (!texture.empty()) STRATA_TRY(read_texture(texture, material, result));
     mesh_.materials.push_back(std::move(material));
     return result;
   }
@@ -77,44 +73,38 @@ class MaterialReader {
                texcoord = whole_number(reference, "texCoord", 0);
     if (!index) return tl::unexpected(index.error());
     if (!texcoord) return tl::unexpected(texcoord.error());
-    const auto set = whole_number(transform, "texCoord", *texcoord);
-    if (!set) return tl::unexpected(set.error());
-    result.texcoord = static_cast<int>(std::min<std::uint64_t>(*set, 1000));
-    if (auto done = read_transform(transform, result); !done) return done;
+    const auto set = STRATA_TRY(whole_number(transform, "texCoord", *texcoord));
+    result.texcoord = static_cast<int>(std::min<std::uint64_t>(set, 1000));
+    STRATA_TRY(read_transform(transform, result));
 
-    const auto texture = document_.element("textures", *index);
-    if (!texture) return tl::unexpected(texture.error());
-    if ((*texture)->contains("sampler")) {
-      const auto number = whole_number(**texture, "sampler");
-      if (!number) return tl::unexpected(number.error());
-      const auto sampler = document_.element("samplers", *number);
-      if (!sampler) return tl::unexpected(sampler.error());
-      const auto s = whole_number(**sampler, "wrapS", 10497),
-                 t = whole_number(**sampler, "wrapT", 10497);
+    const auto texture = STRATA_TRY(document_.element("textures", *index));
+    if (texture->contains("sampler")) {
+      const auto number = STRATA_TRY(whole_number(*texture, "sampler"));
+      const auto sampler = STRATA_TRY(document_.element("samplers", number));
+      const auto s = whole_number(*sampler, "wrapS", 10497),
+                 t = whole_number(*sampler, "wrapT", 10497);
       if (!s) return tl::unexpected(s.error());
       if (!t) return tl::unexpected(t.error());
       material.wrap_u = wrap_of(*s);
       material.wrap_v = wrap_of(*t);
     }
-    const auto source = image_of(**texture);
-    if (!source) return tl::unexpected(source.error());
-    if (!*source) {
+    const auto source = STRATA_TRY(image_of(*texture));
+    if (!source) {
       if (pictureless_.insert(*index).second && pictureless_.size() <= kMostNotes)
-        note(repairs_, "texture without a picture: " + title_of(**texture, *index), 1);
+        note(repairs_, "texture without a picture: " + title_of(*texture, *index), 1);
       return {};
     }
-    const std::uint64_t image = **source;
+    const std::uint64_t image = *source;
     if (image_textures_.contains(image)) {
       material.texture = image_textures_[image];
       return {};
     }
-    auto found = document_.image(image);
-    if (!found) return tl::unexpected(found.error());
-    const std::string name = found->name.empty() ? "image " + std::to_string(image) : found->name;
-    if (found->missing)
+    auto found = STRATA_TRY(document_.image(image));
+    const std::string name = found.name.empty() ? "image " + std::to_string(image) : found.name;
+    if (found.missing)
       shelf_.missing(name);
     else
-      material.texture = shelf_.of_bytes(name, std::move(found->bytes));
+      material.texture = shelf_.of_bytes(name, std::move(found.bytes));
     image_textures_[image] = material.texture;
     return {};
   }

@@ -39,13 +39,12 @@ class PrimitiveReader {
              {"COLOR_0", &primitive_.colors, 3, 4, true}}} {}
 
   Result<std::optional<GltfPrimitive>> read() {
-    const auto mode = whole_number(source_, "mode", kTriangles);
-    if (!mode) return tl::unexpected(mode.error());
-    primitive_.mode = *mode;
-    if (*mode > kTriangleFan)
-      return refuse_file("A primitive of the glTF has mode " + std::to_string(*mode) +
+    const auto mode = STRATA_TRY(whole_number(source_, "mode", kTriangles));
+    primitive_.mode = mode;
+    if (mode > kTriangleFan)
+      return refuse_file("A primitive of the glTF has mode " + std::to_string(mode) +
                          ", which glTF does not have.");
-    if (*mode < kTriangles) {
+    if (mode < kTriangles) {
       ++remarks_.points_and_lines;
       return std::nullopt;
     }
@@ -55,13 +54,10 @@ class PrimitiveReader {
       ++remarks_.without_positions;
       return std::nullopt;
     }
-    const Result<void> done = draco.empty() ? Result<void>() : read_draco(draco);
-    if (!done) return tl::unexpected(done.error());
-    for (const Attribute& attribute : attributes_)
-      if (auto read = read_plain(attribute); !read) return tl::unexpected(read.error());
-    if (draco.empty())
-      if (auto read = read_indices(); !read) return tl::unexpected(read.error());
-    if (auto checked = check(); !checked) return tl::unexpected(checked.error());
+    STRATA_TRY(draco.empty() ? Result<void>() : read_draco(draco));
+    for (const Attribute& attribute : attributes_) STRATA_TRY(read_plain(attribute));
+    if (draco.empty()) STRATA_TRY(read_indices());
+    STRATA_TRY(check());
     keep_used_vertices();
     return std::move(primitive_);
   }
@@ -95,15 +91,11 @@ class PrimitiveReader {
   // What a primitive of Draco keeps beside its stream is read like any other.
   Result<void> read_plain(const Attribute& attribute) {
     if (attribute.values->components != 0 || !accessors_.contains(attribute.name)) return {};
-    const auto accessor = whole_number(accessors_, attribute.name.c_str());
-    if (!accessor) return tl::unexpected(accessor.error());
-    const auto form = document_.form(*accessor, attribute.name);
-    if (!form) return tl::unexpected(form.error());
-    const auto normalize = must_normalize(attribute, *accessor, *form);
-    if (!normalize) return tl::unexpected(normalize.error());
-    auto found = document_.values(*accessor, attribute.name, *normalize);
-    if (!found) return tl::unexpected(found.error());
-    *attribute.values = std::move(*found);
+    const auto accessor = STRATA_TRY(whole_number(accessors_, attribute.name.c_str()));
+    const auto form = STRATA_TRY(document_.form(accessor, attribute.name));
+    const auto normalize = STRATA_TRY(must_normalize(attribute, accessor, form));
+    auto found = STRATA_TRY(document_.values(accessor, attribute.name, normalize));
+    *attribute.values = std::move(found);
     return {};
   }
 
@@ -112,41 +104,32 @@ class PrimitiveReader {
     std::map<std::string, DracoRequest> requests;
     for (const Attribute& attribute : attributes_) {
       if (!ids.contains(attribute.name)) continue;
-      const auto id = whole_number(ids, attribute.name.c_str());
-      if (!id) return tl::unexpected(id.error());
+      const auto id = STRATA_TRY(whole_number(ids, attribute.name.c_str()));
       DracoRequest& request = requests[attribute.name];
-      request.id = static_cast<std::uint32_t>(*id);
+      request.id = static_cast<std::uint32_t>(id);
       if (!accessors_.contains(attribute.name)) continue;
-      const auto accessor = whole_number(accessors_, attribute.name.c_str());
-      if (!accessor) return tl::unexpected(accessor.error());
-      const auto form = document_.form(*accessor, attribute.name);
-      if (!form) return tl::unexpected(form.error());
-      const auto normalize = must_normalize(attribute, *accessor, *form);
-      if (!normalize) return tl::unexpected(normalize.error());
-      request.form = *form;
-      request.normalize = *normalize;
+      const auto accessor = STRATA_TRY(whole_number(accessors_, attribute.name.c_str()));
+      const auto form = STRATA_TRY(document_.form(accessor, attribute.name));
+      const auto normalize = STRATA_TRY(must_normalize(attribute, accessor, form));
+      request.form = form;
+      request.normalize = normalize;
     }
     std::uint64_t most = max_triangles_;
     if (source_.contains("indices")) {
-      const auto accessor = whole_number(source_, "indices");
-      if (!accessor) return tl::unexpected(accessor.error());
-      const auto form = document_.form(*accessor, "indices");
-      if (!form) return tl::unexpected(form.error());
+      const auto accessor = STRATA_TRY(whole_number(source_, "indices"));
+      const auto form = STRATA_TRY(document_.form(accessor, "indices"));
       // A strip is stored as the triangles that it makes.
-      const std::uint64_t announced = primitive_.mode == kTriangles ? form->count / 3 : form->count;
+      const std::uint64_t announced = primitive_.mode == kTriangles ? form.count / 3 : form.count;
       most = std::min(most, announced);
     }
-    const auto view_index = whole_number(extension, "bufferView");
-    if (!view_index) return tl::unexpected(view_index.error());
-    const auto view = document_.view(*view_index);
-    if (!view) return tl::unexpected(view.error());
-    auto decoded = decode_draco(view->bytes, requests, most);
-    if (!decoded) return tl::unexpected(decoded.error());
+    const auto view_index = STRATA_TRY(whole_number(extension, "bufferView"));
+    const auto view = STRATA_TRY(document_.view(view_index));
+    auto decoded = STRATA_TRY(decode_draco(view.bytes, requests, most));
     for (const Attribute& attribute : attributes_)
-      if (const auto found = decoded->attributes.find(attribute.name);
-          found != decoded->attributes.end())
+      if (const auto found = decoded.attributes.find(attribute.name);
+          found != decoded.attributes.end())
         *attribute.values = std::move(found->second);
-    primitive_.indices = std::move(decoded->indices);
+    primitive_.indices = std::move(decoded.indices);
     primitive_.mode = kTriangles;
     return {};
   }
@@ -159,11 +142,9 @@ class PrimitiveReader {
       for (std::uint32_t i = 0; i < primitive_.indices.size(); ++i) primitive_.indices[i] = i;
       return {};
     }
-    const auto accessor = whole_number(source_, "indices");
-    if (!accessor) return tl::unexpected(accessor.error());
-    auto indices = document_.indices(*accessor);
-    if (!indices) return tl::unexpected(indices.error());
-    primitive_.indices = std::move(*indices);
+    const auto accessor = STRATA_TRY(whole_number(source_, "indices"));
+    auto indices = STRATA_TRY(document_.indices(accessor));
+    primitive_.indices = std::move(indices);
     return {};
   }
 

@@ -89,21 +89,22 @@ Result<std::size_t> pick_scan(std::span<const std::string> filenames) {
   const auto& scans = meshes.empty() ? archives : meshes;
   if (scans.size() == 1) return scans.front();
   if (scans.size() > 1)
-    return fail(422, "More than one scan",
+    return fail(ErrorCode::invalid, "More than one scan",
                 "One import makes one model, but several meshes were sent: " +
                     listed(filenames, scans) + ". Import them one by one.",
                 "filename");
   if (filenames.empty())
-    return fail(422, "No file", "There is no file to import; " + std::string(kTaken) + ".", "file");
+    return fail(ErrorCode::invalid, "No file",
+                "There is no file to import; " + std::string(kTaken) + ".", "file");
   if (filenames.size() == 1 && ending(filenames[0]).empty())
-    return fail(422, "File name missing",
+    return fail(ErrorCode::invalid, "File name missing",
                 "Give the file's name, such as NAME.ply or NAME.obj: its ending names the format.",
                 "filename");
   if (filenames.size() == 1)
-    return fail(415, "Format not taken",
+    return fail(ErrorCode::unsupported, "Format not taken",
                 "'" + ending(filenames[0]) + "' files are not taken; " + std::string(kTaken) + ".",
                 "filename");
-  return fail(415, "No mesh among the files",
+  return fail(ErrorCode::unsupported, "No mesh among the files",
               "None of the " + std::to_string(filenames.size()) + " files is a mesh; " +
                   std::string(kTaken) + ".",
               "filename");
@@ -128,9 +129,8 @@ Result<InputFiles> InputFiles::of(std::vector<Entry> entries, const std::filesys
   if (!scan) return tl::unexpected(scan.error());
   if (input_kind(entries[*scan].name) == InputKind::zip) {
     if (entries[*scan].bytes.empty()) return refuse_file("The file is empty.");
-    auto unpacked = unpack_archive(entries[*scan].bytes, scratch, progress);
-    if (!unpacked) return tl::unexpected(unpacked.error());
-    entries = std::move(*unpacked);
+    auto unpacked = STRATA_TRY(unpack_archive(entries[*scan].bytes, scratch, progress));
+    entries = std::move(unpacked);
     scan = pick_scan(names_of(entries));
     if (!scan) return refuse_file("In the zip: " + scan.error().detail);
     if (input_kind(entries[*scan].name) == InputKind::zip)

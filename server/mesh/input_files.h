@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/error.h"
 #include "core/mapped_file.h"
-#include "core/problem.h"
 #include "core/progress.h"
 
 namespace strata::mesh {
@@ -27,9 +27,9 @@ enum class InputKind { ply, obj, stl, gltf, glb, zip, companion };
 InputKind input_kind(std::string_view filename);
 bool is_mesh(InputKind kind);
 
-// Which of these files is the scan: the one mesh, or the one archive where there is no mesh. 422
-// without a name or an ending, 415 where there is none, 422 where there are several; both name what
-// was found.
+// Which of these files is the scan: the one mesh, or the one archive where there is no mesh.
+// invalid without a name or an ending, `unsupported` where there is none, `invalid` where there are
+// several; both name what was found.
 Result<std::size_t> pick_scan(std::span<const std::string> filenames);
 
 // The files of one scan as read-only memory, found by the names they call each other. Thread: any,

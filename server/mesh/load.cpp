@@ -22,7 +22,8 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
   }();
   if (!loaded) {
     // What a reader of another format stumbles over says nothing to a person.
-    if (const auto other = other_nature(bytes, kind); other && loaded.error().status == 422)
+    if (const auto other = other_nature(bytes, kind);
+        other && loaded.error().code == ErrorCode::invalid)
       return refuse_file(*other);
     return loaded;
   }
@@ -45,21 +46,18 @@ Result<LoadedMesh> parse(const InputFiles& files, Progress& progress) {
 
 // Takes the files, so that they are unmapped before `repair` needs the memory.
 Result<LoadedMesh> load_mesh(InputFiles files, Progress& progress, const LoadOptions& options) {
-  auto loaded = [&] {
+  auto loaded = STRATA_TRY([&] {
     const InputFiles opened = std::move(files);
     return parse(opened, progress);
-  }();
-  if (!loaded) return loaded;
-  if (auto repaired = repair(*loaded, progress, options); !repaired)
-    return tl::unexpected(repaired.error());
+  }());
+  STRATA_TRY(repair(loaded, progress, options));
   return loaded;
 }
 
 Result<LoadedMesh> load_mesh(std::span<const InputFile> files, Progress& progress,
                              const LoadOptions& options) {
-  auto opened = InputFiles::open(files, progress);
-  if (!opened) return tl::unexpected(opened.error());
-  return load_mesh(std::move(*opened), progress, options);
+  auto opened = STRATA_TRY(InputFiles::open(files, progress));
+  return load_mesh(std::move(opened), progress, options);
 }
 
 Result<LoadedMesh> load_mesh(const std::filesystem::path& file, const std::string& filename,

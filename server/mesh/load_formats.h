@@ -24,9 +24,9 @@ Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& o
 // Parsers report up to this share of the whole, `repair` from there on.
 constexpr double kParsedShare = 0.6;
 
-// 422, the one title of every fault in a mesh file.
-inline tl::unexpected<Problem> refuse_file(std::string detail) {
-  return fail(422, "Mesh file refused", std::move(detail), "file");
+// invalid, the one title of every fault in a mesh file.
+inline tl::unexpected<Error> refuse_file(std::string detail) {
+  return fail(ErrorCode::invalid, "Mesh file refused", std::move(detail), "file");
 }
 
 // Adds a line to the report when there is something to report.

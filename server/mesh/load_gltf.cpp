@@ -30,10 +30,9 @@ class GltfReader {
         faces_(loaded_.mesh, max_triangles) {}
 
   Result<LoadedMesh> read() {
-    auto materials = read_gltf_materials(document_, files_, loaded_);
-    if (!materials) return tl::unexpected(materials.error());
-    materials_ = std::move(*materials);
-    if (auto walked = walk_scene(); !walked) return tl::unexpected(walked.error());
+    auto materials = STRATA_TRY(read_gltf_materials(document_, files_, loaded_));
+    materials_ = std::move(materials);
+    STRATA_TRY(walk_scene());
     auto& mesh = loaded_.mesh;
     if (mesh.vertex_colors.empty()) mesh.colors_tint_materials = false;
     if (mesh.triangles.empty()) return nothing_to_see();
@@ -49,7 +48,7 @@ class GltfReader {
   }
 
  private:
-  tl::unexpected<Problem> nothing_to_see() const {
+  tl::unexpected<Error> nothing_to_see() const {
     const auto meshes = document_.root().find("meshes");
     if (remarks_.points_and_lines > 0)
       return refuse_file("The glTF holds points or lines only, and no triangles.");
@@ -73,13 +72,10 @@ class GltfReader {
     const json& root = document_.root();
     std::vector<Visit> roots;
     if (root.contains("scenes")) {
-      const auto scene = whole_number(root, "scene", 0);
-      if (!scene) return tl::unexpected(scene.error());
-      const auto found = document_.element("scenes", *scene);
-      if (!found) return tl::unexpected(found.error());
-      const auto nodes = children_of(**found, "nodes");
-      if (!nodes) return tl::unexpected(nodes.error());
-      for (const std::uint64_t node : *nodes) roots.push_back({node, glm::dmat4(1)});
+      const auto scene = STRATA_TRY(whole_number(root, "scene", 0));
+      const auto found = STRATA_TRY(document_.element("scenes", scene));
+      const auto nodes = STRATA_TRY(children_of(*found, "nodes"));
+      for (const std::uint64_t node : nodes) roots.push_back({node, glm::dmat4(1)});
       return roots;
     }
     const auto nodes = root.find("nodes");
@@ -87,9 +83,8 @@ class GltfReader {
     std::vector<bool> is_child(count, false);
     for (std::size_t i = 0; i < count; ++i) {
       if (!(*nodes)[i].is_object()) continue;
-      const auto children = children_of((*nodes)[i], "children");
-      if (!children) return tl::unexpected(children.error());
-      for (const std::uint64_t child : *children)
+      const auto children = STRATA_TRY(children_of((*nodes)[i], "children"));
+      for (const std::uint64_t child : children)
         if (child < count) is_child[child] = true;
     }
     for (std::size_t i = 0; i < count; ++i)
@@ -112,41 +107,36 @@ class GltfReader {
   }
 
   Result<void> walk_scene() {
-    auto open = roots();
-    if (!open) return tl::unexpected(open.error());
-    std::reverse(open->begin(), open->end());
+    auto open = STRATA_TRY(roots());
+    std::reverse(open.begin(), open.end());
     std::vector<bool> seen(
         document_.root().contains("nodes") ? document_.root()["nodes"].size() : 0, false);
-    while (!open->empty()) {
-      const Visit visit = open->back();
-      open->pop_back();
-      const auto node = document_.element("nodes", visit.node);
-      if (!node) return tl::unexpected(node.error());
+    while (!open.empty()) {
+      const Visit visit = open.back();
+      open.pop_back();
+      const auto node = STRATA_TRY(document_.element("nodes", visit.node));
       if (seen[visit.node])
         return refuse_file("Node " + std::to_string(visit.node) +
                            " of the glTF hangs in its scene twice, or is its own ancestor.");
       seen[visit.node] = true;
-      const auto local = transform_of(**node);
-      if (!local) return tl::unexpected(local.error());
-      const glm::dmat4 world_from_node = visit.world_from_parent * *local;
-      if ((*node)->contains("mesh")) {
+      const auto local = STRATA_TRY(transform_of(*node));
+      const glm::dmat4 world_from_node = visit.world_from_parent * local;
+      if (node->contains("mesh")) {
         mesh_shown_ = true;
-        ignored_motion_ += (*node)->contains("skin");
-        if (auto added = add_mesh(**node, world_from_node); !added) return added;
+        ignored_motion_ += node->contains("skin");
+        STRATA_TRY(add_mesh(*node, world_from_node));
       }
-      auto children = children_of(**node, "children");
-      if (!children) return tl::unexpected(children.error());
-      for (auto child = children->rbegin(); child != children->rend(); ++child)
-        open->push_back({*child, world_from_node});
+      auto children = STRATA_TRY(children_of(*node, "children"));
+      for (auto child = children.rbegin(); child != children.rend(); ++child)
+        open.push_back({*child, world_from_node});
     }
     return {};
   }
 
   static Result<glm::dmat4> transform_of(const json& node) {
     if (node.contains("matrix")) {
-      const auto matrix = real_numbers(node, "matrix", std::vector<double>(16));
-      if (!matrix) return tl::unexpected(matrix.error());
-      return glm::make_mat4(matrix->data());
+      const auto matrix = STRATA_TRY(real_numbers(node, "matrix", std::vector<double>(16)));
+      return glm::make_mat4(matrix.data());
     }
     const auto t = real_numbers(node, "translation", {0, 0, 0}),
                r = real_numbers(node, "rotation", {0, 0, 0, 1}),
@@ -158,22 +148,19 @@ class GltfReader {
   }
 
   Result<void> add_mesh(const json& node, const glm::dmat4& world_from_node) {
-    const auto index = whole_number(node, "mesh");
-    if (!index) return tl::unexpected(index.error());
-    const auto mesh = document_.element("meshes", *index);
-    if (!mesh) return tl::unexpected(mesh.error());
-    const auto primitives = (*mesh)->find("primitives");
-    if (primitives == (*mesh)->end() || !primitives->is_array())
-      return refuse_file("Mesh " + std::to_string(*index) + " of the glTF has no primitives.");
-    const auto instances = GltfInstances::read(document_, node);
-    if (!instances) return tl::unexpected(instances.error());
+    const auto index = STRATA_TRY(whole_number(node, "mesh"));
+    const auto mesh = STRATA_TRY(document_.element("meshes", index));
+    const auto primitives = mesh->find("primitives");
+    if (primitives == mesh->end() || !primitives->is_array())
+      return refuse_file("Mesh " + std::to_string(index) + " of the glTF has no primitives.");
+    const auto instances = STRATA_TRY(GltfInstances::read(document_, node));
     for (const json& primitive : *primitives) {
       if (!primitive.is_object()) return refuse_file("A primitive of the glTF is not an object.");
       progress_.report(kParsedShare * done_ / (done_ + 1), "Reading triangles");
       done_ += 0.25;
       if (progress_.cancelled()) return cancelled_problem();
       ignored_motion_ += primitive.contains("targets");
-      if (auto added = add_primitive(primitive, world_from_node, *instances); !added) return added;
+      STRATA_TRY(add_primitive(primitive, world_from_node, instances));
     }
     return {};
   }
@@ -182,12 +169,11 @@ class GltfReader {
                              const GltfInstances& instances) {
     GltfMaterial material;
     if (source.contains("material")) {
-      const auto index = whole_number(source, "material");
-      if (!index) return tl::unexpected(index.error());
-      if (*index >= materials_.size())
-        return refuse_file("A primitive of the glTF names material " + std::to_string(*index) +
+      const auto index = STRATA_TRY(whole_number(source, "material"));
+      if (index >= materials_.size())
+        return refuse_file("A primitive of the glTF names material " + std::to_string(index) +
                            ", but there are " + std::to_string(materials_.size()) + ".");
-      material = materials_[*index];
+      material = materials_[index];
     }
     const auto primitive =
         read_gltf_primitive(document_, source, material, max_triangles_, remarks_);
@@ -213,8 +199,7 @@ class GltfReader {
         since_report = 0;
         if (progress_.cancelled()) return cancelled_problem();
       }
-      auto added = append(**primitive, material, world_from_node * instances.node_from_instance(i));
-      if (!added) return added;
+      STRATA_TRY(append(**primitive, material, world_from_node * instances.node_from_instance(i)));
     }
     return {};
   }
@@ -249,8 +234,7 @@ class GltfReader {
         if (i % 2 == 1) std::swap(a, b);
       }
       if (mirrored) std::swap(b, c);
-      if (auto added = faces_.add_triangle(corner(a), corner(b), corner(c), has_uv); !added)
-        return added;
+      STRATA_TRY(faces_.add_triangle(corner(a), corner(b), corner(c), has_uv));
     }
     return {};
   }
@@ -289,9 +273,8 @@ class GltfReader {
 
 Result<LoadedMesh> parse_gltf(const InputFiles& files, Progress& progress,
                               std::size_t max_triangles) {
-  auto document = GltfDocument::open(files);
-  if (!document) return tl::unexpected(document.error());
-  return GltfReader(std::move(*document), files, progress, max_triangles).read();
+  auto document = STRATA_TRY(GltfDocument::open(files));
+  return GltfReader(std::move(document), files, progress, max_triangles).read();
 }
 
 }  // namespace strata::mesh

@@ -30,10 +30,10 @@ class ObjReader {
         shelf_(files, loaded_.mesh, loaded_.repairs) {}
 
   Result<LoadedMesh> read() {
-    if (auto counted = count_lines(); !counted) return tl::unexpected(counted.error());
+    STRATA_TRY(count_lines());
     read_materials();
-    if (auto points = read_points(); !points) return tl::unexpected(points.error());
-    if (auto faces = read_faces(); !faces) return tl::unexpected(faces.error());
+    STRATA_TRY(read_points());
+    STRATA_TRY(read_faces());
     if (colored_ > 0)
       note(loaded_.repairs, "vertices without colour", loaded_.mesh.positions.size() - colored_);
     faces_.report(loaded_.repairs);
@@ -206,7 +206,7 @@ class ObjReader {
         }
         without_named_uv_ += missing_uv_;
         without_named_normal_ += missing_normal_;
-        if (auto added = faces_.add(corners, has_uv); !added) return added;
+        STRATA_TRY(faces_.add(corners, has_uv));
       } else if (keyword == "usemtl") {
         use_material(rest_of(line));
       } else if (keyword == "l" || keyword == "p" || keyword == "curv" || keyword == "curv2" ||
@@ -287,7 +287,7 @@ class ObjReader {
     for (char c : word.substr(0, 100)) result += c >= ' ' && c < 127 ? c : '?';
     return result;
   }
-  static tl::unexpected<Problem> fault(const ObjLines& lines, const std::string& what) {
+  static tl::unexpected<Error> fault(const ObjLines& lines, const std::string& what) {
     return refuse_file("Line " + std::to_string(lines.line_number()) + ": " + what + ".");
   }
 

@@ -34,17 +34,16 @@ class PlyReader {
       // Triangles are made when their vertices are known, wherever those stand in the file.
       const bool of_triangles = element.name == "face" || element.name == "tristrips";
       if (of_triangles && !has_vertices_) put_off_.push_back({&element, source_});
-      const Result<void> done = element.name == "vertex"        ? read_vertices(element)
-                                : of_triangles && has_vertices_ ? read_triangles(element)
-                                                                : skip_element(element);
-      if (!done) return tl::unexpected(done.error());
+      STRATA_TRY(element.name == "vertex"        ? read_vertices(element)
+                 : of_triangles && has_vertices_ ? read_triangles(element)
+                                                 : skip_element(element));
     }
     if (!has_vertices_) return refuse_file("The PLY has no element \"vertex\".");
     note(loaded_.repairs, "ignored bytes after the last element", source_.bytes_left_over());
     note(loaded_.repairs, "lines with more words than the header says", source_.surplus_elements());
     for (auto& [element, begin] : put_off_) {
       source_ = begin;
-      if (auto done = read_triangles(*element); !done) return tl::unexpected(done.error());
+      STRATA_TRY(read_triangles(*element));
     }
     face_colors_.spread(loaded_);
     faces_.report(loaded_.repairs);
@@ -136,7 +135,7 @@ class PlyReader {
       for (std::size_t k = 0; k < values.size(); ++k) {
         const PlyProperty& property = element.properties[k];
         if (static_cast<int>(k) == *indices) {
-          if (auto read = read_indices(property, i, element.count, corners); !read) return read;
+          STRATA_TRY(read_indices(property, i, element.count, corners));
         } else if (texcoords && static_cast<int>(k) == *texcoords && property.count_type) {
           if (!read_uv_list(property)) return broken("face", i, element.count);
         } else if (!(property.count_type ? skip_list(property)
@@ -153,7 +152,7 @@ class PlyReader {
       if (colors.present()) face_colors_.add(element, colors, values, corners);
       if (texnumber && !element.properties[*texnumber].count_type)
         faces_.use_material(material_of(values[*texnumber]));
-      if (auto added = faces_.add(corners, has_uv); !added) return added;
+      STRATA_TRY(faces_.add(corners, has_uv));
     }
     return {};
   }
@@ -174,8 +173,7 @@ class PlyReader {
     }
     for (std::int64_t k = 0; k < count; ++k) {
       if (!source_.integer(list.type, index)) return broken("face", face, faces);
-      if (auto checked = check_index("Face " + std::to_string(face), index); !checked)
-        return checked;
+      STRATA_TRY(check_index("Face " + std::to_string(face), index));
       FaceBuilder::Corner corner{static_cast<std::uint32_t>(index)};
       if (!vertex_uvs_.empty()) corner.uv = vertex_uvs_[corner.position];
       corners.push_back(corner);
@@ -210,7 +208,7 @@ class PlyReader {
         const PlyProperty& property = element.properties[k];
         double ignored = 0;
         if (static_cast<int>(k) == *indices) {
-          if (auto read = read_strip_list(property, i, element.count); !read) return read;
+          STRATA_TRY(read_strip_list(property, i, element.count));
         } else if (!(property.count_type ? skip_list(property)
                                          : source_.value(property.type, ignored))) {
           return broken("tristrips", i, element.count);
@@ -234,8 +232,7 @@ class PlyReader {
         length = 0;
         continue;
       }
-      if (auto checked = check_index("Triangle strip " + std::to_string(strip), index); !checked)
-        return checked;
+      STRATA_TRY(check_index("Triangle strip " + std::to_string(strip), index));
       FaceBuilder::Corner corner{static_cast<std::uint32_t>(index)};
       if (!vertex_uvs_.empty()) corner.uv = vertex_uvs_[corner.position];
       last = {last[1], last[2], corner};
@@ -285,8 +282,8 @@ class PlyReader {
                        std::to_string(static_cast<std::int64_t>(vertices) - 1) + ").");
   }
 
-  tl::unexpected<Problem> broken(const std::string& element, std::uint64_t index,
-                                 std::uint64_t count) {
+  tl::unexpected<Error> broken(const std::string& element, std::uint64_t index,
+                               std::uint64_t count) {
     const std::string where = element + " " + std::to_string(index) + " of " +
                               std::to_string(count) + " (" + source_.place() + ")";
     if (list_too_long_)
@@ -324,15 +321,13 @@ class PlyReader {
 Result<LoadedMesh> parse_ply(const InputFiles& files, Progress& progress,
                              std::size_t max_triangles) {
   const auto bytes = files.scan().bytes;
-  const Result<PlyHeader> header = parse_ply_header(bytes);
-  if (!header) return tl::unexpected(header.error());
-  if (header->encoding == PlyEncoding::ascii) {
-    return PlyReader(PlyAsciiSource(bytes, *header), *header, files, progress, max_triangles)
-        .read();
+  const PlyHeader header = STRATA_TRY(parse_ply_header(bytes));
+  if (header.encoding == PlyEncoding::ascii) {
+    return PlyReader(PlyAsciiSource(bytes, header), header, files, progress, max_triangles).read();
   }
-  const PlyBinarySource source(bytes, header->data_offset,
-                               header->encoding == PlyEncoding::big_endian);
-  return PlyReader(source, *header, files, progress, max_triangles).read();
+  const PlyBinarySource source(bytes, header.data_offset,
+                               header.encoding == PlyEncoding::big_endian);
+  return PlyReader(source, header, files, progress, max_triangles).read();
 }
 
 }  // namespace strata::mesh

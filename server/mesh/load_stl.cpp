@@ -30,8 +30,7 @@ class StlReader {
     const bool fits = count && *count <= room && *count > 0;
     const bool exact = fits && bytes_.size() == kHeaderBytes + 4 + *count * kTriangleBytes;
     const bool text = !exact && (is_all_text() || (!fits && has_words_of_text()));
-    const Result<void> done = text ? read_text() : read_binary(count, room);
-    if (!done) return tl::unexpected(done.error());
+    STRATA_TRY(text ? read_text() : read_binary(count, room));
     faces_.report(loaded_.repairs);
     return std::move(loaded_);
   }
@@ -119,7 +118,7 @@ class StlReader {
         if (loop.size() == kMaxPolygonCorners) return FaceBuilder::too_many_corners(place(rest));
         loop.push_back(point);
       } else if (is_word(word, "endfacet") || is_word(word, "endloop")) {
-        if (auto added = add(loop); !added) return added;
+        STRATA_TRY(add(loop));
         loop.clear();
       } else if (is_word(word, "facet")) {
         any_word = true;
@@ -181,7 +180,7 @@ class StlReader {
       line += read[i] == '\n' || (read[i] == '\r' && text_.substr(i + 1, 1) != "\n");
     return "line " + std::to_string(line);
   }
-  tl::unexpected<Problem> fault(std::string_view rest, const std::string& what) const {
+  tl::unexpected<Error> fault(std::string_view rest, const std::string& what) const {
     return refuse_file("In the STL, at " + place(rest) + ", stands " + what + ".");
   }
 

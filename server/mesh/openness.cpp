@@ -100,7 +100,7 @@ bool goes_on(void* progress, double done) {
 Result<std::unique_ptr<Openness>> Openness::make(std::shared_ptr<const Geometry> geometry,
                                                  float distance, int rays, Progress& progress) {
   const auto refused = [] {
-    return fail(507, "Not enough memory",
+    return fail(ErrorCode::out_of_memory, "Not enough memory",
                 "The ray tracer could not be set up for a model of this size.");
   };
   Device device(rtcNewDevice(nullptr));

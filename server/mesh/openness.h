@@ -16,8 +16,8 @@ namespace strata::mesh {
 // space. Thread-safe.
 class Openness {
  public:
-  // Refused (507) where there is not the memory for the ray tracer's tree, some 100 bytes a
-  // triangle, and when cancelled.
+  // Refused (storage_full) where there is not the memory for the ray tracer's tree, some 100 bytes
+  // a triangle, and when cancelled.
   static Result<std::unique_ptr<Openness>> make(std::shared_ptr<const Geometry> geometry,
                                                 float distance, int rays, Progress& progress);
   virtual ~Openness() = default;

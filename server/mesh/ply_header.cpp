@@ -69,7 +69,7 @@ class HeaderReader {
       const auto words = split(line);
       if (words.empty()) continue;
       if (words[0] == "end_header") return finish();
-      if (auto done = read_line(words); !done) return tl::unexpected(done.error());
+      STRATA_TRY(read_line(words));
     }
     if (text_.size() - position_ > kMostHeader || position_ > kMostHeader)
       return refuse_file("The PLY has no \"end_header\" in its first 16 MB.");
@@ -96,7 +96,7 @@ class HeaderReader {
     return true;
   }
 
-  tl::unexpected<Problem> fault(const std::string& what) const {
+  tl::unexpected<Error> fault(const std::string& what) const {
     return refuse_file("PLY header, line " + std::to_string(line_number_) + ": " + what);
   }
 

@@ -119,7 +119,7 @@ Result<void> drop_triangles(LoadedMesh& loaded) {
   }
   resize_triangles(mesh, kept);
   if (kept == 0) return refuse_file("No triangle of the file has an area.");
-  if (auto good = refuse_collapsed(mesh, degenerate + no_area, triangles); !good) return good;
+  STRATA_TRY(refuse_collapsed(mesh, degenerate + no_area, triangles));
   note(loaded.repairs, "dropped degenerate triangles", degenerate);
   note(loaded.repairs, "dropped triangles without area", no_area);
   note(loaded.repairs, "dropped duplicate triangles", duplicate);
@@ -159,7 +159,7 @@ Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& o
   std::uint64_t merged = 0;
   {
     std::vector<bool> used = used_vertices(mesh);
-    if (auto checked = check_coordinates(mesh, used); !checked) return checked;
+    STRATA_TRY(check_coordinates(mesh, used));
     if (progress.cancelled()) return cancelled_problem();
     progress.report(0.65, "Joining equal vertices");
     merged = weld_equal(mesh, used);
@@ -176,8 +176,8 @@ Result<void> repair(LoadedMesh& loaded, Progress& progress, const LoadOptions& o
   }
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.7, "Dropping degenerate and duplicate triangles");
-  if (auto dropped = drop_triangles(loaded); !dropped) return dropped;
-  if (auto made = make_manifold(loaded, progress, 0.75, 0.95); !made) return made;
+  STRATA_TRY(drop_triangles(loaded));
+  STRATA_TRY(make_manifold(loaded, progress, 0.75, 0.95));
   progress.report(0.95, "Dropping unused vertices");
   // none of them is used
   const std::uint64_t not_finite = count_not_finite(mesh), before = mesh.positions.size();

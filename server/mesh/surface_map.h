@@ -64,7 +64,7 @@ struct SurfaceMap {
   std::size_t bytes() const;
 };
 
-// 400 for a resolution that is no multiple of 128 in 128…16384.
+// `malformed` for a resolution that is no multiple of 128 in 128…16384.
 Result<void> check_map_resolution(int resolution);
 
 // Refused when cancelled, and for a resolution that is no multiple of 128 in 128…16384. The result

@@ -7,7 +7,7 @@ namespace strata::mesh {
 
 Result<void> check_map_resolution(int resolution) {
   if (resolution >= kTileSize && resolution <= 16384 && resolution % kTileSize == 0) return {};
-  return fail(400, "Resolution not possible",
+  return fail(ErrorCode::malformed, "Resolution not possible",
               "A surface map has a multiple of 128 from 128 to 16384 texels a side, not " +
                   std::to_string(resolution) + ".",
               "resolution");
@@ -15,8 +15,7 @@ Result<void> check_map_resolution(int resolution) {
 
 Result<SurfaceMap> bake_surface_map(const Geometry& geometry, int resolution, Progress& progress,
                                     int threads) {
-  if (auto possible = check_map_resolution(resolution); !possible)
-    return tl::unexpected(possible.error());
+  STRATA_TRY(check_map_resolution(resolution));
   SurfaceMap map;
   progress.report(0, "Locating texels on the surface");
   SurfaceBake bake(geometry, resolution, map);

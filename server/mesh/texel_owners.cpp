@@ -58,8 +58,7 @@ class TileSorter {
 
 Result<TexelOwners> bake_texel_owners(const Geometry& geometry, int resolution, Progress& progress,
                                       int threads) {
-  if (auto possible = check_map_resolution(resolution); !possible)
-    return tl::unexpected(possible.error());
+  STRATA_TRY(check_map_resolution(resolution));
   SurfaceMap map;
   progress.report(0, kLocating);
   SurfaceBake bake(geometry, resolution, map, BakeFor::owners);
@@ -124,8 +123,7 @@ Result<TileMap> paint_texels(const TexelOwners& owners, ValueType type, const Te
     bits[texel] = *value;
     valid[texel / 64] |= std::uint64_t{1} << (texel % 64);  // a slot is one thread's
   };
-  if (auto done = for_each_texel(owners, paint, "Painting", progress, threads); !done)
-    return tl::unexpected(done.error());
+  STRATA_TRY(for_each_texel(owners, paint, "Painting", progress, threads));
   for (const auto& [texel, owner] : owners.gutter) {
     if (!(valid[owner / 64] >> (owner % 64) & 1)) continue;
     bits[texel] = bits[owner];

@@ -34,7 +34,7 @@ class ScratchFile {
     ScratchFile file;
     file.descriptor_ = ::mkstemp(path.data());
     if (file.descriptor_ < 0)
-      return fail(507, "No room to unpack",
+      return fail(ErrorCode::storage_full, "No room to unpack",
                   "A file for unpacking cannot be made in " + folder.string() + ": " +
                       std::strerror(errno) + ".");
     ::unlink(path.c_str());
@@ -51,7 +51,7 @@ class ScratchFile {
       const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
       if (written < 0 && errno == EINTR) continue;
       if (written <= 0)
-        return fail(507, "No room to unpack",
+        return fail(ErrorCode::storage_full, "No room to unpack",
                     std::string("The archive cannot be unpacked: ") + std::strerror(errno) + ".");
       bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
@@ -83,7 +83,7 @@ class Unpacker {
         room_(zip.size() * kMostUnpackGain + kUnpackAlways) {}
 
   Result<std::vector<InputFiles::Entry>> run() {
-    if (auto opened = open(); !opened) return tl::unexpected(opened.error());
+    STRATA_TRY(open());
     const zip_int64_t count = zip_get_num_entries(archive_.get(), 0);
     if (count < 0 || static_cast<std::uint64_t>(count) > kMostArchiveEntries)
       return refuse_file("The zip holds " + std::to_string(count) + " files; " +
@@ -94,9 +94,8 @@ class Unpacker {
       progress_.report(0, "Unpacking");
       const char* name = zip_get_name(archive_.get(), static_cast<zip_uint64_t>(i), 0);
       if (name == nullptr || is_hidden(name) || !wanted_(name)) continue;
-      auto entry = unpack(static_cast<zip_uint64_t>(i), mended_utf8(name));
-      if (!entry) return tl::unexpected(entry.error());
-      entries.push_back(std::move(*entry));
+      auto entry = STRATA_TRY(unpack(static_cast<zip_uint64_t>(i), mended_utf8(name)));
+      entries.push_back(std::move(entry));
     }
     return entries;
   }
@@ -132,8 +131,7 @@ class Unpacker {
       return damaged("it is encrypted. Pack it without a password");
     const std::unique_ptr<zip_file_t, CloseEntry> file(zip_fopen_index(archive_.get(), index, 0));
     if (!file) return damaged(zip_strerror(archive_.get()));
-    auto scratch = ScratchFile::make(scratch_);
-    if (!scratch) return tl::unexpected(scratch.error());
+    auto scratch = STRATA_TRY(ScratchFile::make(scratch_));
     if (chunk_.empty()) chunk_.resize(kChunk);
     for (;;) {
       if (progress_.cancelled()) return cancelled_problem();
@@ -144,13 +142,11 @@ class Unpacker {
         return refuse_file("The zip unpacks to more than " + std::to_string(kMostUnpackGain) +
                            " times its size. Send the files unpacked, if they are right.");
       room_ -= static_cast<std::uint64_t>(read);
-      if (auto done = scratch->append({chunk_.data(), static_cast<std::size_t>(read)}); !done)
-        return tl::unexpected(done.error());
+      STRATA_TRY(scratch.append({chunk_.data(), static_cast<std::size_t>(read)}));
     }
-    auto mapped = scratch->map();
-    if (!mapped) return tl::unexpected(mapped.error());
-    const auto bytes = mapped->bytes();
-    return InputFiles::Entry{name, bytes, std::move(*mapped)};
+    auto mapped = STRATA_TRY(scratch.map());
+    const auto bytes = mapped.bytes();
+    return InputFiles::Entry{name, bytes, std::move(mapped)};
   }
 
   std::span<const std::uint8_t> zip_;

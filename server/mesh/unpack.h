@@ -20,8 +20,8 @@ bool is_scan_file(std::string_view name);
 
 // The files of a zip that are `wanted` by their names, as files without names in `scratch` that go
 // with their mappings; the rest is passed over, and what a Mac adds. Names in the archive are never
-// paths here. Refused (422): no zip, damaged, encrypted, too many entries, unpacking to more than
-// stated; 507 where the disk is full; 499 when cancelled.
+// paths here. Refused (invalid): no zip, damaged, encrypted, too many entries, unpacking to more
+// than stated; `storage_full` where the disk is full; `cancelled` when cancelled.
 Result<std::vector<InputFiles::Entry>> unpack_archive(
     std::span<const std::uint8_t> zip, const std::filesystem::path& scratch, Progress& progress,
     const std::function<bool(std::string_view)>& wanted = is_scan_file);

@@ -25,7 +25,8 @@ std::string percent(double share) {
 }
 
 Result<Atlas> refuse(const std::string& reason) {
-  return fail(422, kTitle, reason + " An atlas of its own is made for this model instead.",
+  return fail(ErrorCode::invalid, kTitle,
+              reason + " An atlas of its own is made for this model instead.",
               "texture_coordinates");
 }
 
@@ -86,7 +87,7 @@ Result<void> move_faults(const TriangleMesh& mesh, UvFaults& faults, int lowest_
   progress.report(0.3, "Moving triangles that cannot stay");
   auto found = move_triangles(mesh, atlas.corner_uvs, atlas.moved, lowest_resolution, progress);
   if (progress.cancelled()) return cancelled_problem();
-  if (!found) return fail(422, kTitle, "no room");
+  if (!found) return fail(ErrorCode::invalid, kTitle, "no room");
   atlas.corner_uvs = std::move(found->corner_uvs);
   atlas.kept_scale = found->scale;
   note_moved(faults, found->scale, atlas.repairs);

@@ -74,7 +74,7 @@ Result<VertexProperty> read(Source source, const PlyHeader& header, const std::s
     if (is_vertex && !(is_number(x) && is_number(y) && is_number(z)))
       return refuse_file("The element \"vertex\" has no properties x, y and z.");
     if (is_vertex && !is_number(at))
-      return fail(422, "No such property",
+      return fail(ErrorCode::invalid, "No such property",
                   "The vertices of the file have no number \"" + wanted + "\".",
                   "compute.property");
     VertexProperty found;
@@ -120,13 +120,11 @@ std::vector<std::string> vertex_property_names(std::span<const std::uint8_t> beg
 
 Result<VertexProperty> read_vertex_property(std::span<const std::uint8_t> file,
                                             const std::string& property) {
-  const auto header = parse_ply_header(file);
-  if (!header) return tl::unexpected(header.error());
-  if (header->encoding == PlyEncoding::ascii)
-    return read(PlyAsciiSource(file, *header), *header, property);
-  return read(
-      PlyBinarySource(file, header->data_offset, header->encoding == PlyEncoding::big_endian),
-      *header, property);
+  const auto header = STRATA_TRY(parse_ply_header(file));
+  if (header.encoding == PlyEncoding::ascii)
+    return read(PlyAsciiSource(file, header), header, property);
+  return read(PlyBinarySource(file, header.data_offset, header.encoding == PlyEncoding::big_endian),
+              header, property);
 }
 
 Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan,
@@ -134,18 +132,18 @@ Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan,
                                        Progress& progress) {
   const InputKind kind = input_kind(filename);
   if (kind != InputKind::ply && kind != InputKind::obj)
-    return fail(422, "Order not known",
+    return fail(ErrorCode::invalid, "Order not known",
                 "Vertices have an order of their own in PLY and OBJ files only.", "source");
   std::vector<InputFiles::Entry> entries;
   entries.push_back({filename, scan, std::nullopt});
-  const auto files = InputFiles::of(std::move(entries), {}, progress);
-  if (!files) return tl::unexpected(files.error());
-  auto mesh = kind == InputKind::ply ? parse_ply(*files, progress) : parse_obj(*files, progress);
-  if (!mesh) return tl::unexpected(mesh.error());
-  VertexProperty property{std::move(mesh->mesh.positions), {}};
+  const auto files = STRATA_TRY(InputFiles::of(std::move(entries), {}, progress));
+  auto mesh =
+      STRATA_TRY(kind == InputKind::ply ? parse_ply(files, progress) : parse_obj(files, progress));
+  VertexProperty property{std::move(mesh.mesh.positions), {}};
   property.values.reserve(property.positions.size());
   const auto refuse = [](std::size_t line, const std::string& what) {
-    return fail(422, "CSV not usable", "Line " + std::to_string(line) + ": " + what, "body");
+    return fail(ErrorCode::invalid, "CSV not usable", "Line " + std::to_string(line) + ": " + what,
+                "body");
   };
   std::size_t line = 0;
   while (!csv.empty()) {
@@ -170,7 +168,7 @@ Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan,
     property.values.push_back(value);
   }
   if (property.values.size() != property.positions.size())
-    return fail(422, "CSV not usable",
+    return fail(ErrorCode::invalid, "CSV not usable",
                 "There are values for " + std::to_string(property.values.size()) +
                     " of the scan's " + std::to_string(property.positions.size()) +
                     " vertices; give one line for each.",

@@ -20,7 +20,7 @@ namespace strata::mesh {
 // PLY.
 std::vector<std::string> vertex_property_names(std::span<const std::uint8_t> beginning);
 
-// One property with the places it belongs to, in the file's order. Refused (422) for what is no
+// One property with the places it belongs to, in the file's order. Refused (invalid) for what is no
 // PLY, has no such property, or ends too early.
 struct VertexProperty {
   std::vector<glm::dvec3> positions;
@@ -31,8 +31,8 @@ Result<VertexProperty> read_vertex_property(std::span<const std::uint8_t> file,
 
 // One number for each vertex of a PLY or OBJ, in its order, from a CSV of one column: a first line
 // that is no number is a heading, an empty line (or nan) a vertex without a value. `filename` names
-// the scan's format. Refused (422) with the line that is wrong, where the counts differ, and for
-// other formats.
+// the scan's format. Refused (invalid) with the line that is wrong, where the counts differ, and
+// for other formats.
 Result<VertexProperty> read_vertex_csv(std::span<const std::uint8_t> scan,
                                        const std::string& filename, std::string_view csv,
                                        Progress& progress);

@@ -41,13 +41,13 @@ Result<std::optional<nlohmann::json>> AnswerBook::begin(const Request& request) 
   {
     std::lock_guard lock(mutex_);
     if (!at_work_.insert(scoped).second)
-      return fail(409, "Still at work",
+      return fail(ErrorCode::conflict, "Still at work",
                   "The first call with this Idempotency-Key has not ended yet; ask again later.",
                   "Idempotency-Key");
   }
   auto kept = store_.find_answer(scoped);
   if (kept && *kept && (*kept)->value("request", std::string()) != fingerprint(request))
-    kept = fail(422, "Key used for another call",
+    kept = fail(ErrorCode::invalid, "Key used for another call",
                 "This Idempotency-Key was used with another body; take a new key for a new call.",
                 "Idempotency-Key");
   if (!kept || *kept) end(request);

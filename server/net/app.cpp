@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "core/log.h"
+#include "core/no_such.h"
 #include "net/accept.h"
 #include "net/compression.h"
 #include "net/entity_tags.h"
@@ -27,15 +28,11 @@ bool changes(Method method) {
 Result<void> check_record(store::Store& store, std::int64_t project_id,
                           const EditorBook::Record& record) {
   const auto table = store.table(std::to_string(record.table), Role::viewer);
-  if (!table && table.error().status != 404) return tl::unexpected(table.error());
+  if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
   if (!table || table->project_id != project_id)
-    return fail(404, "No such table",
-                "The model's project has no table " + std::to_string(record.table) + ".", "table");
-  const auto missing = store.missing_records(record.table, std::vector{record.key});
-  if (!missing) return tl::unexpected(missing.error());
-  if (!missing->empty())
-    return fail(404, "No such record",
-                table->name + " has no record " + std::to_string(record.key) + ".", "key");
+    return no_such("table", std::to_string(record.table), "table");
+  const auto missing = STRATA_TRY(store.missing_records(record.table, std::vector{record.key}));
+  if (!missing.empty()) return no_such("record", std::to_string(record.key), "key");
   return {};
 }
 
@@ -160,13 +157,17 @@ const Route* App::find_route(Request& request, Response& refusal) const {
   forget_codings(request);
   const bool is_api = !request.segments.empty() && request.segments.front() == "api";
   if (request.method == Method::unknown) {
-    refusal = problem_response(
-        {405, "Unknown method", "Use GET, HEAD, POST, PUT, PATCH, DELETE or OPTIONS.", {}});
+    refusal = problem_response({ErrorCode::method_not_allowed,
+                                "Unknown method",
+                                "Use GET, HEAD, POST, PUT, PATCH, DELETE or OPTIONS.",
+                                {}});
     return nullptr;
   }
   if (is_live_address(request) && request.method == Method::get) {
-    refusal = problem_response(
-        {426, "Upgrade required", "This address speaks WebSocket, subprotocol strata.v1.", {}});
+    refusal = problem_response({ErrorCode::upgrade_required,
+                                "Upgrade required",
+                                "This address speaks WebSocket, subprotocol strata.v1.",
+                                {}});
     refusal.with("Upgrade", "websocket");
     return nullptr;
   }
@@ -179,7 +180,7 @@ const Route* App::find_route(Request& request, Response& refusal) const {
     match.allowed = {Method::get, Method::head, Method::options};
   if (match.allowed.empty()) {
     refusal = problem_response(
-        {404,
+        {ErrorCode::not_found,
          "Not found",
          "There is nothing at " + request.path + ". The addresses are listed at /api/v1/docs.",
          {}});
@@ -190,26 +191,28 @@ const Route* App::find_route(Request& request, Response& refusal) const {
   if (request.method == Method::options) {
     refusal = empty_response(204);
   } else {
-    refusal =
-        problem_response({405, "Method not allowed", "This address takes: " + allow + ".", {}});
+    refusal = problem_response({ErrorCode::method_not_allowed,
+                                "Method not allowed",
+                                "This address takes: " + allow + ".",
+                                {}});
   }
   refusal.with("Allow", allow);
   return nullptr;
 }
 
 Result<void> App::identify(Request& request, const Route& route) {
-  auto principal = auth_.identify(request);
-  if (!principal) return tl::unexpected(principal.error());
-  request.principal = std::move(*principal);
+  auto principal = STRATA_TRY(auth_.identify(request));
+  request.principal = std::move(principal);
   if (!request.principal)
-    return fail(401, "Not signed in", "Sign in, or send `Authorization: Bearer TOKEN`.");
+    return fail(ErrorCode::unauthenticated, "Not signed in",
+                "Sign in, or send `Authorization: Bearer TOKEN`.");
   const auto inside = request.principal->kiosk
                           ? enter_as_kiosk(context_, request, route)
                           : enter_project(context_, request, route.project_in_query);
   if (!inside) return inside;
   const Role least = *route.role;
   if (request.principal->role < least)
-    return fail(403, "Not allowed",
+    return fail(ErrorCode::forbidden, "Not allowed",
                 "This takes the role " + std::string(name(least)) + "; yours is " +
                     std::string(name(request.principal->role)) + ".");
   return {};
@@ -229,8 +232,8 @@ std::optional<Response> App::admit(Request& request, const Route& route) {
   if (route.check)
     if (auto good = route.check(request); !good) return problem_response(good.error());
   if (request.header("idempotency-key").size() > kMaxKey)
-    return problem_response(
-        {400, "Key too long", "An Idempotency-Key has at most 255 characters.", "Idempotency-Key"});
+    return problem_response({ErrorCode::malformed, "Key too long",
+                             "An Idempotency-Key has at most 255 characters.", "Idempotency-Key"});
   return std::nullopt;
 }
 
@@ -239,7 +242,8 @@ std::optional<Response> App::admit_again(Request& request, const Route& route) {
   const std::string user = request.user();
   if (auto known = identify(request, route); !known) return problem_response(known.error());
   if (request.user() != user)
-    return problem_response({401, "Not signed in", "Somebody else is signed in now.", {}});
+    return problem_response(
+        {ErrorCode::unauthenticated, "Not signed in", "Somebody else is signed in now.", {}});
   return std::nullopt;
 }
 
@@ -251,7 +255,7 @@ void App::handle(const Request& request, const Route& route, const Respond& send
         // What was changed is told in any case; what was only read can be asked for in another way.
         if (response.status == 200 && !response.events &&
             !accepts_type(accept, response.header("Content-Type")))
-          response = problem_response({406, "Not acceptable",
+          response = problem_response({ErrorCode::not_acceptable, "Not acceptable",
                                        "This address answers with " +
                                            std::string(response.header("Content-Type")) +
                                            ", which `Accept` does not take.",
@@ -292,7 +296,10 @@ void App::answer_failures(const Request& request, const Respond& answer,
     const bool is_secret = !request.segments.empty() && request.segments.front() == "kiosk";
     log::error("request " + std::string(name(request.method)) + " " +
                (is_secret ? "/kiosk/…" : request.path) + " failed: " + error.what());
-    answer(Problem{500, "Internal error", "The server made a mistake; its log says more.", {}});
+    answer(Error{ErrorCode::internal,
+                 "Internal error",
+                 "The server made a mistake; its log says more.",
+                 {}});
   }
 }
 
@@ -336,26 +343,23 @@ bool App::is_live_address(const Request& request) {
 
 Result<App::LiveEntry> App::admit_live(Request& request) {
   request.params["model"] = request.segments[3];
-  if (auto own = check_host(request, own_names_); !own) return tl::unexpected(own.error());
-  if (auto known = identify(request, live_); !known) return tl::unexpected(known.error());
-  if (auto own = check_upgrade_origin(request, options_.allowed_origins); !own)
-    return tl::unexpected(own.error());
+  STRATA_TRY(check_host(request, own_names_));
+  STRATA_TRY(identify(request, live_));
+  STRATA_TRY(check_upgrade_origin(request, options_.allowed_origins));
   auto room = rooms_.open(request.segments[3], request.role());
   if (!room) return tl::unexpected(room.error());
-  auto project = store_.project(std::to_string((*room)->model().project_id));
-  if (!project) return tl::unexpected(project.error());
+  auto project = STRATA_TRY(store_.project(std::to_string((*room)->model().project_id)));
   // What the others read of them. A person who is gone will be sent out anyway.
   auto person = store_.person(request.user());
-  if (!person && person.error().status != 404) return tl::unexpected(person.error());
+  if (!person && person.error().code != ErrorCode::not_found) return tl::unexpected(person.error());
   std::optional<protocol::PersonalView> view;
   if (person && !request.principal->kiosk) {
     auto kept = personal_view(store_, person->name, request.role(), **room);
     if (!kept) return tl::unexpected(kept.error());
-    auto told = protocol::from_json<protocol::PersonalView>(*kept);
-    if (!told) return tl::unexpected(told.error());
-    view = std::move(*told);
+    auto told = STRATA_TRY(protocol::from_json<protocol::PersonalView>(*kept));
+    view = std::move(told);
   }
-  return LiveEntry{std::move(*room),   project->slug,
+  return LiveEntry{std::move(*room),   project.slug,
                    *request.principal, person ? portrait_of(*person) : room::Portrait(),
                    std::move(view),    Authenticator::secret_of(request)};
 }

@@ -22,7 +22,7 @@ Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context,
   if (!at) return std::nullopt;
   if (const auto* sequence = std::get_if<std::int64_t>(&*at)) {
     if (*sequence >= 0 && *sequence <= room.sequence()) return *sequence;
-    return fail(422, "Not yet there",
+    return fail(ErrorCode::invalid, "Not yet there",
                 "`at` is a sequence from 0 to " + std::to_string(room.sequence()) +
                     ", the newest of this model.",
                 "at");
@@ -30,7 +30,7 @@ Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context,
   const auto utc = utc_timestamp(std::get<std::string>(*at));
   if (!utc)
     return fail(
-        422, "Not a time",
+        ErrorCode::invalid, "Not a time",
         "`at` is a sequence of the model or a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).",
         "at");
   auto sequence = context.store.sequence_at(room.model().id, *utc);
@@ -39,14 +39,11 @@ Result<std::optional<std::int64_t>> find_sequence(const RouteContext& context,
 }
 
 Result<LayerQuery> LayerQuery::from(const RouteContext& context, const Request& request) {
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  auto layer = (*room)->layer(request.param("layer"));
-  if (!layer) return tl::unexpected(layer.error());
-  const auto at = find_sequence(context, **room, as_of(request));
-  if (!at) return tl::unexpected(at.error());
-  const auto sequence = at->value_or((*room)->sequence());
-  return LayerQuery{std::move(*room), std::move(*layer), *at, sequence};
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto layer = STRATA_TRY(room->layer(request.param("layer")));
+  const auto at = STRATA_TRY(find_sequence(context, *room, as_of(request)));
+  const auto sequence = at.value_or(room->sequence());
+  return LayerQuery{std::move(room), std::move(layer), at, sequence};
 }
 
 }  // namespace strata::net

@@ -13,9 +13,9 @@ constexpr std::size_t kMaxRemembered = 4096;
 constexpr std::size_t kMaxTokenLength = 512;
 constexpr std::string_view kScheme = "bearer ";
 
-tl::unexpected<Problem> unknown_secret() {
+tl::unexpected<Error> unknown_secret() {
   return fail(
-      401, "Not signed in",
+      ErrorCode::unauthenticated, "Not signed in",
       "This token or session is unknown, expired or revoked. Sign in again, or make a new token.");
 }
 
@@ -57,26 +57,21 @@ Result<std::optional<Principal>> Authenticator::identify_token(const std::string
       remembered_.erase(found);
     }
   }
-  auto stored = store_.find_token(token);
-  if (!stored) return tl::unexpected(stored.error());
+  auto stored = STRATA_TRY(store_.find_token(token));
   // Links are traded for sessions; they are no tokens of their own.
   using store::TokenKind;
-  if (*stored && (*stored)->kind != TokenKind::session && (*stored)->kind != TokenKind::script)
+  if (stored && stored->kind != TokenKind::session && stored->kind != TokenKind::script)
     return std::nullopt;
   Principal principal;
-  if (*stored) {
-    const Roles& roles = (*stored)->roles;
-    principal = {(*stored)->user,
-                 roles.everywhere,
-                 false,
-                 (*stored)->kind == TokenKind::script,
-                 (*stored)->token,
-                 roles};
+  if (stored) {
+    const Roles& roles = stored->roles;
+    principal = {stored->user,  roles.everywhere,
+                 false,         stored->kind == TokenKind::script,
+                 stored->token, roles};
   } else {
-    auto kiosk = store_.kiosks().find(token);
-    if (!kiosk) return tl::unexpected(kiosk.error());
-    if (!*kiosk) return std::nullopt;
-    principal = principal_of(**kiosk);
+    auto kiosk = STRATA_TRY(store_.kiosks().find(token));
+    if (!kiosk) return std::nullopt;
+    principal = principal_of(*kiosk);
   }
   std::lock_guard lock(mutex_);
   if (changes != changes_) return principal;  // what was read may be of before
@@ -99,11 +94,10 @@ Result<Principal> Authenticator::owner_by_token() {
     changes = changes_;
     if (owner_token_now_.until > now) return principal(owner_token_now_.is_script);
   }
-  const auto has_password = store_.administrator_has_password();
-  if (!has_password) return tl::unexpected(has_password.error());
+  const auto has_password = STRATA_TRY(store_.administrator_has_password());
   std::lock_guard lock(mutex_);
-  if (changes == changes_) owner_token_now_ = {*has_password, now + kRememberFor};
-  return principal(*has_password);
+  if (changes == changes_) owner_token_now_ = {has_password, now + kRememberFor};
+  return principal(has_password);
 }
 
 std::string Authenticator::secret_of(const Request& request) {
@@ -126,57 +120,53 @@ Result<std::optional<Principal>> Authenticator::identify(const Request& request)
   const std::string secret = secret_of(request);
   if (secret.empty() && by_cookie) return std::nullopt;
   if (secret.empty())
-    return fail(401, "Not signed in", "The Authorization header is `Bearer TOKEN`.",
-                "Authorization");
-  auto principal = identify_token(secret);
-  if (!principal) return principal;
-  if (!*principal) return unknown_secret();
+    return fail(ErrorCode::unauthenticated, "Not signed in",
+                "The Authorization header is `Bearer TOKEN`.", "Authorization");
+  auto principal = STRATA_TRY(identify_token(secret));
+  if (!principal) return unknown_secret();
   // A cookie tells only what it is for: whoever can set one makes no kiosk of a person's page by
   // it, and the other way round.
-  const bool is_kiosk = (*principal)->kiosk.has_value();
+  const bool is_kiosk = principal->kiosk.has_value();
   if (request.as_kiosk ? !is_kiosk : by_cookie && is_kiosk) return unknown_secret();
   // What scripts are given is no session: it does not end with the browser's, and no page shows it
   // among the sessions.
-  const bool is_session = (*principal)->secret != 0 && !(*principal)->is_script;
+  const bool is_session = principal->secret != 0 && !principal->is_script;
   if (by_cookie && !is_kiosk && !is_session) return unknown_secret();
-  (*principal)->by_cookie = by_cookie;
+  principal->by_cookie = by_cookie;
   return principal;
 }
 
 Result<std::string> Authenticator::session_for_password(const std::string& user,
                                                         const std::string& password,
                                                         const std::string& agent) {
-  const auto hash = store_.password_of(user);
-  if (!hash) return tl::unexpected(hash.error());
-  const auto fits = store::password_fits(*hash, password);
-  if (!fits) return tl::unexpected(fits.error());
-  if (!*fits)
-    return fail(401, "Not signed in",
+  const auto hash = STRATA_TRY(store_.password_of(user));
+  const auto fits = STRATA_TRY(store::password_fits(hash, password));
+  if (!fits)
+    return fail(ErrorCode::unauthenticated, "Not signed in",
                 "Name and password do not fit together. Whoever invited you can send a new link.",
                 "password");
   auto session = store_.create_token(store::TokenKind::session, user, Role::viewer,
-                                     kSessionLifetime, agent, *hash);
+                                     kSessionLifetime, agent, hash);
   if (!session)
-    return session.error().status == 404 ? unknown_secret() : tl::unexpected(session.error());
+    return session.error().code == ErrorCode::not_found ? unknown_secret()
+                                                        : tl::unexpected(session.error());
   return std::move(session->secret);
 }
 
 Result<std::string> Authenticator::session_for_token(const std::string& token,
                                                      const std::string& agent) {
   if (token.size() > kMaxTokenLength) return unknown_secret();
-  auto by_link = store_.redeem_owner_link(token, kSessionLifetime, agent);
-  if (!by_link) return tl::unexpected(by_link.error());
-  if (*by_link) return **by_link;
-  auto principal = identify_token(token);
-  if (!principal) return tl::unexpected(principal.error());
-  if (!*principal) return unknown_secret();
+  auto by_link = STRATA_TRY(store_.redeem_owner_link(token, kSessionLifetime, agent));
+  if (by_link) return *by_link;
+  auto principal = STRATA_TRY(identify_token(token));
+  if (!principal) return unknown_secret();
   // Another session of a session, or of a token, would outlive what it was made of.
-  if ((*principal)->secret != 0 || (*principal)->is_script || (*principal)->kiosk)
+  if (principal->secret != 0 || principal->is_script || principal->kiosk)
     return fail(
-        403, "Not for signing in",
+        ErrorCode::forbidden, "Not for signing in",
         "This token is for scripts, as `Authorization: Bearer TOKEN`. In a browser sign in with name and password.",
         "token");
-  auto session = store_.create_token(store::TokenKind::session, (*principal)->user, Role::owner,
+  auto session = store_.create_token(store::TokenKind::session, principal->user, Role::owner,
                                      kSessionLifetime, agent);
   if (!session) return tl::unexpected(session.error());
   return std::move(session->secret);
@@ -184,14 +174,13 @@ Result<std::string> Authenticator::session_for_token(const std::string& token,
 
 Result<std::string> Authenticator::session_for_link(const std::string& link,
                                                     const std::string& agent) {
-  auto session = store_.redeem_owner_link(link, kSessionLifetime, agent);
-  if (!session) return tl::unexpected(session.error());
-  if (!*session)
+  auto session = STRATA_TRY(store_.redeem_owner_link(link, kSessionLifetime, agent));
+  if (!session)
     return fail(
-        401, "Link not valid",
+        ErrorCode::unauthenticated, "Link not valid",
         "This sign-in link is unknown or revoked. The server prints a valid one when it starts.",
         "link");
-  return **session;
+  return *session;
 }
 
 void Authenticator::forget() {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::net {
 
@@ -19,7 +19,7 @@ class ByteBudget {
     std::uint64_t held = held_->load();
     do {
       if (held > 0 && held + bytes > total_)
-        return fail(503, "Too many rasters",
+        return fail(ErrorCode::busy, "Too many rasters",
                     "Other large rasters are being read or written; ask again in a moment.");
     } while (!held_->compare_exchange_weak(held, held + bytes));
     return std::shared_ptr<const void>(held_.get(),

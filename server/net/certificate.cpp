@@ -13,8 +13,9 @@ namespace {
 namespace ssl = boost::asio::ssl;
 namespace fs = std::filesystem;
 
-Problem unusable(const fs::path& file, const std::string& why, const char* option) {
-  return {422, "Certificate not usable", "`" + file.string() + "`: " + why + ".", option};
+Error unusable(const fs::path& file, const std::string& why, const char* option) {
+  return {ErrorCode::invalid, "Certificate not usable", "`" + file.string() + "`: " + why + ".",
+          option};
 }
 
 // A file without rights would be told like one that is not PEM.
@@ -35,10 +36,8 @@ Certificate::Times Certificate::written() const {
 }
 
 Result<std::shared_ptr<ssl::context>> Certificate::read() const {
-  if (auto readable = check_readable(chain_, "--tls-cert"); !readable)
-    return tl::unexpected(readable.error());
-  if (auto readable = check_readable(key_, "--tls-key"); !readable)
-    return tl::unexpected(readable.error());
+  STRATA_TRY(check_readable(chain_, "--tls-cert"));
+  STRATA_TRY(check_readable(key_, "--tls-key"));
   auto context = std::make_shared<ssl::context>(ssl::context::tls_server);
   boost::system::error_code error;
   context->set_options(
@@ -67,9 +66,8 @@ Result<std::shared_ptr<ssl::context>> Certificate::read() const {
 Result<Certificate> Certificate::load(fs::path chain, fs::path key) {
   Certificate certificate(std::move(chain), std::move(key));
   certificate.read_at_ = certificate.written();
-  auto context = certificate.read();
-  if (!context) return tl::unexpected(context.error());
-  certificate.context_ = std::move(*context);
+  auto context = STRATA_TRY(certificate.read());
+  certificate.context_ = std::move(context);
   return certificate;
 }
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::net {
 

@@ -12,22 +12,21 @@ Result<RecordNames> record_names(const RouteContext& context, std::int64_t table
   store::Store::RecordQuery query;
   query.keys = std::move(keys);
   query.at = at;
-  auto page = context.store.records(table_id, seen_by, query);
-  if (!page) return tl::unexpected(page.error());
+  auto page = STRATA_TRY(context.store.records(table_id, seen_by, query));
   RecordNames names;
-  if (const auto columns = term_columns(page->table)) {
-    for (const ListedTerm& listed : list_terms(*columns, page->records))
+  if (const auto columns = term_columns(page.table)) {
+    for (const ListedTerm& listed : list_terms(*columns, page.records))
       names[listed.key] = label_in(listed.term, language);
     return names;
   }
-  const Column* title = name_column(page->table);
+  const Column* title = name_column(page.table);
   if (!title || title->kind != ColumnKind::term) {
-    for (const Record& record : page->records) names[record.key] = record_name(record, page->table);
+    for (const Record& record : page.records) names[record.key] = record_name(record, page.table);
     return names;
   }
   const auto words = RecordWords::load(context.store, *title->target, seen_by, language);
   if (!words) return tl::unexpected(words.error());
-  for (const Record& record : page->records) {
+  for (const Record& record : page.records) {
     const auto value = record.values.find(title->id);
     const bool has_title = value != record.values.end() && !value->second.is_null();
     names[record.key] = has_title ? words->name(value->second.get<std::int64_t>()) : std::string();
@@ -71,9 +70,9 @@ Result<std::vector<std::string>> class_names(const RouteContext& context, const 
   if (layer.table) {
     std::vector<std::int64_t> keys;
     for (const double value : values) keys.push_back(static_cast<std::int64_t>(value));
-    auto found = record_names(context, *layer.table, seen_by, std::move(keys), at, language);
-    if (!found) return tl::unexpected(found.error());
-    records = std::move(*found);
+    auto found =
+        STRATA_TRY(record_names(context, *layer.table, seen_by, std::move(keys), at, language));
+    records = std::move(found);
   }
   std::vector<std::string> names;
   for (const double value : values) {

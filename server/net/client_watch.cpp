@@ -32,7 +32,8 @@ struct ClientWatch::Watched : std::enable_shared_from_this<Watched> {
   void look() {
     if (!question) return;
     if (!has_gone(socket)) return look_later();
-    question->end({499, "Client gone", "The client has closed its connection.", {}});
+    question->end(
+        {ErrorCode::cancelled, "Client gone", "The client has closed its connection.", {}});
     on_gone();
   }
 

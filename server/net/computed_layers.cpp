@@ -23,9 +23,9 @@ Result<void> check_other_model(store::Store& store, const jobs::ShapeRecipe& rec
   if (recipe.model.empty()) return {};
   auto other = store.model(recipe.model);
   if (other) return {};
-  Problem problem = other.error();
-  if (problem.status == 404)
-    problem = {422, "No such model", "There is no model \"" + recipe.model + "\".",
+  Error problem = other.error();
+  if (problem.code == ErrorCode::not_found)
+    problem = {ErrorCode::invalid, "No such model", "There is no model \"" + recipe.model + "\".",
                "compute.model"};
   return tl::unexpected(std::move(problem));
 }
@@ -37,8 +37,7 @@ Result<Response> start_computing(const RouteContext& context, JobBook& book, con
                                  const protocol::LayerCreate& asked, Layer wish) {
   auto recipe = jobs::completed(recipe_of(*asked.compute), room->model());
   if (!recipe) return tl::unexpected(recipe.error());
-  if (auto known = check_other_model(context.store, *recipe); !known)
-    return tl::unexpected(known.error());
+  STRATA_TRY(check_other_model(context.store, *recipe));
   auto make = [&store = context.store, room, wish = std::move(wish), recipe = std::move(*recipe),
                has_palette = asked.palette.has_value(), user = request.user()](
                   NewLayers& layers, Progress& progress) -> Result<nlohmann::json> {
@@ -56,8 +55,7 @@ Result<Response> start_computing(const RouteContext& context, JobBook& book, con
         layers.add(std::move(layer), std::move(computed->tiles), std::move(computed->recipe));
     if (!made) return tl::unexpected(made.error());
     // Others see it once they want to.
-    if (auto shown = store.show_layer_to(user, made->model_id, made->id); !shown)
-      return tl::unexpected(shown.error());
+    STRATA_TRY(store.show_layer_to(user, made->model_id, made->id));
     return nlohmann::json();
   };
   return start_layer_job(context, book, request, room, std::move(make));

@@ -3,6 +3,8 @@
 #include <fstream>
 #include <initializer_list>
 
+#include "protocol/problem.h"
+
 namespace strata::net {
 namespace {
 
@@ -124,6 +126,14 @@ void add_schema(std::string& page, const std::string& name, const json& schema) 
   page += table_of({"member", "type", "description"}, rows) + "</section>";
 }
 
+std::string begin_of_page(const std::string& title) {
+  return "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\">"
+         "<meta name=\"viewport\" content=\"width=device-width\">"
+         "<link rel=\"icon\" href=\"/favicon.svg\" type=\"image/svg+xml\"><title>" +
+         html_escape(title) +
+         "</title><link rel=\"stylesheet\" href=\"/api/v1/docs.css\"></head><body><main>";
+}
+
 }  // namespace
 
 std::string html_escape(std::string_view text) {
@@ -143,13 +153,9 @@ std::string html_escape(std::string_view text) {
 
 std::string docs_html(const json& contract) {
   const json info = contract.value("info", json::object());
-  std::string page =
-      "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">"
-      "<link rel=\"icon\" href=\"/favicon.svg\" type=\"image/svg+xml\"><title>" +
-      html_escape(info.value("title", "API")) +
-      "</title><link rel=\"stylesheet\" href=\"/api/v1/docs.css\"></head><body><main><h1>" +
-      html_escape(info.value("title", "API")) + " <small>" +
-      html_escape(info.value("version", "")) + "</small></h1>";
+  std::string page = begin_of_page(info.value("title", "API")) + "<h1>" +
+                     html_escape(info.value("title", "API")) + " <small>" +
+                     html_escape(info.value("version", "")) + "</small></h1>";
   if (auto description = text_of(info, "description"); !description.empty())
     page += "<p>" + html_escape(description) + "</p>";
   page +=
@@ -168,11 +174,28 @@ std::string docs_html(const json& contract) {
   return page + "</main></body></html>";
 }
 
+std::string problems_html() {
+  std::string page = begin_of_page("Problems of the Strata API") +
+                     "<h1>Problems of the Strata API</h1><p>Every error is an "
+                     "<code>application/problem+json</code> (RFC 9457). Its <code>type</code> is "
+                     "one of these; programs decide by it. The words of <code>title</code> and "
+                     "<code>detail</code> may change.</p><table><thead><tr><th>Type</th>"
+                     "<th>Status</th><th>Meaning</th><th>What to do</th></tr></thead><tbody>";
+  for (const protocol::ProblemKind& kind : protocol::problem_kinds()) {
+    const std::string code(name(kind.code));
+    page += "<tr id=\"" + code + "\"><td><code>" + protocol::problem_type(kind.code) +
+            "</code></td><td>" + std::to_string(kind.status) + "</td><td>" +
+            html_escape(kind.meaning) + "</td><td>" + html_escape(kind.remedy) + "</td></tr>";
+  }
+  return page + "</tbody></table></main></body></html>";
+}
+
 Result<Response> docs_page(const std::filesystem::path& openapi_json) {
   std::ifstream file(openapi_json, std::ios::binary);
   const json contract = json::parse(file, nullptr, false);
   if (contract.is_discarded() || !contract.is_object())
-    return fail(503, "Contract missing", "openapi.json is not part of this installation.");
+    return fail(ErrorCode::unavailable, "Contract missing",
+                "openapi.json is not part of this installation.");
   return text_response(docs_html(contract), "text/html; charset=utf-8");
 }
 

@@ -3,8 +3,8 @@
 namespace strata::net {
 namespace {
 
-tl::unexpected<Problem> used_for_another() {
-  return fail(422, "Key used for another edit",
+tl::unexpected<Error> used_for_another() {
+  return fail(ErrorCode::invalid, "Key used for another edit",
               "This Idempotency-Key was used with another edit; take a new key for a new one.",
               "Idempotency-Key");
 }

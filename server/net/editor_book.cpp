@@ -16,7 +16,7 @@ Result<void> EditorBook::begin(std::int64_t project_id, const Record& record, co
       held_, [&](const auto& entry) { return entry.second.editor.session == editor.session; });
   if (static_cast<std::size_t>(own) >= kMostOfSession)
     return fail(
-        422, "Too many records",
+        ErrorCode::invalid, "Too many records",
         "A connection edits at most " + std::to_string(kMostOfSession) + " records at once.",
         "key");
   held_[record] = {project_id, editor};

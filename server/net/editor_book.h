@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/uuid.h"
 
 namespace strata::net {

@@ -76,23 +76,21 @@ Result<std::set<double>> marked_keys(const RouteContext& context, const FigureWi
   const Model model = wish.room->model();
   std::optional<std::int64_t> at;  // of the table; none: now, as the picture has it
   if (*wish.shown.at < wish.room->durable_sequence()) {
-    const auto then = context.store.table_sequence_when(*layer.table, model.id, *wish.shown.at);
-    if (!then) return tl::unexpected(then.error());
-    at = *then;
+    const auto then =
+        STRATA_TRY(context.store.table_sequence_when(*layer.table, model.id, *wish.shown.at));
+    at = then;
   }
-  const auto marks = context.store.marks(*layer.table, wish.role, model.id, at);
-  if (!marks) return tl::unexpected(marks.error());
+  const auto marks = STRATA_TRY(context.store.marks(*layer.table, wish.role, model.id, at));
   const double pixel = 2 / (std::abs(camera.projection[0][0]) * camera.width);
   const double reach = kPlaceReach_px * pixel +
                        kPlaceReachOfSize * glm::distance(model.bounds_min, model.bounds_max);
   std::set<double> keys;
-  for (const auto& [key, mark] : *marks) {
+  for (const auto& [key, mark] : marks) {
     const auto value = static_cast<double>(key);
     const std::size_t step = std::max<std::size_t>(1, mark.places.size() / kMostPlaces);
     for (std::size_t i = 0; i < mark.places.size() && !keys.contains(value); i += step) {
-      const auto seen = is_seen(wish, camera, mark.places[i], reach);
-      if (!seen) return tl::unexpected(seen.error());
-      if (*seen) keys.insert(value);
+      const auto seen = STRATA_TRY(is_seen(wish, camera, mark.places[i], reach));
+      if (seen) keys.insert(value);
     }
   }
   return keys;
@@ -123,10 +121,9 @@ Result<std::vector<figure::Legend>> legends_of(const RouteContext& context, cons
     std::set<double> there = (*seen)[i].values;
     bool is_shown = (*seen)[i].is_seen;
     if (layer.table) {
-      const auto marked = marked_keys(context, wish, layer, camera);
-      if (!marked) return tl::unexpected(marked.error());
-      is_shown |= !marked->empty();
-      there.insert(marked->begin(), marked->end());
+      const auto marked = STRATA_TRY(marked_keys(context, wish, layer, camera));
+      is_shown |= !marked.empty();
+      there.insert(marked.begin(), marked.end());
     }
     const bool waits = wish.shown.provisional.contains(layer.id);  // also where it was erased
     if (!is_shown && !waits) continue;

@@ -36,28 +36,24 @@ Result<std::optional<Camera>> read_shown(const RouteContext& context, const Requ
                                          const protocol::FigureRequest& asked, FigureWish& wish) {
   const room::Room& room = *wish.room;
   if (!asked.view) {
-    if (asked.camera)
-      if (auto good = validate(*asked.camera); !good) return tl::unexpected(good.error());
-    auto shown = shown_settings(room, asked);
-    if (!shown) return tl::unexpected(shown.error());
-    wish.shown.shown = std::move(*shown);
+    if (asked.camera) STRATA_TRY(validate(*asked.camera));
+    auto shown = STRATA_TRY(shown_settings(room, asked));
+    wish.shown.shown = std::move(shown);
     return asked.camera;
   }
   if (asked.camera || asked.layers || asked.looks || asked.light)
     return fail(
-        422, "View and more",
+        ErrorCode::invalid, "View and more",
         "A figure of a view shows what the view does: leave out camera, layers, looks and light.",
         "view");
   const auto view = context.store.views().find(room.model().id, *asked.view);
   if (!view) {
     return at_field(view.error(), "view");
   }
-  const auto kept = as_asked(context, request, *view, room);
-  if (!kept) return tl::unexpected(kept.error());
-  auto shown = shown_settings(room, *kept);
-  if (!shown) return tl::unexpected(shown.error());
-  wish.shown.shown = std::move(*shown);
-  return std::optional<Camera>(kept->camera);
+  const auto kept = STRATA_TRY(as_asked(context, request, *view, room));
+  auto shown = STRATA_TRY(shown_settings(room, kept));
+  wish.shown.shown = std::move(shown);
+  return std::optional<Camera>(kept.camera);
 }
 
 // What lies in the middle of the camera's window, as far as the drawing's plane is concerned.
@@ -71,11 +67,11 @@ Result<void> read_direction(const protocol::FigureRequest& asked,
                             const std::optional<Camera>& camera, FigureWish& wish) {
   const Model model = wish.room->model();
   if (asked.direction && asked.normal)
-    return fail(422, "Two directions", "Give a direction or a normal.", "normal");
+    return fail(ErrorCode::invalid, "Two directions", "Give a direction or a normal.", "normal");
   if (camera) wish.section = camera->section;
   if (asked.normal) {
     if (!(glm::length(*asked.normal) > 1e-12))
-      return fail(422, "No direction",
+      return fail(ErrorCode::invalid, "No direction",
                   "A normal has a length: [0, 0, 1] is surface that faces along z.", "normal");
     wish.plane = figure::plane_square_to(*asked.normal, model.up);
     wish.from = "face";
@@ -99,14 +95,14 @@ Result<void> read_labels(const RouteContext& context, const protocol::FigureLabe
     return at_field(layer.error(), "labels.layer");
   }
   if (!layer->table)
-    return fail(422, "No records",
+    return fail(ErrorCode::invalid, "No records",
                 "The layer '" + layer->slug + "' is no database layer: nothing of it has a record.",
                 "labels.layer");
   const auto table = context.store.table(std::to_string(*layer->table), wish.role);
   if (!table) return tl::unexpected(table.error());
   const Column* column = find_column(table->columns, asked.column);
   if (!column || holds_lists(column->kind))
-    return fail(422, "No such column",
+    return fail(ErrorCode::invalid, "No such column",
                 "The table '" + table->slug + "' has no column '" + asked.column +
                     "' that holds one text or number.",
                 "labels.column");
@@ -185,12 +181,11 @@ Result<std::vector<figure::Label>> labels_of(const RouteContext& context, const 
   const auto keys = wish.room->seen_keys(wish.labels->layer.slug, figure::camera_of(drawing),
                                          columns, rows, wish.shown.at);
   if (!keys) return tl::unexpected(keys.error());
-  const auto texts = texts_of(context, wish);
-  if (!texts) return tl::unexpected(texts.error());
+  const auto texts = STRATA_TRY(texts_of(context, wish));
   auto areas = areas_of(*keys, columns, rows);
   std::vector<std::pair<std::size_t, std::uint32_t>> by_size;
   for (const auto& [key, area] : areas)
-    if (texts->contains(key)) by_size.emplace_back(area.cells, key);
+    if (texts.contains(key)) by_size.emplace_back(area.cells, key);
   std::ranges::sort(by_size, std::greater());
   if (by_size.size() > kMostLabels) by_size.resize(kMostLabels);
   std::vector<figure::LabelWish> wishes;
@@ -201,7 +196,7 @@ Result<std::vector<figure::Label>> labels_of(const RouteContext& context, const 
                       places.end(), [](const auto& a, const auto& b) {
                         return a.first != b.first ? a.first > b.first : a.second < b.second;
                       });
-    figure::LabelWish label{texts->at(key), {}};
+    figure::LabelWish label{texts.at(key), {}};
     for (std::size_t i = 0; i < tried; ++i)
       label.places.push_back(
           (glm::dvec2(places[i].second % columns, places[i].second / columns) + 0.5) * cell_mm);
@@ -318,18 +313,15 @@ std::string file_name(const FigureWish& wish, double scale) {
 }  // namespace
 
 Result<FigureWish> figure_wish(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::FigureRequest>(request);
-  if (!asked) return tl::unexpected(asked.error());
+  auto asked = STRATA_TRY(body_of<protocol::FigureRequest>(request));
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   FigureWish wish;
   wish.room = std::move(*room);
   wish.role = request.role();
-  const auto camera = read_shown(context, request, *asked, wish);
-  if (!camera) return tl::unexpected(camera.error());
-  if (auto read = read_direction(*asked, *camera, wish); !read) return tl::unexpected(read.error());
-  const auto at = find_sequence(context, *wish.room, asked->at);
-  if (!at) return tl::unexpected(at.error());
+  const auto camera = STRATA_TRY(read_shown(context, request, asked, wish));
+  STRATA_TRY(read_direction(asked, camera, wish));
+  const auto at = STRATA_TRY(find_sequence(context, *wish.room, asked.at));
   // Which layers it shows is settled before what of them waits: one that others see only later is
   // not on it, unmarked.
   for (Layer& layer : wish.room->layers())
@@ -337,32 +329,29 @@ Result<FigureWish> figure_wish(const RouteContext& context, const Request& reque
   room::sort_as_shown(wish.layers, wish.shown.shown);
   wish.shown.layers.emplace();
   for (const Layer& layer : wish.layers) wish.shown.layers->push_back(std::to_string(layer.id));
-  if (*at) {
-    wish.shown.at = *at;
+  if (at) {
+    wish.shown.at = at;
   } else {
     room::Room::DurableState newest = wish.room->durable_state();
     wish.shown.at = newest.sequence;
     wish.shown.provisional = std::move(newest.provisional);
   }
   wish.shown.shown.background = {kPaper, kPaper};
-  if (auto lit = validate(wish.shown.shown.light); !lit) return tl::unexpected(lit.error());
-  if (asked->labels)
-    if (auto read = read_labels(context, *asked->labels, wish); !read)
-      return tl::unexpected(read.error());
-  wish.scale = asked->scale;
-  wish.paper = static_cast<figure::Paper>(asked->paper);
-  if (asked->orientation)
-    wish.landscape = *asked->orientation == protocol::FigureRequestOrientation::landscape;
-  wish.dpi = asked->dpi;
-  wish.format = static_cast<figure::Format>(asked->format.value_or(protocol::FigureFormat::pdf));
+  STRATA_TRY(validate(wish.shown.shown.light));
+  if (asked.labels) STRATA_TRY(read_labels(context, *asked.labels, wish));
+  wish.scale = asked.scale;
+  wish.paper = static_cast<figure::Paper>(asked.paper);
+  if (asked.orientation)
+    wish.landscape = *asked.orientation == protocol::FigureRequestOrientation::landscape;
+  wish.dpi = asked.dpi;
+  wish.format = static_cast<figure::Format>(asked.format.value_or(protocol::FigureFormat::pdf));
   const Model model = wish.room->model();
-  wish.captions = {asked->title.value_or(model.name), asked->caption.value_or(""),
-                   asked->credit.value_or(model.credit), asked->continued};
-  wish.legend = asked->legend;
-  wish.waiting_label = asked->provisional;
-  const auto language = asked_language(request);
-  if (!language) return tl::unexpected(language.error());
-  wish.language = *language;
+  wish.captions = {asked.title.value_or(model.name), asked.caption.value_or(""),
+                   asked.credit.value_or(model.credit), asked.continued};
+  wish.legend = asked.legend;
+  wish.waiting_label = asked.provisional;
+  const auto language = STRATA_TRY(asked_language(request));
+  wish.language = language;
   return wish;
 }
 
@@ -375,7 +364,8 @@ Result<std::shared_ptr<const jobs::JobFile>> make_figure(const RouteContext& con
   const auto geometry = wish.room->geometry();
   const auto extent = figure::extent_of(geometry->positions, wish.plane, wish.section);
   if (!extent)
-    return fail(422, "Nothing to draw", "The section cuts everything away.", "camera.section");
+    return fail(ErrorCode::invalid, "Nothing to draw", "The section cuts everything away.",
+                "camera.section");
   const glm::dvec2 size =
       wish.center ? 2.0 * glm::max(glm::abs(glm::dvec2(extent->max - wish.plane.of(*wish.center))),
                                    glm::abs(glm::dvec2(wish.plane.of(*wish.center) - extent->min)))
@@ -400,29 +390,26 @@ Result<std::shared_ptr<const jobs::JobFile>> make_figure(const RouteContext& con
   std::vector<figure::Legend> legends;
   if (wish.legend) {
     // The drawing is largest without a legend: what is seen there is told.
-    auto seen = legends_of(context, wish, drawing_on(compose(wish, {}, size, model.metres())));
-    if (!seen) return tl::unexpected(seen.error());
-    legends = std::move(*seen);
+    auto seen =
+        STRATA_TRY(legends_of(context, wish, drawing_on(compose(wish, {}, size, model.metres()))));
+    legends = std::move(seen);
   }
   const Composed composed = compose(wish, legends, size, model.metres());
   const figure::SheetLayout& layout = composed.layout;
   const figure::Drawing drawing = drawing_on(composed);
 
-  const auto held = budget.take(std::uint64_t{4} * drawing.width * drawing.height);
-  if (!held) return tl::unexpected(held.error());
-  const auto labels = labels_of(context, wish, drawing, layout.drawing_mm());
-  if (!labels) return tl::unexpected(labels.error());
+  const auto held = STRATA_TRY(budget.take(std::uint64_t{4} * drawing.width * drawing.height));
+  const auto labels = STRATA_TRY(labels_of(context, wish, drawing, layout.drawing_mm()));
   progress.begin_stage(0.05, 0.75);
-  const auto picture = draw(wish, drawing, progress);
-  if (!picture) return tl::unexpected(picture.error());
+  const auto picture = STRATA_TRY(draw(wish, drawing, progress));
   progress.begin_stage(0.75, 1);
-  const auto sheet = layout.finish(drawing.scale, north_on(wish.plane, model), *labels);
+  const auto sheet = layout.finish(drawing.scale, north_on(wish.plane, model), labels);
   auto file = std::make_shared<jobs::JobFile>();
   file->path = context.options.upload_dir / (to_string(random_uuid()) + ".figure");
   file->name = file_name(wish, drawing.scale);
   file->media_type = figure::media_type(wish.format);
   const figure::Document document{wish.captions.title, wish.captions.credit};
-  if (auto written = figure::write_figure(sheet, *picture, wish.dpi, wish.format, document,
+  if (auto written = figure::write_figure(sheet, picture, wish.dpi, wish.format, document,
                                           file->path, progress);
       !written)
     return tl::unexpected(written.error());

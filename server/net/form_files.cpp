@@ -89,8 +89,8 @@ std::string header_parameter(std::string_view header, std::string_view name) {
 Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::string_view body,
                                             const std::function<void(std::string_view)>& passed) {
   const auto malformed = [] {
-    return fail(400, "Malformed form", "The multipart/form-data body does not follow its boundary.",
-                "body");
+    return fail(ErrorCode::malformed, "Malformed form",
+                "The multipart/form-data body does not follow its boundary.", "body");
   };
   const std::string boundary = header_parameter(content_type, "boundary");
   if (boundary.empty() || boundary.size() > kLongestBoundary) return malformed();
@@ -113,7 +113,7 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
     if (name.empty()) continue;  // a field of the form
     if (files.size() >= kMostFormFiles)
       return fail(
-          413, "Too many files",
+          ErrorCode::too_large, "Too many files",
           "A form has at most " + std::to_string(kMostFormFiles) + " files; send them as a zip.",
           "body");
     // An empty content ends before it begins: its line break is that of the blank line.
@@ -121,8 +121,8 @@ Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::
                   body.substr(content_begin, std::max(content_end, content_begin) - content_begin)};
     if (std::any_of(files.begin(), files.end(),
                     [&](const auto& other) { return other.filename == file.filename; }))
-      return fail(422, "File sent twice", "The form holds two files named " + file.filename + ".",
-                  "body");
+      return fail(ErrorCode::invalid, "File sent twice",
+                  "The form holds two files named " + file.filename + ".", "body");
     files.push_back(std::move(file));
   }
   return files;

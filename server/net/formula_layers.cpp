@@ -35,12 +35,10 @@ Result<TileMap> shape_tiles(const RouteContext& context, const room::Room& room,
   recipe.kind = name == "height"  ? jobs::ShapeKind::height
                 : name == "slope" ? jobs::ShapeKind::slope
                                   : jobs::ShapeKind::mean_curvature;
-  auto complete = jobs::completed(std::move(recipe), model);
-  if (!complete) return tl::unexpected(complete.error());
-  auto shape = jobs::compute_shape_layer(context.store, model, room.geometry(), *complete,
-                                         ValueType::f32, resolution, progress);
-  if (!shape) return tl::unexpected(shape.error());
-  return std::move(shape->tiles);
+  auto complete = STRATA_TRY(jobs::completed(std::move(recipe), model));
+  auto shape = STRATA_TRY(jobs::compute_shape_layer(context.store, model, room.geometry(), complete,
+                                                    ValueType::f32, resolution, progress));
+  return std::move(shape.tiles);
 }
 
 Result<std::vector<query::LayerView>> shape_views(const RouteContext& context,
@@ -49,13 +47,12 @@ Result<std::vector<query::LayerView>> shape_views(const RouteContext& context,
                                                   Progress& progress) {
   std::vector<query::LayerView> views;
   for (const std::string& name : room::shapes_read(expression, views_of(room.layers()))) {
-    auto tiles = shape_tiles(context, room, name, resolution, progress);
-    if (!tiles) return tl::unexpected(tiles.error());
+    auto tiles = STRATA_TRY(shape_tiles(context, room, name, resolution, progress));
     query::LayerView view;
     view.layer.slug = std::string(room::kShapePrefix) + name;
     view.layer.type = ValueType::f32;
     view.layer.resolution = resolution;
-    view.snapshot.tiles = std::move(*tiles);
+    view.snapshot.tiles = std::move(tiles);
     views.push_back(std::move(view));
   }
   return views;
@@ -63,18 +60,17 @@ Result<std::vector<query::LayerView>> shape_views(const RouteContext& context,
 
 bool is_condition(const Layer& layer) {
   const auto expression =
-      layer.formula ? parse_formula(layer.formula->expression) : fail(0, {}, {});
+      layer.formula ? parse_formula(layer.formula->expression) : fail(ErrorCode::invalid, {}, {});
   return expression && expression->is_condition();
 }
 
 // Colours over most of the values; those of a condition are as they were made.
 Result<Layer> with_colors(room::Room& room, Layer layer) {
   if (is_condition(layer)) return layer;
-  const auto values = room.statistics(layer.slug, {}, {.quantiles = true});
-  if (!values) return tl::unexpected(values.error());
-  if (!values->quantiles || !(values->max > values->min)) return layer;
-  jobs::ValueRange range{values->min, values->quantiles->front(), values->quantiles->back(),
-                         values->max};
+  const auto values = STRATA_TRY(room.statistics(layer.slug, {}, {.quantiles = true}));
+  if (!values.quantiles || !(values.max > values.min)) return layer;
+  jobs::ValueRange range{values.min, values.quantiles->front(), values.quantiles->back(),
+                         values.max};
   if (!(range.high > range.low))
     std::tie(range.low, range.high) = std::pair(range.least, range.most);
   layer.palette = jobs::palette_of(jobs::ShapeKind::vertex_property, range);
@@ -92,26 +88,24 @@ Result<Expression> parse_formula(const std::string& text) {
 
 Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
                                   Visibility visibility, std::optional<std::int64_t> self) {
-  const auto expression = parse_formula(text);
-  if (!expression) return tl::unexpected(expression.error());
+  const auto expression = STRATA_TRY(parse_formula(text));
   const std::vector<Layer> layers = room.layers();
-  const auto shapes = room::shapes_read(*expression, views_of(layers));
+  const auto shapes = room::shapes_read(expression, views_of(layers));
   LayerFormula formula;
   formula.expression = text;
   formula.automatic = automatic;
-  for (const std::string& slug : layers_of(*expression)) {
+  for (const std::string& slug : layers_of(expression)) {
     const auto layer = std::ranges::find(layers, slug, &Layer::slug);
     if (layer == layers.end()) continue;  // of the surface, or nothing: the binding says so
     if (self && layer->id == *self)
-      return fail(422, "Computed from itself",
+      return fail(ErrorCode::invalid, "Computed from itself",
                   "The expression reads the very layer that it is for.", "expression");
     LayerFormula::Input input{slug, layer->id, {}};
-    if (reads_records_of(*expression, slug)) input.table = layer->table;
+    if (reads_records_of(expression, slug)) input.table = layer->table;
     formula.inputs.push_back(std::move(input));
   }
   std::ranges::sort(formula.inputs, {}, &LayerFormula::Input::slug);
-  if (auto good = room.check_expression(*expression, "expression", visibility); !good)
-    return tl::unexpected(good.error());
+  STRATA_TRY(room.check_expression(expression, "expression", visibility));
   return formula;
 }
 
@@ -119,25 +113,22 @@ Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<r
                             const Layer& layer, const Author& author, Progress& progress,
                             bool overwrites) {
   if (!layer.formula)
-    return fail(409, "No expression",
+    return fail(ErrorCode::conflict, "No expression",
                 "This layer has no expression that it could be computed from.", "layer");
   for (const auto& input : layer.formula->inputs)
     if (!input.layer)
-      return fail(409, "Input deleted",
+      return fail(ErrorCode::conflict, "Input deleted",
                   "The expression reads the layer '" + input.slug +
                       "', which was deleted. Change the expression.",
                   "expression");
-  const auto expression = parse_formula(layer.formula->expression);
-  if (!expression) return tl::unexpected(expression.error());
-  auto shapes = shape_views(context, *room, *expression, layer.resolution, progress);
-  if (!shapes) return tl::unexpected(shapes.error());
+  const auto expression = STRATA_TRY(parse_formula(layer.formula->expression));
+  auto shapes = STRATA_TRY(shape_views(context, *room, expression, layer.resolution, progress));
   if (progress.cancelled()) return cancelled_problem();
   // Before the records are read: what changes meanwhile makes the layer stale.
-  const auto tables = context.store.table_sequences_of(layer.id);
-  if (!tables) return tl::unexpected(tables.error());
+  const auto tables = STRATA_TRY(context.store.table_sequences_of(layer.id));
   room::EditRequest edit{random_uuid(), author, layer.id};
   edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};
-  edit.edit = room::ComputeEdit{*expression, std::move(*shapes), overwrites};
+  edit.edit = room::ComputeEdit{expression, std::move(shapes), overwrites};
   auto done = room::await<room::EditAnswer>([&](auto saved) {
     room->edit(
         std::move(edit), [&context](const room::EditAnswer&) { ++context.metrics.edits_applied; },
@@ -148,7 +139,7 @@ Result<Layer> compute_layer(const RouteContext& context, const std::shared_ptr<r
     return tl::unexpected(done.error());
   }
   ++context.metrics.edits_saved;
-  return room->layer_computed(layer.id, layer.formula->expression, done->sequence, *tables);
+  return room->layer_computed(layer.id, layer.formula->expression, done->sequence, tables);
 }
 
 Result<Response> create_formula_layer(const RouteContext& context, JobBook& book,
@@ -156,25 +147,22 @@ Result<Response> create_formula_layer(const RouteContext& context, JobBook& book
                                       const std::shared_ptr<room::Room>& room, Layer layer,
                                       bool has_palette,
                                       const std::function<Response(const Layer&)>& answer) {
-  const auto expression = parse_formula(layer.formula->expression);
-  if (!expression) return tl::unexpected(expression.error());
+  const auto expression = STRATA_TRY(parse_formula(layer.formula->expression));
   const auto compute = [&context, room, author = request.author(), has_palette](
                            const Layer& made, Progress& progress) -> Result<Layer> {
     auto computed = compute_layer(context, room, made, author, progress);
     if (!computed) return computed;
     // Others see it once they want to.
-    if (auto shown = context.store.show_layer_to(author.user, made.model_id, made.id); !shown)
-      return tl::unexpected(shown.error());
+    STRATA_TRY(context.store.show_layer_to(author.user, made.model_id, made.id));
     return has_palette ? computed : with_colors(*room, std::move(*computed));
   };
-  if (!room::shapes_read(*expression, views_of(room->layers())).empty())
+  if (!room::shapes_read(expression, views_of(room->layers())).empty())
     return start_layer_job(context, book, request, room,
                            [layer = std::move(layer), compute](
                                NewLayers& layers, Progress& progress) -> Result<nlohmann::json> {
-                             auto made = layers.add(layer, [&](const Layer& empty) {
+                             STRATA_TRY(layers.add(layer, [&](const Layer& empty) {
                                return compute(empty, progress);
-                             });
-                             if (!made) return tl::unexpected(made.error());
+                             }));
                              return nlohmann::json();
                            });
   NewLayers layers(room, context.metrics, request.author());

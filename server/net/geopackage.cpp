@@ -297,7 +297,7 @@ Result<Response> geopackage(const FeatureSet& set, const fs::path& folder) {
   } catch (const NotWritten& error) {
     log::error(std::string("a GeoPackage could not be written: ") + error.what());
     return fail(
-        507, "GeoPackage not written",
+        ErrorCode::storage_full, "GeoPackage not written",
         "The server could not write the file, as when its disk is full. Ask for GeoJSON, which needs none.",
         "f");
   }

@@ -62,8 +62,7 @@ Result<Request> request_of(const http::request<http::empty_body>& head) {
   request.method = method_of(head.method());
   for (const auto& field : head)
     request.headers.emplace_back(to_lower(field.name_string()), std::string(field.value()));
-  if (auto parsed = parse_target(head.target(), request); !parsed)
-    return tl::unexpected(parsed.error());
+  STRATA_TRY(parse_target(head.target(), request));
   return request;
 }
 
@@ -74,11 +73,11 @@ Result<void> check_framing(const Request& request, unsigned version) {
                                  [&](const auto& header) { return header.first == name; });
   };
   if (count("host") > 1 || (version >= 11 && count("host") == 0))
-    return fail(400, "Host unclear", "A request names one Host.", "Host");
+    return fail(ErrorCode::malformed, "Host unclear", "A request names one Host.", "Host");
   if (count("transfer-encoding") == 0) return {};
   if (version < 11 || count("transfer-encoding") > 1 ||
       to_lower(request.header("transfer-encoding")) != "chunked")
-    return fail(501, "Transfer encoding unknown",
+    return fail(ErrorCode::not_implemented, "Transfer encoding unknown",
                 "Bodies come with a Content-Length or as `Transfer-Encoding: chunked`.",
                 "Transfer-Encoding");
   return {};
@@ -97,8 +96,9 @@ class BodyClock {
   bool is_over(std::uint64_t bytes) const {
     return std::chrono::steady_clock::now() - begin_ > kStall + std::chrono::milliseconds(bytes);
   }
-  static Problem problem() {
-    return {408, "Body too slow", "The body comes with less than a kilobyte a second.", "body"};
+  static Error problem() {
+    return {ErrorCode::timed_out, "Body too slow",
+            "The body comes with less than a kilobyte a second.", "body"};
   }
 
  private:
@@ -173,8 +173,11 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     head.header_limit(kMaxHead);
     auto [malformed, size] = co_await http::async_read_header(stream_, buffer_, head, kUseResult);
     if (!malformed) {
-      Response elsewhere = problem_response(
-          {400, "Plain HTTP", "This server speaks https: ask https:// in place of http://.", {}});
+      Response elsewhere =
+          problem_response({ErrorCode::malformed,
+                            "Plain HTTP",
+                            "This server speaks https: ask https:// in place of http://.",
+                            {}});
       const auto host = head.get()[http::field::host];
       if (!host.empty()) {
         elsewhere.status = 308;
@@ -192,12 +195,16 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   asio::awaitable<void> refuse_head(beast::error_code error) {
     Response refusal;
     if (error == http::error::header_limit) {
-      refusal = problem_response(
-          {431, "Header too large", "The head of a request has at most 8 KiB.", {}});
+      refusal = problem_response({ErrorCode::head_too_large,
+                                  "Header too large",
+                                  "The head of a request has at most 8 KiB.",
+                                  {}});
     } else if (error.category() == http::make_error_code(http::error::bad_method).category() &&
                error != http::error::end_of_stream && error != http::error::partial_message) {
-      refusal = problem_response(
-          {400, "Malformed request", "This is not HTTP: " + error.message() + ".", {}});
+      refusal = problem_response({ErrorCode::malformed,
+                                  "Malformed request",
+                                  "This is not HTTP: " + error.message() + ".",
+                                  {}});
     } else {
       co_return;
     }
@@ -223,8 +230,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     by_https_ = came_by_https(*request);
     Response response;
     if (!bucket_.take()) {
-      response = problem_response(
-          {429, "Too many requests", "This connection asks too fast; wait a second.", {}});
+      response = problem_response({ErrorCode::too_many_requests,
+                                   "Too many requests",
+                                   "This connection asks too fast; wait a second.",
+                                   {}});
       co_return co_await refuse(head, *request, response, keep_alive);
     }
     if (beast::websocket::is_upgrade(head.get()) && App::is_live_address(*request))
@@ -253,7 +262,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         if (!told) co_return false;
       }
       if (!length || *length > kReadAtOnce) buffer_.reserve(kReadAtOnce);
-      Problem problem;
+      Error problem;
       bool is_read = false;
       if (route->body == BodyKind::file)
         is_read = co_await read_to_file(head, *request, max_body, problem);
@@ -291,8 +300,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return co_await send(response, request->method, keep_alive);
   }
 
-  static Problem too_large(std::uint64_t max_body) {
-    return {413, "Body too large",
+  static Error too_large(std::uint64_t max_body) {
+    return {ErrorCode::too_large, "Body too large",
             "This address takes at most " + std::to_string(max_body) + " bytes.", "body"};
   }
 
@@ -312,7 +321,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       if (!length || *length > kMaxIgnoredBody || waits)
         co_return co_await send(response, method, false);
       Request ignored;
-      Problem problem;
+      Error problem;
       const bool is_read = co_await read_to_memory(head, ignored, kMaxIgnoredBody, problem);
       if (!is_read) co_return false;
     }
@@ -328,7 +337,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   // False: see the problem; one without a title says that the connection broke.
   asio::awaitable<bool> read_to_memory(http::request_parser<http::empty_body>& head,
-                                       Request& request, std::uint64_t max_body, Problem& problem) {
+                                       Request& request, std::uint64_t max_body, Error& problem) {
     http::request_parser<http::string_body> parser(std::move(head));
     parser.body_limit(boost::none);
     const BodyClock clock;
@@ -354,7 +363,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
   asio::awaitable<bool> read_to_file(http::request_parser<http::empty_body>& head, Request& request,
-                                     std::uint64_t max_body, Problem& problem) {
+                                     std::uint64_t max_body, Error& problem) {
     http::request_parser<http::file_body> parser(std::move(head));
     parser.body_limit(boost::none);
     request.body_file = app_.options().upload_dir / (to_string(random_uuid()) + ".body");
@@ -362,7 +371,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     parser.get().body().open(request.body_file.c_str(), beast::file_mode::write_new, file_error);
     if (file_error) {
       log::error("upload folder not writable: " + file_error.message());
-      problem = {507,
+      problem = {ErrorCode::storage_full,
                  "No room for uploads",
                  "The server cannot write its upload folder: " + file_error.message() + ".",
                  {}};
@@ -373,10 +382,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       connection().expires_after(kStall);
       auto [error, size] = co_await http::async_read_some(stream_, buffer_, parser, kUseResult);
       if (error) {
-        problem =
-            error == boost::system::errc::no_space_on_device
-                ? Problem{507, "Disk full", "The upload does not fit on the server's disk.", "body"}
-                : body_problem(error);
+        problem = error == boost::system::errc::no_space_on_device
+                      ? Error{ErrorCode::storage_full, "Disk full",
+                              "The upload does not fit on the server's disk.", "body"}
+                      : body_problem(error);
         co_return false;
       }
       request.body_bytes += size;
@@ -396,12 +405,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     co_return true;
   }
 
-  static Problem body_problem(beast::error_code error) {
+  static Error body_problem(beast::error_code error) {
     const bool malformed =
         error.category() == http::make_error_code(http::error::bad_chunk).category() &&
         error != http::error::partial_message && error != http::error::end_of_stream;
     if (malformed)
-      return {400, "Malformed body",
+      return {ErrorCode::malformed, "Malformed body",
               "The body does not follow its framing: " + error.message() + ".", "body"};
     return {};
   }
@@ -454,7 +463,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
         message.prepare_payload();
         co_return co_await write(message);
       }
-      response = problem_response({404, "Not found", "The file is gone.", {}});
+      response = problem_response({ErrorCode::not_found, "Not found", "The file is gone.", {}});
     }
     if (method == Method::head)
       co_return co_await send_head(response, std::max(response.bytes.size(), response.body.size()),
@@ -501,8 +510,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (method == Method::head) co_return co_await send_head(response, length, keep_alive);
     const CountAtWork counted(connections_->streams_at_work);
     if (connections_->streams_at_work > std::max(1, app_.options().worker_threads / 2)) {
-      Response refusal = problem_response(
-          {503, "Too many downloads", "Ask again when another download has ended.", {}});
+      Response refusal = problem_response({ErrorCode::busy,
+                                           "Too many downloads",
+                                           "Ask again when another download has ended.",
+                                           {}});
       co_return co_await send(refusal, method, keep_alive);
     }
     const bool in_chunks = !length && http_version_ >= 11;
@@ -550,7 +561,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const CountAtWork counted(connections_->event_streams);
     if (connections_->event_streams > kMostEventStreams) {
       Response refusal = problem_response(
-          {503, "Too many listeners", "Ask again when another listener has gone.", {}});
+          {ErrorCode::busy, "Too many listeners", "Ask again when another listener has gone.", {}});
       co_return co_await send(refusal, method, keep_alive);
     }
     const bool in_chunks = http_version_ >= 11;
@@ -623,7 +634,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     Response response;
     if (!offered.exists(kSubprotocol)) {
       response =
-          problem_response({400, "Subprotocol missing",
+          problem_response({ErrorCode::malformed, "Subprotocol missing",
                             "Live connections speak strata.v1: name it in Sec-WebSocket-Protocol.",
                             "Sec-WebSocket-Protocol"});
       co_return co_await send(response, Method::get, false);

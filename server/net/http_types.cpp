@@ -2,6 +2,7 @@
 
 #include "core/utf8.h"
 #include "protocol/parse.h"
+#include "protocol/problem.h"
 
 #include <algorithm>
 #include <atomic>
@@ -76,11 +77,12 @@ Response empty_response(int status) {
   return response;
 }
 
-Response problem_response(const Problem& problem) {
-  Response response = json_response(protocol::problem_body(problem), problem.status);
+Response problem_response(const Error& problem) {
+  Response response =
+      json_response(protocol::problem_body(problem), protocol::http_status(problem.code));
   response.headers = {{"Content-Type", "application/problem+json"}};
-  if (problem.status == 401) response.with("WWW-Authenticate", "Bearer realm=\"strata\"");
-  if (problem.status == 429 || problem.status == 503) response.with("Retry-After", "1");
+  if (response.status == 401) response.with("WWW-Authenticate", "Bearer realm=\"strata\"");
+  if (response.status == 429 || response.status == 503) response.with("Retry-After", "1");
   return response;
 }
 
@@ -125,8 +127,10 @@ struct Respond::State {
   explicit State(std::function<void(Response)> function) : send(std::move(function)) {}
   ~State() {
     if (!answered)
-      send(problem_response(
-          {503, "Request dropped", "The server stopped before it answered; ask again.", {}}));
+      send(problem_response({ErrorCode::unavailable,
+                             "Request dropped",
+                             "The server stopped before it answered; ask again.",
+                             {}}));
   }
   std::function<void(Response)> send;
   std::atomic<bool> answered{false};
@@ -188,7 +192,9 @@ std::string to_lower(std::string_view text) {
 }
 
 Result<void> parse_target(std::string_view target, Request& request) {
-  auto wrong = [](std::string detail) { return fail(400, "Malformed address", std::move(detail)); };
+  auto wrong = [](std::string detail) {
+    return fail(ErrorCode::malformed, "Malformed address", std::move(detail));
+  };
   request.target = target;
   if (target.empty() || target[0] != '/')
     return wrong("A request names a path that begins with a slash.");
@@ -219,7 +225,8 @@ Result<void> parse_target(std::string_view target, Request& request) {
     if (!key || !value) return wrong("The query has a percent escape that is not one.");
     if (!is_utf8(*key) || !is_utf8(*value)) return wrong("The query is not UTF-8.");
     if (!request.query.emplace(*key, std::move(*value)).second)
-      return fail(400, "Query parameter given twice", "Give '" + *key + "' once.", *key);
+      return fail(ErrorCode::malformed, "Query parameter given twice", "Give '" + *key + "' once.",
+                  *key);
   }
   // No route's own: it says which cookie counts.
   if (const auto as = request.query.find("as");
@@ -235,7 +242,7 @@ Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std:
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
-    return fail(422, "Number out of range",
+    return fail(ErrorCode::invalid, "Number out of range",
                 "'" + field + "' is a whole number from " + std::to_string(low) + " to " +
                     std::to_string(high) + ".",
                 field);
@@ -246,7 +253,7 @@ Result<std::string> asked_language(const Request& request) {
   constexpr std::size_t kLongest = 35;  // BCP 47
   std::string language = to_lower(request.query_or("lang", {}));
   if (language.size() > kLongest)
-    return fail(422, "Not a language",
+    return fail(ErrorCode::invalid, "Not a language",
                 "`lang` is a language such as `es` or `de-AT`, of 35 characters at most.", "lang");
   return language;
 }

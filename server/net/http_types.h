@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/role.h"
 
 namespace strata::net {
@@ -104,8 +104,8 @@ struct Response {
 Response json_response(const nlohmann::json& json, int status = 200);
 Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_type);
 Response text_response(std::string text, std::string content_type);
-Response empty_response(int status);                // 204, 304
-Response problem_response(const Problem& problem);  // RFC 9457
+Response empty_response(int status);              // 204, 304
+Response problem_response(const Error& problem);  // RFC 9457
 // For a file that is kept and not shown; any characters will do.
 void name_download(Response& response, const std::string& filename);
 std::string_view reason_phrase(int status);
@@ -116,7 +116,7 @@ class Respond {
  public:
   explicit Respond(std::function<void(Response)> send);
   void operator()(Response response) const;
-  void operator()(const Problem& problem) const { (*this)(problem_response(problem)); }
+  void operator()(const Error& problem) const { (*this)(problem_response(problem)); }
 
  private:
   struct State;

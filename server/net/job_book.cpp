@@ -9,7 +9,7 @@ Result<std::optional<std::int64_t>> JobBook::find(const Request& request) {
   const auto found = started_.find(scoped_key(request));
   if (found == started_.end() || !jobs_.status(found->second.job)) return std::nullopt;
   if (found->second.fingerprint != fingerprint(request))
-    return fail(422, "Key used for another call",
+    return fail(ErrorCode::invalid, "Key used for another call",
                 "This Idempotency-Key was used with another body; take a new key for a new call.",
                 "Idempotency-Key");
   return found->second.job;

@@ -38,20 +38,18 @@ using Tables = std::set<std::int64_t>;
 // Tables of the model's public layers and of the tour, and the lists whose terms their public
 // columns hold.
 Result<Tables> tables_of(const RouteContext& context, const KioskPass& kiosk) {
-  const auto layers = context.store.layers(kiosk.model, Role::viewer);
-  if (!layers) return tl::unexpected(layers.error());
-  const auto tour = context.store.tours().find(kiosk.model, std::to_string(kiosk.tour));
-  if (!tour) return tl::unexpected(tour.error());
+  const auto layers = STRATA_TRY(context.store.layers(kiosk.model, Role::viewer));
+  const auto tour = STRATA_TRY(context.store.tours().find(kiosk.model, std::to_string(kiosk.tour)));
   Tables tables;
-  for (const Layer& layer : *layers)
+  for (const Layer& layer : layers)
     if (layer.table) tables.insert(*layer.table);
-  for (const nlohmann::json& stop : tour->content.at("stops"))
+  for (const nlohmann::json& stop : tour.content.at("stops"))
     for (const nlohmann::json& records : stop.at("records"))
       tables.insert(records.at("table").get<std::int64_t>());
   Tables with_terms = tables;
   for (const std::int64_t id : tables) {
     const auto table = context.store.table(std::to_string(id), Role::viewer);
-    if (!table && table.error().status == 404) continue;
+    if (!table && table.error().code == ErrorCode::not_found) continue;
     if (!table) return tl::unexpected(table.error());
     for (const Column& column : table->columns)
       if (column.kind == ColumnKind::term && column.target) with_terms.insert(*column.target);
@@ -63,10 +61,10 @@ Result<bool> has_table(const RouteContext& context, const KioskPass& kiosk,
                        const std::string& ref) {
   const auto table = context.store.table(ref, Role::viewer);
   if (!table)
-    return table.error().status == 404 ? Result<bool>(false) : tl::unexpected(table.error());
-  const auto tables = tables_of(context, kiosk);
-  if (!tables) return tl::unexpected(tables.error());
-  return tables->contains(table->id);
+    return table.error().code == ErrorCode::not_found ? Result<bool>(false)
+                                                      : tl::unexpected(table.error());
+  const auto tables = STRATA_TRY(tables_of(context, kiosk));
+  return tables.contains(table->id);
 }
 
 // Whether the address's thing of this kind is the kiosk's to see.
@@ -80,14 +78,15 @@ constexpr Place kPlaces[] = {
      [](const RouteContext& context, const KioskPass& kiosk,
         const std::string& ref) -> Result<bool> {
        const auto model = context.store.model(ref);
-       if (!model && model.error().status != 404) return tl::unexpected(model.error());
+       if (!model && model.error().code != ErrorCode::not_found)
+         return tl::unexpected(model.error());
        return model && model->id == kiosk.model;
      }},
     {"tour",
      [](const RouteContext& context, const KioskPass& kiosk,
         const std::string& ref) -> Result<bool> {
        const auto tour = context.store.tours().find(kiosk.model, ref);
-       if (!tour && tour.error().status != 404) return tl::unexpected(tour.error());
+       if (!tour && tour.error().code != ErrorCode::not_found) return tl::unexpected(tour.error());
        return tour && tour->id == kiosk.tour;
      }},
     {"table", has_table},
@@ -98,8 +97,9 @@ constexpr Place kPlaces[] = {
        if (!id) return false;
        const auto attachment = context.store.attachment(*id, {{}, Role::viewer});
        if (!attachment)
-         return attachment.error().status == 404 ? Result<bool>(false)
-                                                 : tl::unexpected(attachment.error());
+         return attachment.error().code == ErrorCode::not_found
+                    ? Result<bool>(false)
+                    : tl::unexpected(attachment.error());
        return has_table(context, kiosk, std::to_string(attachment->table_id));
      }},
 };
@@ -109,14 +109,14 @@ constexpr Place kPlaces[] = {
 Result<void> enter_as_kiosk(const RouteContext& context, Request& request, const Route& route) {
   Principal& who = *request.principal;
   if (route.method != Method::get || std::ranges::find(kOpen, route.pattern) == std::end(kOpen))
-    return fail(403, "Not for kiosks", "A kiosk reads what its tour shows, and changes nothing.");
+    return fail(ErrorCode::forbidden, "Not for kiosks",
+                "A kiosk reads what its tour shows, and changes nothing.");
   who.role = Role::viewer;
   for (const Place& place : kPlaces) {
     const auto param = request.params.find(place.param);
     if (param == request.params.end()) continue;
-    const auto own = place.is_own(context, *who.kiosk, param->second);
-    if (!own) return tl::unexpected(own.error());
-    if (!*own) return not_there(place.param, param->second);
+    const auto own = STRATA_TRY(place.is_own(context, *who.kiosk, param->second));
+    if (!own) return no_such(place.param, param->second);
   }
   return {};
 }

@@ -34,31 +34,27 @@ Result<Records> read_records(const RouteContext& context, const FeatureWish& wis
     if (!then) return tl::unexpected(then.error());
     query.at = *then;
   }
-  const auto table = context.store.table(std::to_string(*wish.layer.table), wish.role);
-  if (!table) return tl::unexpected(table.error());
+  const auto table = STRATA_TRY(context.store.table(std::to_string(*wish.layer.table), wish.role));
   // Records that are painted nowhere may have lines and points.
   const auto is_mark = [](const Column& column) { return holds_marks(column.kind); };
-  if (std::ranges::none_of(table->columns, is_mark)) query.keys = std::move(painted);
-  auto page = context.store.records(table->id, wish.role, query);
-  if (!page) return tl::unexpected(page.error());
+  if (std::ranges::none_of(table.columns, is_mark)) query.keys = std::move(painted);
+  auto page = STRATA_TRY(context.store.records(table.id, wish.role, query));
   Records records;
-  for (const Column& column : page->table.columns)
+  for (const Column& column : page.table.columns)
     if (is_mark(column))
       records.marks.push_back(column);
     else if (!holds_attachments(column.kind))
       records.columns.push_back(column);
   std::vector<std::int64_t> keys;
-  for (Record& record : page->records) {
+  for (Record& record : page.records) {
     keys.push_back(record.key);
     records.by_key.emplace(record.key, std::move(record));
   }
-  auto names =
-      record_names(context, table->id, wish.role, std::move(keys), query.at, wish.language);
+  auto names = record_names(context, table.id, wish.role, std::move(keys), query.at, wish.language);
   if (!names) return tl::unexpected(names.error());
   records.names = std::move(*names);
-  auto words = words_of(context.store, records.columns, wish.role, wish.language);
-  if (!words) return tl::unexpected(words.error());
-  records.words = std::move(*words);
+  auto words = STRATA_TRY(words_of(context.store, records.columns, wish.role, wish.language));
+  records.words = std::move(words);
   return records;
 }
 
@@ -236,9 +232,8 @@ Result<FeatureSet> layer_features(const RouteContext& context, const FeatureWish
     std::vector<std::int64_t> painted;
     for (const query::Quantity& quantity : all.classes)
       painted.push_back(static_cast<std::int64_t>(*quantity.value));
-    auto read = read_records(context, wish, std::move(painted));
-    if (!read) return tl::unexpected(read.error());
-    records = std::move(*read);
+    auto read = STRATA_TRY(read_records(context, wish, std::move(painted)));
+    records = std::move(read);
   }
   FeatureSet set;
   set.name = model.slug + "-" + wish.layer.slug;

@@ -9,12 +9,11 @@ namespace {
 
 Result<jobs::JobResult> run(room::Room& room, NewLayers& layers, const MakeLayers& make,
                             const std::string& key, const std::string& print, Progress& progress) {
-  auto report = make(layers, progress);
-  if (!report) return tl::unexpected(report.error());
+  auto report = STRATA_TRY(make(layers, progress));
   if (progress.cancelled()) return cancelled_problem();
   jobs::JobResult result(room.model().id);
   result.layers = layers.ids();
-  result.report = std::move(*report);
+  result.report = std::move(report);
   const store::FirstAnswer<Layer> answer{key,
                                          [&](const Layer&) {
                                            return nlohmann::json{{"request", print},
@@ -24,7 +23,7 @@ Result<jobs::JobResult> run(room::Room& room, NewLayers& layers, const MakeLayer
                                          },
                                          {},
                                          progress.job()};
-  if (auto shown = layers.show(answer); !shown) return tl::unexpected(shown.error());
+  STRATA_TRY(layers.show(answer));
   return result;
 }
 
@@ -32,9 +31,8 @@ Result<jobs::JobResult> run(room::Room& room, NewLayers& layers, const MakeLayer
 
 Result<Response> start_layer_job(const RouteContext& context, JobBook& book, const Request& request,
                                  const std::shared_ptr<room::Room>& room, MakeLayers make) {
-  auto known = book.find(request);
-  if (!known) return tl::unexpected(known.error());
-  if (*known) return std::move(job_response(context, **known).with("Idempotency-Replayed", "true"));
+  auto known = STRATA_TRY(book.find(request));
+  if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
   auto job = context.jobs.add(
       room->model().project_id,
       [&metrics = context.metrics, room, make = std::move(make), author = request.author(),
@@ -53,17 +51,14 @@ Result<Response> start_layer_job(const RouteContext& context, JobBook& book, con
 
 Result<Response> repeat_layer_job(const RouteContext& context, JobBook& book,
                                   const Request& request, const nlohmann::json& kept) {
-  auto known = book.find(request);
-  if (!known) return tl::unexpected(known.error());
-  if (*known) return job_response(context, **known);
+  auto known = STRATA_TRY(book.find(request));
+  if (known) return job_response(context, *known);
   jobs::JobResult result(kept.at("model").get<std::int64_t>());
   result.layers = kept.at("layers").get<std::vector<std::int64_t>>();
   result.report = kept.at("report");
-  const auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  auto job = book.finished(request, model->project_id, std::move(result));
-  if (!job) return tl::unexpected(job.error());
-  return job_response(context, *job);
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
+  return job_response(context, job);
 }
 
 int order_on_top(const std::vector<Layer>& others) {

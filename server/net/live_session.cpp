@@ -7,14 +7,16 @@
 #include "net/live_sockets.h"
 #include "net/painted_keys.h"
 #include "net/wire.h"
+#include "protocol/problem.h"
 
 namespace strata::net {
 namespace {
 
 constexpr int kHistoryToSearch = 500;  // journal rows looked at for the end of a stroke's batch
 
-Problem need_hello() {
-  return {409, "Say hello first", "The first message of a connection is `hello`.", "op"};
+Error need_hello() {
+  return {ErrorCode::conflict, "Say hello first", "The first message of a connection is `hello`.",
+          "op"};
 }
 
 std::string ref_of(const std::optional<std::string>& id) { return id.value_or(std::string()); }
@@ -61,7 +63,7 @@ LiveSession::Work LiveSession::on_text(const std::string& text) {
   const bool in_time = bucket_.take();
   auto message = protocol::parse_client_message(text, &ref, {shared_->limits.message_bytes, 32});
   if (!in_time) {
-    refuse({429,
+    refuse({ErrorCode::too_many_requests,
             "Too many messages",
             "At most " + std::to_string(static_cast<int>(shared_->limits.messages_per_second)) +
                 " messages a second are taken; send this one again later.",
@@ -81,7 +83,8 @@ LiveSession::Work LiveSession::on_text(const std::string& text) {
     return {};
   }
   if (principal_.kiosk && !may_send_as_kiosk(*message)) {
-    refuse({403, "Not for kiosks", "A kiosk looks, and changes nothing.", "op"}, ref);
+    refuse({ErrorCode::forbidden, "Not for kiosks", "A kiosk looks, and changes nothing.", "op"},
+           ref);
     return {};
   }
   std::visit([this](const auto& m) { on(m); }, *message);
@@ -90,7 +93,10 @@ LiveSession::Work LiveSession::on_text(const std::string& text) {
 
 void LiveSession::on_binary() {
   ++shared_->metrics->messages_received;
-  refuse({415, "Binary message", "Clients send text messages: one JSON object each.", {}},
+  refuse({ErrorCode::unsupported,
+          "Binary message",
+          "Clients send text messages: one JSON object each.",
+          {}},
          std::string());
 }
 
@@ -114,11 +120,13 @@ void LiveSession::tell(const protocol::ServerMessage& message) {
 
 void LiveSession::on(const protocol::Hello& message) {
   if (member())
-    return refuse({409, "Hello said already", "A connection says hello once.", "op"},
-                  std::string());
+    return refuse(
+        {ErrorCode::conflict, "Hello said already", "A connection says hello once.", "op"},
+        std::string());
   if (message.accept && std::none_of(message.accept->begin(), message.accept->end(),
                                      [](const auto& codec) { return codec == "jpeg"; }))
-    return refuse({406, "No common picture format", "Pictures are sent as jpeg.", "accept"},
+    return refuse({ErrorCode::not_acceptable, "No common picture format",
+                   "Pictures are sent as jpeg.", "accept"},
                   std::string());
 
   std::shared_ptr<room::Member> joined = room_->join(
@@ -312,7 +320,7 @@ void LiveSession::on(const protocol::Pick& message) {
     if (auto found = cameras_.find(message.view_id); found != cameras_.end())
       camera = found->second;
   if (!camera)
-    return refuse({409, "No camera yet",
+    return refuse({ErrorCode::conflict, "No camera yet",
                    "Send a camera for this view first, or give one with the pick.", "camera"},
                   ref_of(message.id));
   const bool posted =
@@ -324,7 +332,7 @@ void LiveSession::on(const protocol::Pick& message) {
         self->send(to_picked(*point, message.id));
       });
   if (!posted)
-    refuse({503, "Too busy", "Too many questions wait for an answer; ask again.", {}},
+    refuse({ErrorCode::busy, "Too busy", "Too many questions wait for an answer; ask again.", {}},
            ref_of(message.id));
 }
 
@@ -466,7 +474,7 @@ void LiveSession::edit_applied(const Edit& edit) {
   send(event);
 }
 
-void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Problem&) {
+void LiveSession::edits_unsaved(const std::vector<Edit>& edits, const Error&) {
   // Others see the layer go back; the authors hear of each id by the edit's own answer.
   std::map<std::int64_t, std::int64_t> sequences;
   for (const auto& edit : edits)
@@ -529,8 +537,8 @@ void LiveSession::presence_changed() {
   });
 }
 
-void LiveSession::view_refused(std::uint32_t view_id, const Problem& why) {
-  Problem problem = why;
+void LiveSession::view_refused(std::uint32_t view_id, const Error& why) {
+  Error problem = why;
   problem.detail = "View " + std::to_string(view_id) + " cannot be drawn: " + why.detail;
   refuse(problem, std::string());
 }
@@ -594,7 +602,7 @@ void LiveSession::resolve_pointer() {
 
 bool LiveSession::may_edit(const std::string& ref) {
   if (principal_.role >= Role::annotator) return true;
-  refuse({403,
+  refuse({ErrorCode::forbidden,
           "Not allowed",
           "Your role is viewer: you may look, but not paint. Ask for the role annotator.",
           {}},
@@ -612,7 +620,7 @@ EditorBook::Tell LiveSession::tell_project() const {
 bool LiveSession::has_view(int view_id, const std::string& ref) {
   if (view_id < shared_->limits.views) return true;
   refuse(
-      {422, "Too many views",
+      {ErrorCode::invalid, "Too many views",
        "A connection has views 0 to " + std::to_string(shared_->limits.views - 1) + ".", "view_id"},
       ref);
   return false;
@@ -621,7 +629,7 @@ bool LiveSession::has_view(int view_id, const std::string& ref) {
 Result<Layer> LiveSession::layer_of(const protocol::LayerRef& ref) const {
   auto layer = room_->layer(protocol::to_ref(ref));
   if (layer) return layer;
-  Problem problem = layer.error();
+  Error problem = layer.error();
   if (problem.field.empty()) problem.field = "layer";
   return tl::unexpected(std::move(problem));
 }
@@ -640,7 +648,7 @@ void LiveSession::send(const protocol::ServerMessage& message) {
   if (auto socket = socket_.lock()) socket->send_text(protocol::to_text(message));
 }
 
-void LiveSession::refuse(const Problem& problem, const std::string& ref) {
+void LiveSession::refuse(const Error& problem, const std::string& ref) {
   ++shared_->metrics->messages_refused;
   send(protocol::problem_message(problem, ref));
 }

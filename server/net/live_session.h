@@ -95,13 +95,13 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
 
   // --- room::Listener
   void edit_applied(const Edit& edit) override;
-  void edits_unsaved(const std::vector<Edit>& edits, const Problem& why) override;
+  void edits_unsaved(const std::vector<Edit>& edits, const Error& why) override;
   void layer_changed(LayerChange change, const Layer& layer) override;
   void model_changed(const Model& model) override;
   void look_changed(LayerChange change, const Look& look) override;
   void model_deleted() override;
   void presence_changed() override;
-  void view_refused(std::uint32_t view_id, const Problem& why) override;
+  void view_refused(std::uint32_t view_id, const Error& why) override;
 
  private:
   struct BatchName {
@@ -145,8 +145,8 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void resolve_pointer();
   void send_presence();
   void send(const protocol::ServerMessage& message);
-  void refuse(const Problem& problem, const std::string& ref);
-  void refuse(const Problem& problem, const Uuid& id) { refuse(problem, to_string(id)); }
+  void refuse(const Error& problem, const std::string& ref);
+  void refuse(const Error& problem, const Uuid& id) { refuse(problem, to_string(id)); }
 
   const std::shared_ptr<const LiveShared> shared_;
   const std::shared_ptr<room::Room> room_;

@@ -16,11 +16,10 @@ std::string hex(const Rgba& color) {
 }
 
 Result<Response> polygon_contents(const MapFiles& files, const Model& model) {
-  const auto map = features_of(files, model);
-  if (!map) return tl::unexpected(map.error());
+  const auto map = STRATA_TRY(features_of(files, model));
   std::size_t count = 0;
   glm::dvec2 low(0), high(0);
-  for (const query::MapFeature& feature : map->features)
+  for (const query::MapFeature& feature : map.features)
     for (const auto& rings : feature.polygons) {
       for (const auto& ring : rings)
         for (const glm::dvec2& point : ring) {
@@ -30,9 +29,10 @@ Result<Response> polygon_contents(const MapFiles& files, const Model& model) {
         }
       ++count;
     }
-  if (count == 0) return fail(422, "No polygons", "The map holds no polygon.", "body");
+  if (count == 0)
+    return fail(ErrorCode::invalid, "No polygons", "The map holds no polygon.", "body");
   nlohmann::json columns = nlohmann::json::array();
-  for (const query::MapColumn& column : query::columns_of(*map))
+  for (const query::MapColumn& column : query::columns_of(map))
     columns.push_back({{"name", column.name},
                        {"type", column.is_number ? "number"
                                 : column.is_text ? "text"
@@ -43,7 +43,7 @@ Result<Response> polygon_contents(const MapFiles& files, const Model& model) {
                       {"polygons", count},
                       {"columns", std::move(columns)},
                       {"bounds", {low.x, low.y, high.x, high.y}}};
-  if (!map->crs.empty()) json["crs"] = map->crs;
+  if (!map.crs.empty()) json["crs"] = map.crs;
   return json_response(json);
 }
 
@@ -63,35 +63,32 @@ void add_world(nlohmann::json& json, const query::WorldFile& world, int width, i
 
 Result<Response> picture_contents(const Request& request, const MapFiles& files, const Model& model,
                                   double tolerance, ByteBudget& budget) {
-  const auto tiff = tiff_of(files, model);
-  if (!tiff) return tl::unexpected(tiff.error());
-  const auto held = budget_of(files, *tiff, budget);
-  if (!held) return tl::unexpected(held.error());
+  const auto tiff = STRATA_TRY(tiff_of(files, model));
+  const auto held = STRATA_TRY(budget_of(files, tiff, budget));
   nlohmann::json json{{"kind", "picture"},
-                      {"format", *tiff ? "tiff" : "picture"},
+                      {"format", tiff ? "tiff" : "picture"},
                       {"colors", nlohmann::json::array()}};
-  int width = *tiff ? (*tiff)->width : 0, height = *tiff ? (*tiff)->height : 0;
-  if (!*tiff || (*tiff)->has_colors) {
-    const auto picture = picture_of(files, *tiff);
-    if (!picture) return tl::unexpected(picture.error());
-    width = picture->width;
-    height = picture->height;
-    for (const query::FoundColor& found : query::find_colors(*picture, tolerance))
+  int width = tiff ? tiff->width : 0, height = tiff ? tiff->height : 0;
+  if (!tiff || tiff->has_colors) {
+    const auto picture = STRATA_TRY(picture_of(files, tiff));
+    width = picture.width;
+    height = picture.height;
+    for (const query::FoundColor& found : query::find_colors(picture, tolerance))
       json["colors"].push_back({{"color", hex(found.color)},
                                 {"share", found.share},
                                 {"background", found.is_background}});
   }
   json["width"] = width;
   json["height"] = height;
-  json["has_colors"] = !*tiff || (*tiff)->has_colors;
-  json["is_rgb"] = !*tiff || (*tiff)->is_rgb;
-  if (*tiff) {
-    if ((*tiff)->has_numbers) json["bands"] = (*tiff)->bands;
-    if ((*tiff)->has_numbers) json["type"] = name((*tiff)->type);
-    if ((*tiff)->nodata) json["nodata"] = *(*tiff)->nodata;
-    if (!(*tiff)->crs.empty()) json["crs"] = (*tiff)->crs;
+  json["has_colors"] = !tiff || tiff->has_colors;
+  json["is_rgb"] = !tiff || tiff->is_rgb;
+  if (tiff) {
+    if (tiff->has_numbers) json["bands"] = tiff->bands;
+    if (tiff->has_numbers) json["type"] = name(tiff->type);
+    if (tiff->nodata) json["nodata"] = *tiff->nodata;
+    if (!tiff->crs.empty()) json["crs"] = tiff->crs;
   }
-  const auto world = world_of(request, files, *tiff ? (*tiff)->world : std::nullopt);
+  const auto world = world_of(request, files, tiff ? tiff->world : std::nullopt);
   if (world) add_world(json, *world, width, height);
   // a world file that is none
   if (!world && world.error().field != "world") return tl::unexpected(world.error());
@@ -102,16 +99,14 @@ Result<Response> picture_contents(const Request& request, const MapFiles& files,
 
 Result<Response> map_contents(const RouteContext& context, ByteBudget& budget,
                               const Request& request) {
-  const auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
   const auto tolerance =
       number_of(request, "tolerance", kLeastTolerance, kMostTolerance, query::kUsualTolerance);
   if (!tolerance) return tl::unexpected(tolerance.error());
-  const auto files = MapFiles::take(request, context.options.upload_dir);
-  if (!files) return tl::unexpected(files.error());
-  const bool is_picture = files->kind() == MapKind::picture || files->kind() == MapKind::tiff;
-  return is_picture ? picture_contents(request, *files, *model, *tolerance, budget)
-                    : polygon_contents(*files, *model);
+  const auto files = STRATA_TRY(MapFiles::take(request, context.options.upload_dir));
+  const bool is_picture = files.kind() == MapKind::picture || files.kind() == MapKind::tiff;
+  return is_picture ? picture_contents(request, files, model, *tolerance, budget)
+                    : polygon_contents(files, model);
 }
 
 }  // namespace strata::net

@@ -72,11 +72,10 @@ bool is_zip(std::span<const std::uint8_t> bytes) {
 }  // namespace
 
 Result<MapFiles> MapFiles::take(const Request& request, const fs::path& scratch) {
-  auto uploads = take_upload(request, scratch, kMapUpload);
-  if (!uploads) return tl::unexpected(uploads.error());
+  auto uploads = STRATA_TRY(take_upload(request, scratch, kMapUpload));
   MapFiles map;
-  std::optional<Problem> unreadable;
-  for (const Upload& upload : *uploads) {
+  std::optional<Error> unreadable;
+  for (const Upload& upload : uploads) {
     auto mapped = MappedFile::open(upload.file);
     if (upload.file != request.body_file) {
       std::error_code ignored;
@@ -94,13 +93,13 @@ Result<MapFiles> MapFiles::take(const Request& request, const fs::path& scratch)
     Progress progress;
     auto unpacked = mesh::unpack_archive(map.files_[0].bytes, scratch, progress, is_map_file);
     if (!unpacked) {
-      Problem problem = unpacked.error();
+      Error problem = unpacked.error();
       problem.field = "body";
       return tl::unexpected(std::move(problem));
     }
     map.files_ = std::move(*unpacked);
   }
-  if (auto chosen = map.choose_main(); !chosen) return tl::unexpected(chosen.error());
+  STRATA_TRY(map.choose_main());
   return map;
 }
 
@@ -110,7 +109,7 @@ Result<void> MapFiles::choose_main() {
     if (kind_of(files_[i], files_.size() == 1)) maps.push_back(i);
   if (maps.empty())
     return fail(
-        415, "No map",
+        ErrorCode::unsupported, "No map",
         files_.empty()
             ? "The zip holds no map: no .shp, .geojson, .tif, .png or .jpg."
             : std::string(last_part(files_.front().name)).substr(0, 100) +
@@ -121,7 +120,7 @@ Result<void> MapFiles::choose_main() {
     std::string named;
     for (std::size_t i = 0; i < std::min(maps.size(), kMostNamed); ++i)
       named += (i ? ", " : "") + std::string(last_part(files_[maps[i]].name)).substr(0, 100);
-    return fail(422, "More than one map",
+    return fail(ErrorCode::invalid, "More than one map",
                 "Send one map at a time; these are several: " + named +
                     (maps.size() > kMostNamed ? ", …" : "") + ".",
                 "body");

@@ -13,10 +13,9 @@ constexpr std::size_t kMostNamed = 5;
 Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& layer,
                                                const std::set<double>& records) {
   if (!lists_values(layer.palette)) return std::nullopt;
-  const auto statistics = room.statistics(layer.slug);
-  if (!statistics) return tl::unexpected(statistics.error());
+  const auto statistics = STRATA_TRY(room.statistics(layer.slug));
   std::set<double> taken = records;
-  for (const auto& [key, of_key] : statistics->keys) taken.insert(key);
+  for (const auto& [key, of_key] : statistics.keys) taken.insert(key);
   return query::KeyNames(layer.palette, taken);
 }
 
@@ -29,22 +28,22 @@ Result<void> extend_legend(const Request& request, room::Room& room, const Layer
     std::string listed;
     for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i)
       listed += (i ? ", " : "") + names[i].substr(0, kLongestName);
-    return fail(403, "Names not in the legend",
+    return fail(ErrorCode::forbidden, "Names not in the legend",
                 "The legend of the layer lacks: " + listed +
                     (names.size() > kMostNamed ? ", …" : "") + ". A curator may add them.",
                 "attribute");
   }
   for (const std::string& name : names)
     if (name.size() > kLongestName)
-      return fail(422, "Name too long", "\"" + name.substr(0, 60) + "…\" is too long for a legend.",
-                  "attribute");
+      return fail(ErrorCode::invalid, "Name too long",
+                  "\"" + name.substr(0, 60) + "…\" is too long for a legend.", "attribute");
   Layer changed = layer;
   changed.palette = keys.extended();
   changed.palette_of_terms = false;
   if (changed.palette.points.size() > kMostPoints)
-    return fail(422, "Too many names",
+    return fail(ErrorCode::invalid, "Too many names",
                 "A legend holds at most " + std::to_string(kMostPoints) + " entries.", "attribute");
-  if (auto done = room.update_layer(std::move(changed)); !done) return tl::unexpected(done.error());
+  STRATA_TRY(room.update_layer(std::move(changed)));
   return {};
 }
 

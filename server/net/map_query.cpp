@@ -11,13 +11,14 @@ Result<double> number_of(const Request& request, const std::string& name, double
   const auto found = request.query.find(name);
   if (found == request.query.end()) {
     if (fallback) return *fallback;
-    return fail(422, "Parameter missing", "Give `" + name + "`.", name);
+    return fail(ErrorCode::invalid, "Parameter missing", "Give `" + name + "`.", name);
   }
   double value = 0;
   const std::string& text = found->second;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high))
-    return fail(422, "Parameter out of range", "`" + name + "` is a number in its range.", name);
+    return fail(ErrorCode::invalid, "Parameter out of range",
+                "`" + name + "` is a number in its range.", name);
   return value;
 }
 
@@ -25,7 +26,7 @@ Result<MapAxis> axis_of(const Request& request) {
   const std::string text = request.query_or("along", "-z");
   const int axis = text.size() == 2 ? text[1] - 'x' : -1;
   if (axis < 0 || axis > 2 || (text[0] != '-' && text[0] != '+'))
-    return fail(422, "Unknown direction",
+    return fail(ErrorCode::invalid, "Unknown direction",
                 "`along` is one of -x, +x, -y, +y, -z, +z: the way that the map is looked at.",
                 "along");
   MapAxis made{glm::dvec3(0), axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
@@ -41,7 +42,7 @@ Result<query::WorldFile> world_of(const Request& request, const MapFiles& files,
     return query::parse_world_file(text, "body");
   if (own) return *own;
   return fail(
-      422, "Place missing",
+      ErrorCode::invalid, "Place missing",
       "The picture does not say where it lies. Give `world`, the six numbers of its world file, or send that file "
       "with it.",
       "world");
@@ -50,12 +51,12 @@ Result<query::WorldFile> world_of(const Request& request, const MapFiles& files,
 Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_degrees) {
   if (in_degrees)
     return fail(
-        422, "Coordinates in degrees",
+        ErrorCode::invalid, "Coordinates in degrees",
         "The map lies in longitude and latitude. Save it in the plane coordinates of the model" +
             (model.crs.empty() ? "." : ", " + model.crs + "."),
         "body");
   if (!crs.empty() && !model.crs.empty() && crs != model.crs)
-    return fail(422, "Other coordinates",
+    return fail(ErrorCode::invalid, "Other coordinates",
                 "The map lies in " + crs + ", the model in " + model.crs + "; save the map in " +
                     model.crs + ".",
                 "body");
@@ -66,11 +67,11 @@ Result<void> confirm_map_crs(const Request& request, const Model& model, const s
   const std::string asked = request.query_or("crs", {});
   for (const auto& [system, whose] : {std::pair(crs, "map"), std::pair(model.crs, "model")})
     if (!asked.empty() && !system.empty() && asked != system)
-      return fail(422, "Other coordinates",
+      return fail(ErrorCode::invalid, "Other coordinates",
                   "`crs` says " + asked + ", but the " + whose + " lies in " + system + ".", "crs");
   if (!asked.empty() || crs.empty() || !model.crs.empty()) return {};
   return fail(
-      422, "Model without coordinate system",
+      ErrorCode::invalid, "Model without coordinate system",
       "The map lies in " + crs +
           ", and the model has no coordinate system. If the model's coordinates are those of " +
           crs + ", repeat the request with `crs=" + crs +
@@ -81,7 +82,7 @@ Result<void> confirm_map_crs(const Request& request, const Model& model, const s
 Result<std::uint32_t> bits_of(const Layer& layer, double value, const std::string& where) {
   auto bits = encode_value(layer.type, value);
   if (bits) return *bits;
-  Problem problem = bits.error();
+  Error problem = bits.error();
   problem.detail = where + query::number_text(value) + " does not fit. " + problem.detail;
   problem.field = "body";
   return tl::unexpected(std::move(problem));

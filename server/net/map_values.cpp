@@ -14,7 +14,7 @@ constexpr double kLargestFloat = 3.4028234663852886e38;
 Result<void> check_kind(const MapFiles& files, bool polygons) {
   const bool is_polygons = files.kind() == MapKind::geojson || files.kind() == MapKind::shapefile;
   if (is_polygons == polygons) return {};
-  return fail(415, polygons ? "No polygons" : "No picture",
+  return fail(ErrorCode::unsupported, polygons ? "No polygons" : "No picture",
               polygons ? "Polygons come as GeoJSON or as a shapefile; pictures go to `picture`."
                        : "Pictures are PNG, JPEG or TIFF; polygons go to `polygons`.",
               "body");
@@ -28,7 +28,8 @@ Result<std::vector<query::ColorKey>> color_keys(const std::string& asked, const 
   for (const query::FoundColor& found : query::find_colors(picture, tolerance))
     if (!found.is_background) keys.push_back({found.color, static_cast<double>(keys.size() + 1)});
   if (keys.empty())
-    return fail(422, "No colours", "The picture holds nothing but its background.", "colors");
+    return fail(ErrorCode::invalid, "No colours", "The picture holds nothing but its background.",
+                "colors");
   return keys;
 }
 
@@ -36,31 +37,27 @@ Result<MapValues> values_by_color(const Request& request, MapPicture map, const 
   const auto tolerance =
       number_of(request, "tolerance", kLeastTolerance, kMostTolerance, query::kUsualTolerance);
   if (!tolerance) return tl::unexpected(tolerance.error());
-  const auto colors = color_keys(request.query.at("colors"), map.picture, *tolerance);
-  if (!colors) return tl::unexpected(colors.error());
-  auto keys = keys_of(target.room, target.layer, target.records);
-  if (!keys) return tl::unexpected(keys.error());
-  for (const query::ColorKey& key : *colors) {
-    if (auto bits = bits_of(target.layer, key.value, ""); !bits)
-      return tl::unexpected(bits.error());
-    if (*keys) (*keys)->color(key.value, key.color);
+  const auto colors = STRATA_TRY(color_keys(request.query.at("colors"), map.picture, *tolerance));
+  auto keys = STRATA_TRY(keys_of(target.room, target.layer, target.records));
+  for (const query::ColorKey& key : colors) {
+    STRATA_TRY(bits_of(target.layer, key.value, ""));
+    if (keys) keys->color(key.value, key.color);
   }
   const auto placed = std::make_shared<query::PlacedPicture>(std::move(map.picture), map.world);
   const auto bits_at = [placed, held = map.held, type = target.layer.type,
-                        by_color = query::ColorKeys(*colors, *tolerance)](
+                        by_color = query::ColorKeys(colors, *tolerance)](
                            const glm::dvec2& place) -> std::optional<std::uint32_t> {
     const std::uint8_t* pixel = placed->pixel_at(place);
     const auto value = pixel ? by_color.value_of(pixel) : std::nullopt;
     if (!value) return std::nullopt;
     return *encode_value(type, *value);
   };
-  return MapValues{bits_at, std::move(*keys)};
+  return MapValues{bits_at, std::move(keys)};
 }
 
 Result<MapValues> values_by_luminance(MapPicture map, const Layer& layer) {
   for (const double luminance : {0.0, 255.0})
-    if (auto bits = bits_of(layer, luminance, "Luminance is 0 to 255. "); !bits)
-      return tl::unexpected(bits.error());
+    STRATA_TRY(bits_of(layer, luminance, "Luminance is 0 to 255. "));
   const auto placed = std::make_shared<query::PlacedPicture>(std::move(map.picture), map.world);
   const auto bits_at = [placed, held = map.held, type = layer.type](
                            const glm::dvec2& place) -> std::optional<std::uint32_t> {
@@ -92,10 +89,9 @@ Result<void> convert(query::BandRaster& band, const Layer& layer) {
 Result<MapValues> values_of_band(const MapFiles& files, const query::MapTiff& tiff, int number,
                                  const query::WorldFile& world, std::shared_ptr<const void> held,
                                  const Layer& layer) {
-  auto read = query::decode_tiff_band(files.main(), tiff, number);
-  if (!read) return tl::unexpected(read.error());
-  if (auto fits = convert(*read, layer); !fits) return tl::unexpected(fits.error());
-  const auto band = std::make_shared<const query::BandRaster>(std::move(*read));
+  auto read = STRATA_TRY(query::decode_tiff_band(files.main(), tiff, number));
+  STRATA_TRY(convert(read, layer));
+  const auto band = std::make_shared<const query::BandRaster>(std::move(read));
   const auto bits_at = [band, held = std::move(held),
                         finder = query::PixelFinder(band->width, band->height, world)](
                            const glm::dvec2& place) -> std::optional<std::uint32_t> {
@@ -113,15 +109,14 @@ std::uint64_t pixels(int width, int height) {
 }  // namespace
 
 Result<query::FeatureMap> features_of(const MapFiles& files, const Model& model) {
-  if (auto good = check_kind(files, true); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_kind(files, true));
   auto map =
       files.kind() == MapKind::geojson
           ? query::parse_geojson(files.text())
           : query::parse_shapefile({files.main(), files.companion({"dbf"}),
                                     files.companion_text({"cpg"}), files.companion_text({"prj"})});
   if (!map) return map;
-  if (auto here = check_map_crs(model, map->crs, map->in_degrees); !here)
-    return tl::unexpected(here.error());
+  STRATA_TRY(check_map_crs(model, map->crs, map->in_degrees));
   return map;
 }
 
@@ -131,28 +126,23 @@ Result<MapValues> polygon_values(const Request& request, const MapFiles& files,
   choice.attribute = request.query_or("attribute", {});
   choice.names = request.query_or("names", {});
   if (choice.attribute.empty() == !request.query.contains("value"))
-    return fail(422, "Parameter missing", "Give exactly one of `value` and `attribute`.", "value");
+    return fail(ErrorCode::invalid, "Parameter missing",
+                "Give exactly one of `value` and `attribute`.", "value");
   if (!choice.names.empty() && choice.attribute.empty())
-    return fail(422, "Parameter missing", "`names` are those of the numbers in `attribute`.",
-                "names");
-  const auto value = number_of(request, "value", -kLargestFloat, kLargestFloat, 0.0);
-  if (!value) return tl::unexpected(value.error());
-  choice.value = *value;
-  const auto features = features_of(files, target.room.model());
-  if (!features) return tl::unexpected(features.error());
-  if (auto confirmed = confirm_map_crs(request, target.room.model(), features->crs); !confirmed)
-    return tl::unexpected(confirmed.error());
+    return fail(ErrorCode::invalid, "Parameter missing",
+                "`names` are those of the numbers in `attribute`.", "names");
+  const auto value = STRATA_TRY(number_of(request, "value", -kLargestFloat, kLargestFloat, 0.0));
+  choice.value = value;
+  const auto features = STRATA_TRY(features_of(files, target.room.model()));
+  STRATA_TRY(confirm_map_crs(request, target.room.model(), features.crs));
   std::optional<query::KeyNames> keys;
   if (!choice.attribute.empty()) {
-    auto found = keys_of(target.room, target.layer, target.records);
-    if (!found) return tl::unexpected(found.error());
-    keys = std::move(*found);
+    auto found = STRATA_TRY(keys_of(target.room, target.layer, target.records));
+    keys = std::move(found);
   }
-  auto map = query::flat_map(*features, choice, keys ? &*keys : nullptr);
+  auto map = query::flat_map(features, choice, keys ? &*keys : nullptr);
   if (!map) return tl::unexpected(map.error());
-  for (const query::MapArea& area : map->areas())
-    if (auto bits = bits_of(target.layer, area.value, ""); !bits)
-      return tl::unexpected(bits.error());
+  for (const query::MapArea& area : map->areas()) STRATA_TRY(bits_of(target.layer, area.value, ""));
   const auto bits_at =
       [map = std::make_shared<const query::FlatMap>(std::move(*map)),
        type = target.layer.type](const glm::dvec2& place) -> std::optional<std::uint32_t> {
@@ -164,13 +154,11 @@ Result<MapValues> polygon_values(const Request& request, const MapFiles& files,
 }
 
 Result<std::optional<query::MapTiff>> tiff_of(const MapFiles& files, const Model& model) {
-  if (auto good = check_kind(files, false); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_kind(files, false));
   if (files.kind() != MapKind::tiff) return std::nullopt;
-  auto tiff = query::inspect_tiff(files.main(), kLargestMapSide);
-  if (!tiff) return tl::unexpected(tiff.error());
-  if (auto here = check_map_crs(model, tiff->crs, tiff->in_degrees); !here)
-    return tl::unexpected(here.error());
-  return std::optional(std::move(*tiff));
+  auto tiff = STRATA_TRY(query::inspect_tiff(files.main(), kLargestMapSide));
+  STRATA_TRY(check_map_crs(model, tiff.crs, tiff.in_degrees));
+  return std::optional(std::move(tiff));
 }
 
 Result<Picture> picture_of(const MapFiles& files, const std::optional<query::MapTiff>& tiff) {
@@ -183,55 +171,46 @@ Result<std::shared_ptr<const void>> budget_of(const MapFiles& files,
                                               ByteBudget& budget) {
   // Twice four bytes a pixel while a TIFF is decoded.
   if (tiff) return budget.take(8 * pixels(tiff->width, tiff->height));
-  const auto info = inspect_picture(files.main(), kLargestMapSide);
-  if (!info) return tl::unexpected(info.error());
-  return budget.take(4 * pixels(info->width, info->height));
+  const auto info = STRATA_TRY(inspect_picture(files.main(), kLargestMapSide));
+  return budget.take(4 * pixels(info.width, info.height));
 }
 
 Result<MapPicture> map_picture(const Request& request, const MapFiles& files, const Model& model,
                                ByteBudget& budget) {
-  const auto tiff = tiff_of(files, model);
-  if (!tiff) return tl::unexpected(tiff.error());
-  if (auto confirmed = confirm_map_crs(request, model, *tiff ? (*tiff)->crs : std::string());
+  const auto tiff = STRATA_TRY(tiff_of(files, model));
+  if (auto confirmed = confirm_map_crs(request, model, tiff ? tiff->crs : std::string());
       !confirmed)
     return tl::unexpected(confirmed.error());
-  const auto world = world_of(request, files, *tiff ? (*tiff)->world : std::nullopt);
-  if (!world) return tl::unexpected(world.error());
-  auto held = budget_of(files, *tiff, budget);
-  if (!held) return tl::unexpected(held.error());
-  auto picture = picture_of(files, *tiff);
-  if (!picture) return tl::unexpected(picture.error());
-  return MapPicture{std::move(*picture), *world, std::move(*held)};
+  const auto world = STRATA_TRY(world_of(request, files, tiff ? tiff->world : std::nullopt));
+  auto held = STRATA_TRY(budget_of(files, tiff, budget));
+  auto picture = STRATA_TRY(picture_of(files, tiff));
+  return MapPicture{std::move(picture), world, std::move(held)};
 }
 
 Result<MapValues> picture_values(const Request& request, const MapFiles& files,
                                  const MapTarget& target, ByteBudget& budget) {
   const bool by_color = request.query.contains("colors");
   if (by_color && request.query.contains("band"))
-    return fail(422, "Too many parameters", "Give `band` or `colors`, not both.", "colors");
-  const auto tiff = tiff_of(files, target.room.model());
-  if (!tiff) return tl::unexpected(tiff.error());
+    return fail(ErrorCode::invalid, "Too many parameters", "Give `band` or `colors`, not both.",
+                "colors");
+  const auto tiff = STRATA_TRY(tiff_of(files, target.room.model()));
   if (auto confirmed =
-          confirm_map_crs(request, target.room.model(), *tiff ? (*tiff)->crs : std::string());
+          confirm_map_crs(request, target.room.model(), tiff ? tiff->crs : std::string());
       !confirmed)
     return tl::unexpected(confirmed.error());
-  const bool has_one_band = *tiff && (*tiff)->bands == 1 && (*tiff)->has_numbers;
+  const bool has_one_band = tiff && tiff->bands == 1 && tiff->has_numbers;
   const bool by_band = request.query.contains("band") || (has_one_band && !by_color);
   if (!by_band) {
-    auto map = map_picture(request, files, target.room.model(), budget);
-    if (!map) return tl::unexpected(map.error());
-    return by_color ? values_by_color(request, std::move(*map), target)
-                    : values_by_luminance(std::move(*map), target.layer);
+    auto map = STRATA_TRY(map_picture(request, files, target.room.model(), budget));
+    return by_color ? values_by_color(request, std::move(map), target)
+                    : values_by_luminance(std::move(map), target.layer);
   }
-  if (!*tiff) return fail(422, "No bands", "Only a TIFF's bands can be chosen.", "band");
-  const auto band = parse_integer(request.query_or("band", "1"), 1, 65535, "band");
-  if (!band) return tl::unexpected(band.error());
-  const auto world = world_of(request, files, (*tiff)->world);
-  if (!world) return tl::unexpected(world.error());
-  auto held = budget_of(files, *tiff, budget);
-  if (!held) return tl::unexpected(held.error());
-  return values_of_band(files, **tiff, static_cast<int>(*band), *world, std::move(*held),
-                        target.layer);
+  if (!tiff)
+    return fail(ErrorCode::invalid, "No bands", "Only a TIFF's bands can be chosen.", "band");
+  const auto band = STRATA_TRY(parse_integer(request.query_or("band", "1"), 1, 65535, "band"));
+  const auto world = STRATA_TRY(world_of(request, files, tiff->world));
+  auto held = STRATA_TRY(budget_of(files, tiff, budget));
+  return values_of_band(files, *tiff, static_cast<int>(band), world, std::move(held), target.layer);
 }
 
 }  // namespace strata::net

@@ -15,14 +15,13 @@ Result<MarkTransfer> bring_marks_of(const RouteContext& context, std::int64_t ta
   MarkTransfer brought;
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
-  const auto page = context.store.records(table_id, Role::curator, query);
-  if (!page) return tl::unexpected(page.error());
+  const auto page = STRATA_TRY(context.store.records(table_id, Role::curator, query));
   store::WriteRecords write;
   write.op = "transfer";
   write.may_create = false;
-  for (const Record& record : page->records) {
+  for (const Record& record : page.records) {
     store::RecordInput input{record.key, {}, record.version};
-    for (const Column& column : page->table.columns) {
+    for (const Column& column : page.table.columns) {
       if (!holds_marks(column.kind)) continue;
       auto marks = marks_of(record, column);
       if (std::ranges::any_of(marks,
@@ -46,10 +45,9 @@ Result<MarkTransfer> bring_marks_of(const RouteContext& context, std::int64_t ta
     if (!input.values.empty()) write.records.push_back(std::move(input));
   }
   if (write.records.empty()) return brought;
-  const auto change = context.store.write_records(table_id, write, user);
-  if (!change) return tl::unexpected(change.error());
-  if (!change->problems.empty()) return tl::unexpected(change->problems.front().problem);
-  tell_change(context, *change, user);
+  const auto change = STRATA_TRY(context.store.write_records(table_id, write, user));
+  if (!change.problems.empty()) return tl::unexpected(change.problems.front().problem);
+  tell_change(context, change, user);
   return brought;
 }
 
@@ -62,10 +60,9 @@ Result<MarkTransfer> bring_marks(const RouteContext& context, const jobs::Transf
     if (layer.table) tables.insert(*layer.table);
   MarkTransfer all;
   for (const std::int64_t table : tables) {
-    const auto brought = bring_marks_of(context, table, target, request, user);
-    if (!brought) return brought;
-    all.marks += brought->marks;
-    all.lost_marks += brought->lost_marks;
+    const auto brought = STRATA_TRY(bring_marks_of(context, table, target, request, user));
+    all.marks += brought.marks;
+    all.lost_marks += brought.lost_marks;
   }
   return all;
 }

@@ -37,7 +37,7 @@ bool ModelEvents::is_still_welcome() {
   if (now - checked_ < kCheckEvery) return true;
   checked_ = now;
   const auto model = context_.store.model(std::to_string(model_));
-  if (!model) return model.error().status != 404;
+  if (!model) return model.error().code != ErrorCode::not_found;
   return model->project_id == project_ &&
          net::is_still_welcome(context_.auth, secret_, project_, role_);
 }

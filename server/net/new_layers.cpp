@@ -49,13 +49,13 @@ Result<void> NewLayers::show(const store::FirstAnswer<Layer>& answer) {
   for (std::size_t i = 0; i < made_.size(); ++i) {
     const bool is_last = i + 1 == made_.size();
     for (int tries = 0;; ++tries) {
-      auto now = room_->layer(std::to_string(made_[i].layer.id));
-      if (!now) return tl::unexpected(now.error());
-      now->visible = made_[i].visible;
-      auto shown = room_->update_layer(*now, is_last ? last : store::FirstAnswer<Layer>{});
+      auto now = STRATA_TRY(room_->layer(std::to_string(made_[i].layer.id)));
+      now.visible = made_[i].visible;
+      auto shown = room_->update_layer(now, is_last ? last : store::FirstAnswer<Layer>{});
       if (shown) break;
       // Someone renamed it at this very moment: then what they made of it is shown.
-      if (shown.error().status != 412 || tries == kMostTries) return tl::unexpected(shown.error());
+      if (shown.error().code != ErrorCode::stale || tries == kMostTries)
+        return tl::unexpected(shown.error());
     }
   }
   return {};
@@ -64,7 +64,7 @@ Result<void> NewLayers::show(const store::FirstAnswer<Layer>& answer) {
 void NewLayers::take_back() {
   for (const Made& made : made_)
     if (auto gone = room_->delete_layer(made.layer.id);
-        !gone && gone.error().status != 404 && gone.error().status != 410)
+        !gone && gone.error().code != ErrorCode::not_found && gone.error().code != ErrorCode::gone)
       log::warning("layer " + std::to_string(made.layer.id) +
                    " of work that failed could not be removed: " + gone.error().detail);
   made_.clear();

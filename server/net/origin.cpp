@@ -82,7 +82,7 @@ Result<void> check_host(const Request& request, const std::vector<std::string>& 
   if (host.ends_with('.')) host.pop_back();
   if (is_address(host) || std::ranges::find(own_names, host) != own_names.end()) return {};
   return fail(
-      421, "Unknown host name",
+      ErrorCode::misdirected, "Unknown host name",
       "This server does not know the name by which it was asked. Whoever runs it adds the name with --origin "
       "(STRATA_ORIGIN), for example --origin https://museum.example.",
       "Host");
@@ -105,13 +105,13 @@ Result<void> check_same_origin(const Request& request, const std::vector<std::st
   if (!origin.empty()) {
     if (is_own(request, allowed)) return {};
     return fail(
-        403, "Foreign origin",
+        ErrorCode::forbidden, "Foreign origin",
         "Changes signed by a cookie are taken from this server's own pages only. Add the origin with --origin, or use a bearer token.",
         "Origin");
   }
   if (request.header("sec-fetch-site") == "same-origin") return {};
   return fail(
-      403, "Origin missing",
+      ErrorCode::forbidden, "Origin missing",
       "Changes signed by a cookie need an Origin header of this server. Scripts use a bearer token.",
       "Origin");
 }
@@ -121,13 +121,13 @@ Result<void> check_upgrade_origin(const Request& request, const std::vector<std:
   if (origin.empty()) {
     if (request.principal && !request.principal->by_cookie) return {};
     return fail(
-        403, "Origin missing",
+        ErrorCode::forbidden, "Origin missing",
         "A connection signed by a cookie needs an Origin header of this server. Scripts use a bearer token.",
         "Origin");
   }
   if (is_own(request, allowed)) return {};
   return fail(
-      403, "Foreign origin",
+      ErrorCode::forbidden, "Foreign origin",
       "Live connections are taken from this server's own pages only. Add the origin with --origin.",
       "Origin");
 }

@@ -125,10 +125,10 @@ Result<Page> page_of(const Request& request, int default_limit) {
   }
   if (auto found = request.query.find("after"); found != request.query.end()) {
     if (request.query.contains("offset"))
-      return fail(422, "after and offset together", "Give one of `after` and `offset`.", "after");
-    auto place = place_in(request, found->second);
-    if (!place) return tl::unexpected(place.error());
-    page.after = std::move(*place);
+      return fail(ErrorCode::invalid, "after and offset together",
+                  "Give one of `after` and `offset`.", "after");
+    auto place = STRATA_TRY(place_in(request, found->second));
+    page.after = std::move(place);
   }
   return page;
 }

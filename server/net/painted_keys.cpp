@@ -23,17 +23,15 @@ std::string area_text(double area_m2) {
 
 Result<std::vector<PaintedLayer>> painted_layers(const RouteContext& context, std::int64_t table_id,
                                                  Role seen_by) {
-  auto layers = context.store.layers_of_table(table_id, seen_by);
-  if (!layers) return tl::unexpected(layers.error());
+  auto layers = STRATA_TRY(context.store.layers_of_table(table_id, seen_by));
   std::vector<PaintedLayer> painted;
-  for (Layer& layer : *layers) {
+  for (Layer& layer : layers) {
     if (layer.sequence == 0) continue;  // nothing was ever painted there
-    auto room = context.rooms.open(std::to_string(layer.model_id), seen_by);
-    if (!room) return tl::unexpected(room.error());
-    auto areas = (*room)->key_areas(layer.slug);
-    if (!areas && areas.error().status == 404) continue;  // deleted meanwhile
+    auto room = STRATA_TRY(context.rooms.open(std::to_string(layer.model_id), seen_by));
+    auto areas = room->key_areas(layer.slug);
+    if (!areas && areas.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
     if (!areas) return tl::unexpected(areas.error());
-    painted.push_back({std::move(*room), std::move(layer), std::move(*areas)});
+    painted.push_back({std::move(room), std::move(layer), std::move(*areas)});
   }
   return painted;
 }
@@ -62,9 +60,9 @@ Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedL
                          std::int64_t key, std::optional<std::int64_t> to, const Author& author) {
   for (const PaintedLayer& painted : layers) {
     if (!painted.areas.contains(key)) continue;
-    if (auto may = room::check_not_locked(painted.layer, author.role); !may) return may;
+    STRATA_TRY(room::check_not_locked(painted.layer, author.role));
     if (to && static_cast<double>(*to) > highest_value(painted.layer.type))
-      return fail(422, "Key too large",
+      return fail(ErrorCode::invalid, "Key too large",
                   painted.layer.name + " of " + painted.room->model().name + " holds keys up to " +
                       std::to_string(static_cast<std::int64_t>(highest_value(painted.layer.type))) +
                       ".",
@@ -107,44 +105,40 @@ Result<void> repaint_key(const RouteContext& context, const std::vector<PaintedL
 Result<void> records_from_legend(const RouteContext& context, const Layer& layer,
                                  const std::vector<std::int64_t>& keys, const Author& author) {
   if (keys.empty() || !layer.table || !lists_values(layer.palette)) return {};
-  const auto missing = context.store.missing_records(*layer.table, keys);
-  if (!missing) return tl::unexpected(missing.error());
-  auto table = context.store.table(std::to_string(*layer.table), author.role);
-  if (!table) return tl::unexpected(table.error());
+  const auto missing = STRATA_TRY(context.store.missing_records(*layer.table, keys));
+  auto table = STRATA_TRY(context.store.table(std::to_string(*layer.table), author.role));
   const auto text =
-      std::find_if(table->columns.begin(), table->columns.end(),
+      std::find_if(table.columns.begin(), table.columns.end(),
                    [](const Column& column) { return column.kind == ColumnKind::text; });
   store::WriteRecords write;
   write.op = "import";
   for (const auto& point : layer.palette.points) {
     const auto key = static_cast<std::int64_t>(point.at);
     if (point.label.empty() || static_cast<double>(key) != point.at ||
-        !std::binary_search(missing->begin(), missing->end(), key))
+        !std::binary_search(missing.begin(), missing.end(), key))
       continue;
     write.records.push_back({key, {}});
-    if (text != table->columns.end()) write.records.back().values[text->id] = point.label;
+    if (text != table.columns.end()) write.records.back().values[text->id] = point.label;
   }
   if (write.records.empty()) return {};
-  if (auto may = room::check_not_locked(layer, author.role); !may) return may;
-  auto change = context.store.write_records(table->id, write, author.user);
-  if (!change) return tl::unexpected(change.error());
-  if (!change->problems.empty()) return tl::unexpected(change->problems.front().problem);
-  tell_change(context, *change, author.user);
+  STRATA_TRY(room::check_not_locked(layer, author.role));
+  auto change = STRATA_TRY(context.store.write_records(table.id, write, author.user));
+  if (!change.problems.empty()) return tl::unexpected(change.problems.front().problem);
+  tell_change(context, change, author.user);
   return {};
 }
 
 Result<void> check_keys(store::Store& store, const Layer& layer,
                         const std::vector<std::int64_t>& keys) {
   if (keys.empty() || !layer.table) return {};
-  const auto missing = store.missing_records(*layer.table, keys);
-  if (!missing) return tl::unexpected(missing.error());
-  if (missing->empty()) return {};
+  const auto missing = STRATA_TRY(store.missing_records(*layer.table, keys));
+  if (missing.empty()) return {};
   std::string named;
-  for (std::size_t i = 0; i < std::min(missing->size(), kMostNamed); ++i)
-    named += (i ? ", " : "") + std::to_string((*missing)[i]);
-  return fail(422, "No record of this key",
+  for (std::size_t i = 0; i < std::min(missing.size(), kMostNamed); ++i)
+    named += (i ? ", " : "") + std::to_string(missing[i]);
+  return fail(ErrorCode::invalid, "No record of this key",
               "The table of " + layer.name + " has no record " + named +
-                  (missing->size() > kMostNamed ? ", …" : "") + ". Make it first, then paint.",
+                  (missing.size() > kMostNamed ? ", …" : "") + ". Make it first, then paint.",
               "value");
 }
 

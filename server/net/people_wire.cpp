@@ -31,18 +31,16 @@ void add_color(nlohmann::json& json, const store::Person& person) {
 Result<People> People::load(store::Store& store, const std::vector<std::string>& names) {
   People people;
   if (names.empty()) return people;
-  const auto found = store.people_called(names);
-  if (!found) return tl::unexpected(found.error());
-  for (const store::Person& person : *found) people.portraits_[person.name] = portrait_of(person);
+  const auto found = STRATA_TRY(store.people_called(names));
+  for (const store::Person& person : found) people.portraits_[person.name] = portrait_of(person);
   return people;
 }
 
 Result<void> People::add_to(store::Store& store, nlohmann::json& answer) {
   std::set<std::string> names;
   each_with_user(answer, [&](nlohmann::json&, const std::string& user) { names.insert(user); });
-  const auto people = load(store, {names.begin(), names.end()});
-  if (!people) return tl::unexpected(people.error());
-  people->add(answer);
+  const auto people = STRATA_TRY(load(store, {names.begin(), names.end()}));
+  people.add(answer);
   return {};
 }
 

@@ -8,9 +8,8 @@ Result<Response> picture_response(room::Room& room, const room::PictureRequest& 
                                   const Camera& camera, bool is_png) {
   constexpr int kJpegQuality = 90;  // one picture, not a frame of many
   const PictureFormat format = is_png ? PictureFormat::png : PictureFormat::jpeg;
-  auto file = room.picture_file(shown, camera, format, {kJpegQuality, true});
-  if (!file) return tl::unexpected(file.error());
-  return bytes_response(std::move(*file), std::string(media_type(format)));
+  auto file = STRATA_TRY(room.picture_file(shown, camera, format, {kJpegQuality, true}));
+  return bytes_response(std::move(file), std::string(media_type(format)));
 }
 
 }  // namespace strata::net

@@ -24,7 +24,7 @@ bool take(std::string_view& text, std::string_view word) {
 Result<glm::dvec3> parse_point(std::string_view text) {
   auto wrong = [] {
     return fail(
-        422, "Not a point",
+        ErrorCode::invalid, "Not a point",
         "Coordinates are written `POINT Z(x y z)`: three numbers with spaces between, in the model's unit.",
         "coords");
   };
@@ -61,7 +61,7 @@ Result<double> parse_length(std::string_view text, const std::string& field) {
   if (error == std::errc() && known) length *= metres_per(*known);
   if (error != std::errc() || !known || !(length >= 1e-6 && length <= 1e6))
     return fail(
-        422, "Not a length",
+        ErrorCode::invalid, "Not a length",
         "`" + field +
             "` is a length on the object with its unit, such as 5mm, 2.5cm or 1m, of 0.001 mm at least.",
         field);

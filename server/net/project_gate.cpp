@@ -22,14 +22,13 @@ struct Place {
 Result<std::int64_t> project_of_number(
     const std::string& ref, const std::function<Result<std::int64_t>(std::int64_t id)>& project) {
   const auto id = parse_integer(ref, 1, std::numeric_limits<std::int64_t>::max(), {});
-  return id ? project(*id) : fail(404, {}, {});
+  return id ? project(*id) : fail(ErrorCode::not_found, {}, {});
 }
 
 constexpr Place kProject = {
     "project", [](const RouteContext& context, const std::string& ref) -> Result<std::int64_t> {
-      const auto project = context.store.project(ref);
-      if (!project) return tl::unexpected(project.error());
-      return project->id;
+      const auto project = STRATA_TRY(context.store.project(ref));
+      return project.id;
     }};
 
 // Addresses in projects have one of these.
@@ -44,25 +43,23 @@ constexpr Place kPlaces[] = {
     {"attachment",
      [](const RouteContext& context, const std::string& ref) {
        return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
-         const auto attachment = context.store.attachment(id, {{}, Role::owner});
-         if (!attachment) return tl::unexpected(attachment.error());
+         const auto attachment = STRATA_TRY(context.store.attachment(id, {{}, Role::owner}));
          return project_id_of(
-             context.store.table(std::to_string(attachment->table_id), Role::owner));
+             context.store.table(std::to_string(attachment.table_id), Role::owner));
        });
      }},
     {"comment",
      [](const RouteContext& context, const std::string& ref) {
        return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
-         const auto comment = context.store.comments().comment(id, Role::owner);
-         if (!comment) return tl::unexpected(comment.error());
-         return project_id_of(context.store.model(std::to_string(comment->model_id)));
+         const auto comment = STRATA_TRY(context.store.comments().comment(id, Role::owner));
+         return project_id_of(context.store.model(std::to_string(comment.model_id)));
        });
      }},
     {"job",
      [](const RouteContext& context, const std::string& ref) {
        return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
          const auto job = context.jobs.status(id);
-         if (!job) return fail(404, {}, {});
+         if (!job) return fail(ErrorCode::not_found, {}, {});
          return job->project;
        });
      }},
@@ -77,9 +74,10 @@ constexpr Place kPlaces[] = {
 Result<void> enter(const RouteContext& context, Principal& who, const Place& place,
                    const std::string& ref, const std::string& field) {
   const auto project = place.project(context, ref);
-  if (!project && project.error().status != 404) return tl::unexpected(project.error());
+  if (!project && project.error().code != ErrorCode::not_found)
+    return tl::unexpected(project.error());
   // The same whether it is not there or not for them.
-  if (!project || !who.sees(*project)) return not_there(place.param, ref, field);
+  if (!project || !who.sees(*project)) return no_such(place.param, ref, field);
   who.role = who.roles.in(*project);
   return {};
 }
@@ -98,7 +96,7 @@ Result<std::optional<std::int64_t>> addressed_project(const RouteContext& contex
     const auto param = request.params.find(place.param);
     if (param == request.params.end()) continue;
     const auto project = place.project(context, param->second);
-    if (!project && project.error().status == 404) return std::nullopt;
+    if (!project && project.error().code == ErrorCode::not_found) return std::nullopt;
     if (!project) return tl::unexpected(project.error());
     return *project;
   }
@@ -108,12 +106,7 @@ Result<std::optional<std::int64_t>> addressed_project(const RouteContext& contex
 Result<std::int64_t> id_of(const Request& request, const std::string& param) {
   const auto id =
       parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), {});
-  return id ? id : not_there(param, request.param(param));
-}
-
-tl::unexpected<Problem> not_there(const std::string& kind, const std::string& ref,
-                                  const std::string& field) {
-  return fail(404, "Not found", "There is no " + kind + " `" + ref.substr(0, 100) + "`.", field);
+  return id ? id : no_such(param, request.param(param));
 }
 
 Result<void> enter_project(const RouteContext& context, Request& request, bool in_query) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/no_such.h"
 #include "net/routes.h"
 
 namespace strata::net {
@@ -14,11 +15,6 @@ Result<void> enter_project(const RouteContext& context, Request& request, bool i
 // not there.
 Result<std::optional<std::int64_t>> addressed_project(const RouteContext& context,
                                                       const Request& request);
-
-// The answer for what is not there, or not for who asks.
-tl::unexpected<Problem> not_there(const std::string& kind, const std::string& ref,
-                                  const std::string& field = {});
-
 // The number in the path's `param`; 404 where it can be nobody's.
 Result<std::int64_t> id_of(const Request& request, const std::string& param);
 

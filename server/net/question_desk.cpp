@@ -38,16 +38,17 @@ std::shared_ptr<Question> QuestionDesk::begin(const Request& request) {
 Result<void> QuestionDesk::post(const std::shared_ptr<Question>& question,
                                 std::function<void()> work) {
   const std::lock_guard lock(mutex_);
-  if (stopping_) return fail(503, "Server stops", "The server is shutting down.");
+  if (stopping_)
+    return fail(ErrorCode::unavailable, "Server stops", "The server is shutting down.");
   Person& person = people_[question->asker()];
   if (person.waiting.size() >= options_.of_one_waiting)
     return fail(
-        429, "Too many questions",
+        ErrorCode::too_many_requests, "Too many questions",
         std::to_string(options_.of_one_waiting) +
             " questions of yours wait for their answers; ask again when some have been answered.");
   if (waiting_ >= options_.waiting) {
     if (person.waiting.empty() && person.under_way == 0) people_.erase(question->asker());
-    return fail(503, "Too busy",
+    return fail(ErrorCode::busy, "Too busy",
                 "Too many questions wait for their answers; ask again in a moment.");
   }
   person.waiting.push_back({question, std::move(work)});
@@ -96,7 +97,7 @@ void QuestionDesk::run() {
   }
 }
 
-void QuestionDesk::end_all(const Problem& why) {
+void QuestionDesk::end_all(const Error& why) {
   std::vector<std::shared_ptr<Question>> live;
   {
     const std::lock_guard lock(mutex_);
@@ -108,7 +109,7 @@ void QuestionDesk::end_all(const Problem& why) {
 }
 
 void QuestionDesk::stop() {
-  end_all({503, "Server stops", "The server is shutting down.", {}});
+  end_all({ErrorCode::unavailable, "Server stops", "The server is shutting down.", {}});
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;

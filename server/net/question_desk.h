@@ -37,12 +37,12 @@ class QuestionDesk {
   // Of whoever asks, within the limits of their role there. It is ended with the others by
   // `end_all`.
   std::shared_ptr<Question> begin(const Request& request);
-  // Calls `work` on a thread of the desk, as the question's own (Question::current). A Problem: it
+  // Calls `work` on a thread of the desk, as the question's own (Question::current). An Error: it
   // will not be called.
   Result<void> post(const std::shared_ptr<Question>& question, std::function<void()> work);
 
   // All that are asked now and later.
-  void end_all(const Problem& why);
+  void end_all(const Error& why);
   void stop();  // ends them, and joins
 
   std::size_t waiting() const;
@@ -72,7 +72,7 @@ class QuestionDesk {
   std::size_t waiting_ = 0, under_way_ = 0;
   std::uint64_t begun_ = 0;
   std::vector<std::weak_ptr<Question>> questions_;
-  std::optional<Problem> over_;
+  std::optional<Error> over_;
   bool stopping_ = false;
   std::vector<std::thread> threads_;
 };

@@ -94,8 +94,7 @@ void Recomputer::attempt(
 
 void Recomputer::recompute(const Layer& layer) {
   attempt(layer, "computed", [&](const std::shared_ptr<room::Room>& room) -> Result<void> {
-    auto done = compute_layer(context_, room, layer, kAuthor, progress_);
-    if (!done) return tl::unexpected(done.error());
+    STRATA_TRY(compute_layer(context_, room, layer, kAuthor, progress_));
     return {};
   });
 }

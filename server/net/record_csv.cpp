@@ -56,13 +56,13 @@ Result<std::vector<Head>> read_heads(const CsvRow& row, const Table& table) {
           break;
         }
     if (!is_word && !head.column && !is_measure(head.text))
-      return fail(422, "Unknown column",
+      return fail(ErrorCode::invalid, "Unknown column",
                   table.name + " has no column \"" + head.text +
                       "\". The first row names columns by slug, name or label, and `key`.",
                   "body");
     if (!met.insert(head.column ? std::to_string(head.column->id) : head.text).second)
-      return fail(422, "Column named twice", "\"" + head.text + "\" stands twice in the first row.",
-                  "body");
+      return fail(ErrorCode::invalid, "Column named twice",
+                  "\"" + head.text + "\" stands twice in the first row.", "body");
     heads.push_back(std::move(head));
   }
   return heads;
@@ -129,7 +129,7 @@ Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
       parse_csv(text, {store::kMostRecordsAtOnce + 1, static_cast<std::size_t>(kMostColumns) + 3});
   if (!csv) return tl::unexpected(csv.error());
   if (csv->rows.empty())
-    return fail(422, "Empty table", "The first row names the columns.", "body");
+    return fail(ErrorCode::invalid, "Empty table", "The first row names the columns.", "body");
   auto heads = read_heads(csv->rows.front(), table);
   if (!heads) return tl::unexpected(heads.error());
   const bool comma = csv->separator == ';';
@@ -144,7 +144,7 @@ Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
     if (row.cells.size() != heads->size())
       mistakes.push_back({row.line,
                           {},
-                          {422,
+                          {ErrorCode::invalid,
                            "Cells missing or too many",
                            "The row has " + std::to_string(row.cells.size()) +
                                " cells, the first row " + std::to_string(heads->size()) + ".",

@@ -34,7 +34,7 @@ std::string records_csv(const std::vector<Record>& records, const std::vector<Co
 struct RowMistake {
   int line = 0;
   std::string column;  // as the first row calls it; empty: of the whole row
-  Problem problem;
+  Error problem;
 };
 
 struct RecordRows {
@@ -48,7 +48,7 @@ struct RecordRows {
 
 // A head is `key`, `version` (of the record as it was read), a column's slug, name or label in any
 // language, or, where no column is called so, `area_m2`, `length_m` or `point_count`, which are
-// passed over. Rows without a key are new records. A Problem where the text is no CSV or its first
+// passed over. Rows without a key are new records. An Error where the text is no CSV or its first
 // row cannot be understood. Terms are keys, or words of `words`.
 Result<RecordRows> read_records_csv(std::string_view text, const Table& table,
                                     const WordsOfTables& words = {});

@@ -16,9 +16,8 @@ Result<RecordMeasures> RecordMeasures::of_place(const RouteContext& context,
     if (place.layer->sequence > 0) {  // otherwise nothing was ever painted there
       auto room = context.rooms.open(std::to_string(place.model->id), Role::owner);
       if (!room) return tl::unexpected(room.error());
-      auto areas = (*room)->key_areas(place.layer->slug);
-      if (!areas) return tl::unexpected(areas.error());
-      measures.areas_ = std::move(*areas);
+      auto areas = STRATA_TRY((*room)->key_areas(place.layer->slug));
+      measures.areas_ = std::move(areas);
     }
   }
   for (const Column& column : columns) {
@@ -32,9 +31,8 @@ Result<RecordMeasures> RecordMeasures::of_place(const RouteContext& context,
     measures.metres_[place.model->id] = place.model->metres();
     return measures;
   }
-  const auto models = context.store.models(place.table.project_id);
-  if (!models) return tl::unexpected(models.error());
-  for (const Model& model : *models) measures.metres_[model.id] = model.metres();
+  const auto models = STRATA_TRY(context.store.models(place.table.project_id));
+  for (const Model& model : models) measures.metres_[model.id] = model.metres();
   return measures;
 }
 

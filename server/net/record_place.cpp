@@ -1,29 +1,27 @@
 #include "net/record_place.h"
 
+#include "core/no_such.h"
+
 namespace strata::net {
 
 Result<RecordPlace> record_place(const RouteContext& context, const Request& request) {
   if (!request.params.contains("layer")) {
-    auto table = context.store.table(request.param("table"), request.role());
-    if (!table) return tl::unexpected(table.error());
-    return RecordPlace{std::move(*table), {}, {}};
+    auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+    return RecordPlace{std::move(table), {}, {}};
   }
-  auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  auto layer = context.store.layer(model->id, request.param("layer"), request.role());
-  if (!layer) return tl::unexpected(layer.error());
-  if (!layer->table)
-    return fail(422, "Numeric layer",
-                layer->name + " holds numbers; only database layers have records.", "layer");
-  auto table = context.store.table(std::to_string(*layer->table), request.role());
+  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto layer = STRATA_TRY(context.store.layer(model.id, request.param("layer"), request.role()));
+  if (!layer.table)
+    return fail(ErrorCode::invalid, "Numeric layer",
+                layer.name + " holds numbers; only database layers have records.", "layer");
+  auto table = context.store.table(std::to_string(*layer.table), request.role());
   if (!table) return tl::unexpected(table.error());
-  return RecordPlace{std::move(*table), std::move(*model), std::move(*layer)};
+  return RecordPlace{std::move(*table), std::move(model), std::move(layer)};
 }
 
 Result<std::int64_t> record_key(const Request& request) {
   auto key = parse_integer(request.param("key"), 0, kHighestKey, "key");
-  if (!key)
-    return fail(404, "Not found", "Keys of records are whole numbers from 0 to 4294967295.");
+  if (!key) return no_such("record", request.param("key"));
   return key;
 }
 
@@ -32,24 +30,20 @@ Result<Record> stored_record(const RouteContext& context, const Table& table, Ro
   store::Store::RecordQuery query;
   query.keys = std::vector{key};
   query.at = at;
-  auto page = context.store.records(table.id, seen_by, query);
-  if (!page) return tl::unexpected(page.error());
-  if (page->records.empty())
-    return fail(404, "Not found", table.name + " has no record " + std::to_string(key) + ".");
-  if (then) *then = page->table;
-  return page->records.front();
+  auto page = STRATA_TRY(context.store.records(table.id, seen_by, query));
+  if (page.records.empty()) return no_such("record", std::to_string(key));
+  if (then) *then = page.table;
+  return page.records.front();
 }
 
 Result<std::optional<std::int64_t>> wished_record_version(const RouteContext& context,
                                                           const Request& request,
                                                           const Table& table, std::int64_t key) {
   if (request.header("if-match").empty()) return std::optional<std::int64_t>();
-  auto record = stored_record(context, table, request.role(), key, {});
-  if (!record) return tl::unexpected(record.error());
-  if (auto fresh = check_if_match(request, record->version); !fresh)
-    return tl::unexpected(fresh.error());
+  auto record = STRATA_TRY(stored_record(context, table, request.role(), key, {}));
+  STRATA_TRY(check_if_match(request, record.version));
   return request.header("if-match") == "*" ? std::optional<std::int64_t>()
-                                           : std::optional(record->version);
+                                           : std::optional(record.version);
 }
 
 }  // namespace strata::net

@@ -60,18 +60,17 @@ Result<RecordWords> RecordWords::load(store::Store& store, std::int64_t table_id
                                       const std::string& language) {
   store::Store::RecordQuery all;
   all.limit = store::kMostRecords;
-  const auto page = store.records(table_id, seen_by, all);
-  if (!page) return tl::unexpected(page.error());
+  const auto page = STRATA_TRY(store.records(table_id, seen_by, all));
   RecordWords words;
-  words.table_ = page->table.name;
-  if (const auto terms = term_columns(page->table)) {
-    for (const ListedTerm& listed : list_terms(*terms, page->records)) {
+  words.table_ = page.table.name;
+  if (const auto terms = term_columns(page.table)) {
+    for (const ListedTerm& listed : list_terms(*terms, page.records)) {
       words.names_[listed.key] = label_in(listed.term, language);
       words.codes_[listed.key] = listed.term.code;
       words.add(listed.key, listed.term.code);
       words.add(listed.key, label_in(listed.term, language));
     }
-    for (const Record& record : page->records) {
+    for (const Record& record : page.records) {
       const auto add_text = [&](const Column* column) {
         const auto text = column ? record.values.find(column->id) : record.values.end();
         if (text != record.values.end() && text->second.is_string())
@@ -82,7 +81,7 @@ Result<RecordWords> RecordWords::load(store::Store& store, std::int64_t table_id
     }
     return words;
   }
-  words.names_ = titles_of(store, *page, seen_by, language, 0);
+  words.names_ = titles_of(store, page, seen_by, language, 0);
   for (const auto& [key, name] : words.names_) words.add(key, name);
   return words;
 }
@@ -106,10 +105,10 @@ Result<std::int64_t> RecordWords::key_of(const std::string& word, const std::str
   if (is_all_digits(bare(word))) return parse_integer(bare(word), 0, kHighestKey, field);
   const auto meant = keys_.find(bare(word));
   if (meant == keys_.end())
-    return fail(422, "No such record",
+    return fail(ErrorCode::invalid, "No such record",
                 table_ + " has no record called \"" + word.substr(0, 100) + "\".", field);
   if (!meant->second)
-    return fail(422, "Several records",
+    return fail(ErrorCode::invalid, "Several records",
                 table_ + " has several records called \"" + word.substr(0, 100) +
                     "\". Name one by its code or key.",
                 field);
@@ -121,9 +120,8 @@ Result<WordsOfTables> words_of(store::Store& store, const std::vector<Column>& c
   WordsOfTables all;
   for (const Column& column : columns) {
     if (column.kind != ColumnKind::term || !column.target || all.contains(*column.target)) continue;
-    auto words = RecordWords::load(store, *column.target, seen_by, language);
-    if (!words) return tl::unexpected(words.error());
-    all.emplace(*column.target, std::move(*words));
+    auto words = STRATA_TRY(RecordWords::load(store, *column.target, seen_by, language));
+    all.emplace(*column.target, std::move(words));
   }
   return all;
 }

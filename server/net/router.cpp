@@ -78,7 +78,7 @@ Result<void> check_query(const Route& route, const Request& request) {
     if (std::find(route.query.begin(), route.query.end(), key) != route.query.end()) continue;
     std::string known;
     for (const auto& name : route.query) known += (known.empty() ? "" : ", ") + name;
-    return fail(400, "Unknown query parameter",
+    return fail(ErrorCode::malformed, "Unknown query parameter",
                 known.empty() ? "This address takes no query parameters."
                               : "This address takes: " + known + ".",
                 key);

@@ -21,7 +21,8 @@ Handler answering(std::function<Result<Response>(const Request&)> answer) {
     const bool means_any = (request.method == Method::patch || request.method == Method::remove) &&
                            (wanted.empty() || wanted == "*");
     for (int tries = 1;
-         means_any && tries < kMostTries && !response && response.error().status == 412; ++tries)
+         means_any && tries < kMostTries && !response && response.error().code == ErrorCode::stale;
+         ++tries)
       response = answer(request);
     if (response)
       respond(std::move(*response));
@@ -37,7 +38,7 @@ Result<void> check_json_type(const Request& request) {
   if (type.empty() || type == "application/json" ||
       (type.starts_with("application/") && type.ends_with("+json")))
     return {};
-  return fail(415, "Not JSON",
+  return fail(ErrorCode::unsupported, "Not JSON",
               "This address takes JSON: send it with `Content-Type: application/json`.",
               "Content-Type");
 }
@@ -66,7 +67,7 @@ bool names_version(std::string_view etag, std::int64_t version) {
 Result<void> check_if_match(const Request& request, std::int64_t version) {
   const auto wanted = request.header("if-match");
   if (wanted.empty() || wanted == "*" || names_version(wanted, version)) return {};
-  return fail(412, "Changed meanwhile",
+  return fail(ErrorCode::stale, "Changed meanwhile",
               "Somebody changed this since you read it; read it again and repeat your change.",
               "If-Match");
 }
@@ -114,9 +115,8 @@ void apply_edit(const RouteContext& context, const Request& request,
 }
 
 Result<Layer> stored_layer(const RouteContext& context, const Request& request) {
-  auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  return context.store.layer(model->id, request.param("layer"), request.role());
+  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  return context.store.layer(model.id, request.param("layer"), request.role());
 }
 
 Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
@@ -125,7 +125,7 @@ Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector
   for (const auto& ref : refs) {
     auto layer = room.layer(ref);
     if (!layer) {
-      Problem problem = layer.error();
+      Error problem = layer.error();
       problem.field = field;
       return tl::unexpected(std::move(problem));
     }
@@ -146,7 +146,7 @@ std::vector<std::string> split_list(const std::string& text) {
 
 Result<void> check_source_download(const Request& request, const Model& model) {
   if (request.role() >= model.source_download) return {};
-  return fail(403, "Source not for download",
+  return fail(ErrorCode::forbidden, "Source not for download",
               "Files of this scan are for the role " + std::string(name(model.source_download)) +
                   " and above in its project; a curator may change that (`source_download`).");
 }
@@ -174,7 +174,7 @@ Response file_response(std::shared_ptr<const jobs::JobFile> file) {
 Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& text) {
   if (!wish) return make_slug(text);
   if (is_all_digits(*wish))
-    return fail(422, "Slug of digits",
+    return fail(ErrorCode::invalid, "Slug of digits",
                 "A slug of digits only would be taken for an id; add a letter.", "slug");
   return *wish;
 }

@@ -91,7 +91,7 @@ Result<void> check_json_type(const Request& request);
 
 template <class T>
 Result<T> body_of(const Request& request, std::uint64_t max_bytes = 1u << 20) {
-  if (auto json = check_json_type(request); !json) return tl::unexpected(json.error());
+  STRATA_TRY(check_json_type(request));
   return protocol::parse<T>(request.body, {static_cast<std::size_t>(max_bytes), 32});
 }
 
@@ -119,7 +119,7 @@ void apply_edit(
 
 // The layer that the address names, for its role, as the store has it: reading needs no open room.
 Result<Layer> stored_layer(const RouteContext& context, const Request& request);
-// Layers by id or slug; the Problem of one that is not there names `field`.
+// Layers by id or slug; the Error of one that is not there names `field`.
 Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
                                        const std::string& field);
 std::vector<std::string> split_list(const std::string& text);  // at commas, without empty parts

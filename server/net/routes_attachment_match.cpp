@@ -47,50 +47,45 @@ Result<Names> attached_names(const RouteContext& context, const Author& who, con
         ids.push_back(id.get<std::int64_t>());
       }
     }
-  auto found = context.store.attachments(table.id, who, ids);
-  if (!found) return tl::unexpected(found.error());
+  auto found = STRATA_TRY(context.store.attachments(table.id, who, ids));
   Names names;
-  for (const Attachment& attachment : *found)
+  for (const Attachment& attachment : found)
     for (const auto key : holders[attachment.id]) names[key].insert(attachment.name);
   return names;
 }
 
 Result<Response> match(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::AttachmentMatch>(request, context.options.max_json_bytes);
-  if (!asked) return tl::unexpected(asked.error());
-  auto pattern = NamePattern::parse(asked->pattern, "pattern");
-  if (!pattern) return tl::unexpected(pattern.error());
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  const Column* column = find_column(table->columns, asked->column);
-  if (!column && asked->column != kKey)
-    return fail(422, "No such column", table->name + " has no column `" + asked->column + "`.",
-                "column");
+  auto asked =
+      STRATA_TRY(body_of<protocol::AttachmentMatch>(request, context.options.max_json_bytes));
+  auto pattern = STRATA_TRY(NamePattern::parse(asked.pattern, "pattern"));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  const Column* column = find_column(table.columns, asked.column);
+  if (!column && asked.column != kKey)
+    return fail(ErrorCode::invalid, "No such column",
+                table.name + " has no column `" + asked.column + "`.", "column");
   const std::string word = column ? column->slug : kKey;
-  if (!pattern->has(word))
-    return fail(422, "Column not in the pattern",
+  if (!pattern.has(word))
+    return fail(ErrorCode::invalid, "Column not in the pattern",
                 "The pattern has no `{" + word + "}`, which says which record a file is of.",
                 "pattern");
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
-  auto page = context.store.records(table->id, request.role(), query);
-  if (!page) return tl::unexpected(page.error());
+  auto page = STRATA_TRY(context.store.records(table.id, request.role(), query));
   Values values;
-  for (const Record& record : page->records) {
+  for (const Record& record : page.records) {
     if (!column) values.add(std::to_string(record.key), record.key);
     const auto cell = column ? record.values.find(column->id) : record.values.end();
     if (cell != record.values.end()) values.add(print_value(*column, cell->second), record.key);
   }
-  auto names = attached_names(context, request.author(), page->table, page->records);
-  if (!names) return tl::unexpected(names.error());
+  auto names = STRATA_TRY(attached_names(context, request.author(), page.table, page.records));
 
   nlohmann::json matched = nlohmann::json::array(), unmatched = nlohmann::json::array(),
                  duplicate = nlohmann::json::array();
   std::set<std::pair<std::int64_t, std::string>> met;
-  for (const std::string& sent : asked->names) {
+  for (const std::string& sent : asked.names) {
     const std::string name = base_filename(sent);
     const auto is_known = [&](std::string_view text) { return !values.find(text).empty(); };
-    const auto reading = pattern->read(name, word, is_known);
+    const auto reading = pattern.read(name, word, is_known);
     if (!reading || !reading->is_known) {
       unmatched.push_back({{"name", sent}, {"reason", reading ? "record" : "pattern"}});
       if (reading) unmatched.back()["words"] = reading->words;
@@ -102,7 +97,7 @@ Result<Response> match(const RouteContext& context, const Request& request) {
       continue;
     }
     nlohmann::json told{{"name", sent}, {"key", *keys.begin()}, {"words", reading->words}};
-    const bool is_there = (*names)[*keys.begin()].contains(name);
+    const bool is_there = names[*keys.begin()].contains(name);
     if (met.emplace(*keys.begin(), name).second && !is_there) {
       matched.push_back(std::move(told));
     } else {
@@ -113,7 +108,7 @@ Result<Response> match(const RouteContext& context, const Request& request) {
   return json_response({{"matched", std::move(matched)},
                         {"unmatched", std::move(unmatched)},
                         {"duplicate", std::move(duplicate)},
-                        {"total", asked->names.size()}});
+                        {"total", asked.names.size()}});
 }
 
 }  // namespace

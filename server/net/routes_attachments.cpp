@@ -5,6 +5,7 @@
 
 #include "core/filename.h"
 #include "core/media_type.h"
+#include "core/no_such.h"
 #include "core/picture.h"
 #include "core/thumbnail.h"
 #include "net/answer_book.h"
@@ -83,33 +84,29 @@ nlohmann::json list_json(const std::vector<Attachment>& attachments) {
 }
 
 Result<Response> attach(const RouteContext& context, const Request& request) {
-  auto key = record_key(request);
-  if (!key) return tl::unexpected(key.error());
-  auto place = record_place(context, request);
-  if (!place) return tl::unexpected(place.error());
+  auto key = STRATA_TRY(record_key(request));
+  auto place = STRATA_TRY(record_place(context, request));
   std::optional<std::int64_t> column_id;
   if (const std::string ref = request.query_or("column", {}); !ref.empty()) {
-    const Column* column = find_column(place->table.columns, ref);
+    const Column* column = find_column(place.table.columns, ref);
     if (!column)
-      return fail(422, "No such column",
-                  place->table.name + " has no column `" + ref.substr(0, 100) + "`.", "column");
+      return fail(ErrorCode::invalid, "No such column",
+                  place.table.name + " has no column `" + ref.substr(0, 100) + "`.", "column");
     column_id = column->id;
   }
-  auto version = wished_record_version(context, request, place->table, *key);
-  if (!version) return tl::unexpected(version.error());
-  auto uploads = take_upload(request, context.options.upload_dir, kAccepted);
-  if (!uploads) return tl::unexpected(uploads.error());
-  const CutOut cut_out(*uploads, request.body_file);
+  auto version = STRATA_TRY(wished_record_version(context, request, place.table, key));
+  auto uploads = STRATA_TRY(take_upload(request, context.options.upload_dir, kAccepted));
+  const CutOut cut_out(uploads, request.body_file);
   const std::string name = request.query_or("name", {});
-  if (!name.empty() && uploads->size() > 1)
-    return fail(422, "Name of several files",
+  if (!name.empty() && uploads.size() > 1)
+    return fail(ErrorCode::invalid, "Name of several files",
                 "`name` is for one file; those of a form bring theirs.", "name");
   const auto visibility = parse_visibility(request.query_or("visibility", "public"));
   if (!visibility)
-    return fail(422, "Unknown visibility", "`visibility` is public, team or private.",
-                "visibility");
+    return fail(ErrorCode::invalid, "Unknown visibility",
+                "`visibility` is public, team or private.", "visibility");
   std::vector<NewAttachment> files;
-  for (const Upload& upload : *uploads) {
+  for (const Upload& upload : uploads) {
     files.push_back(inspected(upload, name));
     files.back().visibility = *visibility;
   }
@@ -121,44 +118,39 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
         .with("Location", "/api/v1/attachments/" + std::to_string(attached.attachments.front().id))
         .with("ETag", etag_of(attached.change.records.front().version));
   };
-  auto attached = context.store.attach(place->table.id, *key, column_id, files, *version,
-                                       request.author(), first_answer<Attached>(request, answer));
-  if (!attached) return tl::unexpected(attached.error());
-  tell_change(context, attached->change, request.user());
-  return answer(*attached);
+  auto attached =
+      STRATA_TRY(context.store.attach(place.table.id, key, column_id, files, version,
+                                      request.author(), first_answer<Attached>(request, answer)));
+  tell_change(context, attached.change, request.user());
+  return answer(attached);
 }
 
 // Column by column, each in its own order.
 Result<Response> list_attachments(const RouteContext& context, const Request& request) {
-  auto key = record_key(request);
-  if (!key) return tl::unexpected(key.error());
-  auto place = record_place(context, request);
-  if (!place) return tl::unexpected(place.error());
+  auto key = STRATA_TRY(record_key(request));
+  auto place = STRATA_TRY(record_place(context, request));
   std::optional<std::int64_t> at;
   if (auto text = request.query.find("at"); text != request.query.end()) {
-    auto sequence = sequence_at(context.store, place->table, text->second);
-    if (!sequence) return tl::unexpected(sequence.error());
-    at = *sequence;
+    auto sequence = STRATA_TRY(sequence_at(context.store, place.table, text->second));
+    at = sequence;
   }
   Table then;
-  auto record = stored_record(context, place->table, request.role(), *key, at, &then);
-  if (!record) return tl::unexpected(record.error());
+  auto record = STRATA_TRY(stored_record(context, place.table, request.role(), key, at, &then));
   std::vector<std::pair<std::int64_t, const Column*>> ids;
   std::vector<std::int64_t> wanted;
   for (const Column& column : then.columns) {
     if (!holds_attachments(column.kind)) continue;
-    const auto cell = record->values.find(column.id);
-    if (cell == record->values.end()) continue;
+    const auto cell = record.values.find(column.id);
+    if (cell == record.values.end()) continue;
     for (const auto& id : cell->second) {
       ids.emplace_back(id.get<std::int64_t>(), &column);
       wanted.push_back(id.get<std::int64_t>());
     }
   }
-  auto found = context.store.attachments(then.id, request.author(), wanted);
-  if (!found) return tl::unexpected(found.error());
+  auto found = STRATA_TRY(context.store.attachments(then.id, request.author(), wanted));
   nlohmann::json list = nlohmann::json::array();
   for (const auto& [id, column] : ids)
-    for (const Attachment& attachment : *found)
+    for (const Attachment& attachment : found)
       if (attachment.id == id) {
         list.push_back(to_json(attachment));
         list.back()["user"] = told_name(request, attachment.user);
@@ -166,12 +158,12 @@ Result<Response> list_attachments(const RouteContext& context, const Request& re
       }
   const std::size_t total = list.size();
   return json_response({{"attachments", std::move(list)}, {"total", total}})
-      .with("ETag", etag_of(record->version));
+      .with("ETag", etag_of(record.version));
 }
 
 Result<std::int64_t> attachment_id(const Request& request) {
   auto id = parse_integer(request.param("attachment"), 1, INT64_MAX, "attachment");
-  if (!id) return fail(404, "Not found", "Attachments have whole numbers as ids.");
+  if (!id) return no_such("attachment", request.param("attachment"));
   return id;
 }
 
@@ -180,36 +172,35 @@ Result<int> thumbnail_side(const Request& request) {
   const std::string& text = request.query.at("thumbnail");
   for (const int side : kSides)
     if (text == std::to_string(side)) return side;
-  return fail(422, "Size not made", "`thumbnail` is 64, 128, 256, 512 or 1024.", "thumbnail");
+  return fail(ErrorCode::invalid, "Size not made", "`thumbnail` is 64, 128, 256, 512 or 1024.",
+              "thumbnail");
 }
 
 Result<Response> thumbnail(const RouteContext& context, const Attachment& attachment, int side) {
   // Decoded pictures are large: one at a time, so that memory is bounded.
   static std::mutex decoding;
-  auto kept = context.store.thumbnail(attachment, side);
-  if (!kept) return tl::unexpected(kept.error());
-  if (*kept) return bytes_response(std::move(**kept), "image/jpeg");
+  auto kept = STRATA_TRY(context.store.thumbnail(attachment, side));
+  if (kept) return bytes_response(std::move(*kept), "image/jpeg");
   constexpr std::array<std::string_view, 5> kTypes{"image/jpeg", "image/png", "image/tiff",
                                                    "image/webp", "image/bmp"};
   if (std::find(kTypes.begin(), kTypes.end(), attachment.media_type) == kTypes.end())
-    return fail(415, "No small picture",
+    return fail(ErrorCode::unsupported, "No small picture",
                 "Small pictures are made of JPEG, PNG, TIFF, WebP and BMP pictures; this is " +
                     attachment.media_type + ".",
                 "thumbnail");
   if (attachment.bytes > kThumbnailFileBytes)
-    return fail(422, "Picture too large",
+    return fail(ErrorCode::invalid, "Picture too large",
                 "Small pictures are made of files of at most " +
                     std::to_string(kThumbnailFileBytes >> 20) + " MiB.",
                 "thumbnail");
   const std::lock_guard lock(decoding);
   std::vector<std::uint8_t> bytes;
   bytes.reserve(attachment.bytes);
-  auto read = context.store.read_attachment(attachment, 0, attachment.bytes,
-                                            [&](std::span<const std::uint8_t> piece) {
-                                              bytes.insert(bytes.end(), piece.begin(), piece.end());
-                                              return true;
-                                            });
-  if (!read) return tl::unexpected(read.error());
+  STRATA_TRY(context.store.read_attachment(attachment, 0, attachment.bytes,
+                                           [&](std::span<const std::uint8_t> piece) {
+                                             bytes.insert(bytes.end(), piece.begin(), piece.end());
+                                             return true;
+                                           }));
   auto picture = make_thumbnail(bytes, side);
   if (!picture) {
     picture.error().field = "thumbnail";
@@ -239,52 +230,48 @@ Result<Response> content(const RouteContext& context, const Attachment& attachme
     return response;
   }
   response.bytes.reserve(length);
-  auto read = context.store.read_attachment(
+  STRATA_TRY(context.store.read_attachment(
       attachment, asked.range.begin, asked.range.end, [&](std::span<const std::uint8_t> piece) {
         response.bytes.insert(response.bytes.end(), piece.begin(), piece.end());
         return true;
-      });
-  if (!read) return tl::unexpected(read.error());
+      }));
   return response;
 }
 
 Result<Response> read_attachment(const RouteContext& context, const Request& request) {
-  auto id = attachment_id(request);
-  if (!id) return tl::unexpected(id.error());
-  auto attachment = context.store.attachment(*id, request.author());
-  if (!attachment) return tl::unexpected(attachment.error());
+  auto id = STRATA_TRY(attachment_id(request));
+  auto attachment = STRATA_TRY(context.store.attachment(id, request.author()));
   const bool small = request.query.contains("thumbnail");
   int side = 0;
   if (small) {
-    auto asked = thumbnail_side(request);
-    if (!asked) return tl::unexpected(asked.error());
-    side = *asked;
+    auto asked = STRATA_TRY(thumbnail_side(request));
+    side = asked;
   }
   const std::string etag =
-      "\"" + attachment->sha256 + (small ? "-" + std::to_string(side) : "") + "\"";
+      "\"" + attachment.sha256 + (small ? "-" + std::to_string(side) : "") + "\"";
   if (names_tag(request.header("if-none-match"), etag))
     return empty_response(304).with("ETag", etag);
   Result<Response> response;
   if (small) {
-    response = thumbnail(context, *attachment, side);
+    response = thumbnail(context, attachment, side);
     if (!response) return response;
   } else {
     const auto if_range = request.header("if-range");
     const auto range =
         if_range.empty() || if_range == etag ? request.header("range") : std::string_view();
-    const auto asked = asked_range(range, attachment->bytes);
+    const auto asked = asked_range(range, attachment.bytes);
     if (!asked) {
       Response refusal = problem_response(
-          {416, "No such bytes", "The file has " + std::to_string(attachment->bytes) + " bytes.",
-           "Range"});
-      return refusal.with("Content-Range", "bytes */" + std::to_string(attachment->bytes));
+          {ErrorCode::range_not_satisfied, "No such bytes",
+           "The file has " + std::to_string(attachment.bytes) + " bytes.", "Range"});
+      return refusal.with("Content-Range", "bytes */" + std::to_string(attachment.bytes));
     }
-    response = content(context, *attachment, *asked);
+    response = content(context, attachment, *asked);
     if (!response) return response;
-    const char* way = is_shown_in_place(attachment->media_type) ? "inline" : "attachment";
+    const char* way = is_shown_in_place(attachment.media_type) ? "inline" : "attachment";
     response
         ->with("Content-Disposition",
-               way + ("; filename*=UTF-8''" + percent_encode(attachment->name)))
+               way + ("; filename*=UTF-8''" + percent_encode(attachment.name)))
         .with("Accept-Ranges", "bytes");
   }
   response->with("ETag", etag).with("Content-Security-Policy", kSandbox);
@@ -292,31 +279,26 @@ Result<Response> read_attachment(const RouteContext& context, const Request& req
 }
 
 Result<Response> change_attachment(const RouteContext& context, const Request& request) {
-  auto id = attachment_id(request);
-  if (!id) return tl::unexpected(id.error());
-  auto attachment = context.store.attachment(*id, request.author());
-  if (!attachment) return tl::unexpected(attachment.error());
-  if (request.role() < Role::curator && request.user() != attachment->user)
-    return fail(403, "Not allowed", "Who sees a file is said by curators and by who attached it.");
-  auto asked = body_of<protocol::AttachmentPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
+  auto id = STRATA_TRY(attachment_id(request));
+  auto attachment = STRATA_TRY(context.store.attachment(id, request.author()));
+  if (request.role() < Role::curator && request.user() != attachment.user)
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "Who sees a file is said by curators and by who attached it.");
+  auto asked = STRATA_TRY(body_of<protocol::AttachmentPatch>(request));
   const auto answer = [](const Attachment& now) { return json_response(to_json(now)); };
-  auto now = context.store.show_attachment(*id, asked->visibility,
-                                           first_answer<Attachment>(request, answer));
-  if (!now) return tl::unexpected(now.error());
-  if (auto table = context.store.table(std::to_string(now->table_id), Role::owner))
+  auto now = STRATA_TRY(context.store.show_attachment(id, asked.visibility,
+                                                      first_answer<Attachment>(request, answer)));
+  if (auto table = context.store.table(std::to_string(now.table_id), Role::owner))
     tell_table(context, protocol::TableEventEvent::changed, *table, request.user());
-  return answer(*now);
+  return answer(now);
 }
 
 Result<Response> detach(const RouteContext& context, const Request& request) {
-  auto id = attachment_id(request);
-  if (!id) return tl::unexpected(id.error());
-  if (auto seen = context.store.attachment(*id, request.author()); !seen)
-    return tl::unexpected(seen.error());
+  auto id = STRATA_TRY(attachment_id(request));
+  STRATA_TRY(context.store.attachment(id, request.author()));
   const auto answer = [](const store::TableChange&) { return empty_response(204); };
   auto change =
-      context.store.detach(*id, request.user(), first_answer<store::TableChange>(request, answer));
+      context.store.detach(id, request.user(), first_answer<store::TableChange>(request, answer));
   if (!change) return tl::unexpected(change.error());
   tell_change(context, *change, request.user());
   return answer(*change);

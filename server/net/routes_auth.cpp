@@ -14,8 +14,8 @@ namespace strata::net {
 
 Result<Response> who_is_signed_in(const RouteContext& context, const std::string& user, Role role) {
   const auto person = context.store.person(user);
-  if (!person && person.error().status == 404)
-    return fail(401, "Not signed in", "This account was closed meanwhile.");
+  if (!person && person.error().code == ErrorCode::not_found)
+    return fail(ErrorCode::unauthenticated, "Not signed in", "This account was closed meanwhile.");
   if (!person) return tl::unexpected(person.error());
   nlohmann::json me{{"user", person->name},
                     {"full_name", person->full_name},
@@ -27,10 +27,10 @@ Result<Response> who_is_signed_in(const RouteContext& context, const std::string
 
 Result<Response> signed_in(const RouteContext& context, const Request& request,
                            const std::string& session) {
-  auto principal = context.auth.identify_token(session);
-  if (!principal) return tl::unexpected(principal.error());
-  if (!*principal) return fail(401, "Not signed in", "This account was closed meanwhile.");
-  auto response = who_is_signed_in(context, (*principal)->user, (*principal)->role);
+  auto principal = STRATA_TRY(context.auth.identify_token(session));
+  if (!principal)
+    return fail(ErrorCode::unauthenticated, "Not signed in", "This account was closed meanwhile.");
+  auto response = who_is_signed_in(context, principal->user, principal->role);
   if (response)
     response->with("Set-Cookie", Authenticator::set_cookie(session, needs_secure_cookie(request)));
   return response;
@@ -38,7 +38,7 @@ Result<Response> signed_in(const RouteContext& context, const Request& request,
 
 Result<void> check_no_script(const Request& request) {
   if (!request.principal->is_script) return {};
-  return fail(403, "Not for scripts",
+  return fail(ErrorCode::forbidden, "Not for scripts",
               "A token for scripts does nothing to accounts. Sign in with name and password.");
 }
 
@@ -56,13 +56,12 @@ namespace {
 using store::TokenKind;
 
 Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Request& request) {
-  const auto asked = body_of<protocol::Login>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const std::string user = asked->user.value_or(""), address = address_of(request);
-  if (auto free = gate.pass(address, user); !free) return tl::unexpected(free.error());
+  const auto asked = STRATA_TRY(body_of<protocol::Login>(request));
+  const std::string user = asked.user.value_or(""), address = address_of(request);
+  STRATA_TRY(gate.pass(address, user));
   const auto session =
-      asked->token ? context.auth.session_for_token(*asked->token, agent_of(request))
-                   : context.auth.session_for_password(user, *asked->password, agent_of(request));
+      asked.token ? context.auth.session_for_token(*asked.token, agent_of(request))
+                  : context.auth.session_for_password(user, *asked.password, agent_of(request));
   if (!session) return tl::unexpected(session.error());
   gate.was_right(address, user);
   return signed_in(context, request, *session);
@@ -72,8 +71,7 @@ Result<Response> sign_out(const RouteContext& context, const Request& request) {
   // A script's token stays valid: it is revoked by name, not by using it here.
   if (request.principal->by_cookie) {
     const std::string session = Authenticator::secret_of(request);
-    auto ended = context.auth.end_session(session);
-    if (!ended) return tl::unexpected(ended.error());
+    STRATA_TRY(context.auth.end_session(session));
     context.live_sockets.close_those_of(session, kClosePolicy, "signed out");
   }
   return empty_response(204).with("Set-Cookie",
@@ -81,40 +79,31 @@ Result<Response> sign_out(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> change_me(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::MePatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto person = context.store.person(request.user());
-  if (!person) return tl::unexpected(person.error());
-  const auto changed = context.store.change_person(
-      person->id, {.full_name = asked->full_name, .role = {}, .disabled = {}});
-  if (!changed) return tl::unexpected(changed.error());
+  const auto asked = STRATA_TRY(body_of<protocol::MePatch>(request));
+  const auto person = STRATA_TRY(context.store.person(request.user()));
+  STRATA_TRY(context.store.change_person(
+      person.id, {.full_name = asked.full_name, .role = {}, .disabled = {}}));
   return who_is_signed_in(context, request.user(), request.principal->role);
 }
 
 Result<Response> change_password(const RouteContext& context, SignInGate& gate,
                                  const Request& request) {
-  const auto asked = body_of<protocol::PasswordChange>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  if (auto good = store::check_password(asked->password, request.user(), "password"); !good)
-    return tl::unexpected(good.error());
-  const auto hash = context.store.password_of(request.user());
-  if (!hash) return tl::unexpected(hash.error());
-  if (!hash->empty()) {
+  const auto asked = STRATA_TRY(body_of<protocol::PasswordChange>(request));
+  STRATA_TRY(store::check_password(asked.password, request.user(), "password"));
+  const auto hash = STRATA_TRY(context.store.password_of(request.user()));
+  if (!hash.empty()) {
     // Whoever sits at somebody else's browser guesses no faster than from anywhere.
-    if (auto free = gate.pass(address_of(request), request.user()); !free)
-      return tl::unexpected(free.error());
+    STRATA_TRY(gate.pass(address_of(request), request.user()));
     const auto fits =
-        asked->current ? store::password_fits(*hash, *asked->current) : Result<bool>(false);
+        asked.current ? store::password_fits(hash, *asked.current) : Result<bool>(false);
     if (!fits) return tl::unexpected(fits.error());
     if (!*fits)
-      return fail(422, "Password does not fit", "This is not the password that you have now.",
-                  "current");
+      return fail(ErrorCode::invalid, "Password does not fit",
+                  "This is not the password that you have now.", "current");
     gate.was_right(address_of(request), request.user());
   }
-  const auto chosen = store::hash_password(asked->password);
-  if (!chosen) return tl::unexpected(chosen.error());
-  auto set = context.store.set_password(request.user(), *chosen, request.principal->secret);
-  if (!set) return tl::unexpected(set.error());
+  const auto chosen = STRATA_TRY(store::hash_password(asked.password));
+  STRATA_TRY(context.store.set_password(request.user(), chosen, request.principal->secret));
   context.auth.forget();
   context.live_sockets.close_user(request.user(), kClosePolicy, "the password was changed");
   return empty_response(204);
@@ -149,17 +138,15 @@ nlohmann::json token_json(const store::Token& token) {
 template <class Write>
 Result<Response> list_of(const RouteContext& context, const Request& request, TokenKind kind,
                          const char* member, Write write) {
-  const auto page = page_of(request, kMaxPage);
-  if (!page) return tl::unexpected(page.error());
-  const auto tokens = context.store.tokens(request.user(), kind);
-  if (!tokens) return tl::unexpected(tokens.error());
+  const auto page = STRATA_TRY(page_of(request, kMaxPage));
+  const auto tokens = STRATA_TRY(context.store.tokens(request.user(), kind));
   const auto part =
-      slice_by(*page, *tokens, [](const store::Token& token) { return NumberKey{-token.id}; });
+      slice_by(page, tokens, [](const store::Token& token) { return NumberKey{-token.id}; });
   if (!part) return tl::unexpected(part.error());
   nlohmann::json list = nlohmann::json::array();
-  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(write((*tokens)[i]));
-  Response response = json_response({{member, std::move(list)}, {"total", tokens->size()}});
-  add_page_links(response, request, *page, part->last);
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(write(tokens[i]));
+  Response response = json_response({{member, std::move(list)}, {"total", tokens.size()}});
+  add_page_links(response, request, page, part->last);
   return response;
 }
 
@@ -168,8 +155,7 @@ Result<Response> end_one(const RouteContext& context, const Request& request, To
   const auto id =
       parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), param);
   if (!id) return tl::unexpected(id.error());
-  if (auto ended = context.store.revoke_token(request.user(), kind, *id); !ended)
-    return tl::unexpected(ended.error());
+  STRATA_TRY(context.store.revoke_token(request.user(), kind, *id));
   context.auth.forget();
   context.live_sockets.close_user(request.user(), kClosePolicy, "a session ended");
   return empty_response(204);
@@ -185,15 +171,13 @@ Result<Response> end_others(const RouteContext& context, const Request& request)
 }
 
 Result<Response> create_token(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::ScriptTokenCreate>(request);
-  if (!asked) return tl::unexpected(asked.error());
+  const auto asked = STRATA_TRY(body_of<protocol::ScriptTokenCreate>(request));
   Role own = request.principal->roles.highest();
   Role role = own;
   std::optional<std::int64_t> only;
-  if (asked->project) {
-    if (auto seen = check_seen(context, request, *asked->project, "project"); !seen)
-      return tl::unexpected(seen.error());
-    auto project = context.store.project(*asked->project);
+  if (asked.project) {
+    STRATA_TRY(check_seen(context, request, *asked.project, "project"));
+    auto project = context.store.project(*asked.project);
     if (!project) {
       project.error().field = "project";
       return tl::unexpected(project.error());
@@ -202,15 +186,15 @@ Result<Response> create_token(const RouteContext& context, const Request& reques
     own = request.principal->roles.in(*only);
     role = std::min(own, Role::curator);
   }
-  if (asked->role) role = static_cast<Role>(static_cast<int>(*asked->role));
+  if (asked.role) role = static_cast<Role>(static_cast<int>(*asked.role));
   if (role > own)
-    return fail(403, "Not allowed",
+    return fail(ErrorCode::forbidden, "Not allowed",
                 "Your highest role " + std::string(only ? "there " : "") + "is " +
                     std::string(name(own)) + ": a token of yours can do no more.",
                 "role");
   const auto made =
       context.store.create_token(TokenKind::script, request.user(), role,
-                                 std::chrono::hours(24 * asked->days), asked->name, {}, only);
+                                 std::chrono::hours(24 * asked.days), asked.name, {}, only);
   if (!made) return tl::unexpected(made.error());
   return json_response({{"secret", made->secret}, {"token", token_json(made->token)}}, 201)
       .with("Cache-Control", "no-store");
@@ -237,8 +221,7 @@ void add_auth_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/login",
               .handler = answering([&context, gate](const Request& request) -> Result<Response> {
-                if (auto free = gate->pass(address_of(request), {}); !free)
-                  return tl::unexpected(free.error());
+                STRATA_TRY(gate->pass(address_of(request), {}));
                 auto session =
                     context.auth.session_for_link(request.query_or("link", {}), agent_of(request));
                 if (!session) return tl::unexpected(session.error());

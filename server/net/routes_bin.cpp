@@ -68,16 +68,12 @@ Result<std::optional<store::Bin::Place>> bin_place(const Page& page) {
 }
 
 Result<Response> list_bin(const RouteContext& context, const Request& request) {
-  const auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  const auto project = context.store.project(request.param("project"));
-  if (!project) return tl::unexpected(project.error());
-  const auto after = bin_place(*page);
-  if (!after) return tl::unexpected(after.error());
-  auto found = context.store.bin().of_project(project->id, sight_of(context, request),
-                                              page->limit + 1, page->offset, *after);
-  if (!found) return tl::unexpected(found.error());
-  const auto last = end_page(found->entries, *page, [](const BinEntry& entry) {
+  const auto page = STRATA_TRY(page_of(request));
+  const auto project = STRATA_TRY(context.store.project(request.param("project")));
+  const auto after = STRATA_TRY(bin_place(page));
+  auto found = STRATA_TRY(context.store.bin().of_project(project.id, sight_of(context, request),
+                                                         page.limit + 1, page.offset, after));
+  const auto last = end_page(found.entries, page, [](const BinEntry& entry) {
     const auto deleted =
         std::chrono::duration_cast<std::chrono::microseconds>(entry.deleted.time_since_epoch());
     return ListPlace::array(
@@ -85,13 +81,12 @@ Result<Response> list_bin(const RouteContext& context, const Request& request) {
   });
   const std::chrono::days keep(context.options.bin_days);
   nlohmann::json entries = nlohmann::json::array();
-  for (const BinEntry& entry : found->entries) entries.push_back(to_json(entry, keep));
-  if (auto named = People::add_to(context.store, entries); !named)
-    return tl::unexpected(named.error());
+  for (const BinEntry& entry : found.entries) entries.push_back(to_json(entry, keep));
+  STRATA_TRY(People::add_to(context.store, entries));
   Response response = json_response({{"entries", std::move(entries)},
-                                     {"total", found->total},
+                                     {"total", found.total},
                                      {"days", context.options.bin_days}});
-  add_page_links(response, request, *page, last);
+  add_page_links(response, request, page, last);
   return response;
 }
 
@@ -112,8 +107,7 @@ std::optional<std::vector<std::int64_t>> numbers_of(std::string_view text) {
 
 // `layer-3`, `model-7`, `record-5-17`.
 Result<BinEntry> find_entry(const RouteContext& context, const Request& request) {
-  const auto project = context.store.project(request.param("project"));
-  if (!project) return tl::unexpected(project.error());
+  const auto project = STRATA_TRY(context.store.project(request.param("project")));
   const std::string_view ref = request.param("entry");
   for (const auto kind : {BinEntry::Kind::layer, BinEntry::Kind::model, BinEntry::Kind::record}) {
     const std::string begin = std::string(name_of(kind)) + "-";
@@ -121,42 +115,37 @@ Result<BinEntry> find_entry(const RouteContext& context, const Request& request)
     const auto numbers = numbers_of(ref.substr(begin.size()));
     const bool is_record = kind == BinEntry::Kind::record;
     if (!numbers || numbers->size() != (is_record ? 2u : 1u)) break;
-    return context.store.bin().entry(project->id, kind, numbers->back(),
+    return context.store.bin().entry(project.id, kind, numbers->back(),
                                      is_record ? numbers->front() : 0, sight_of(context, request));
   }
-  return fail(404, "Not in the Bin",
+  return fail(ErrorCode::not_found, "Not in the Bin",
               "The project's Bin has no `" + std::string(ref.substr(0, 100)) + "`.");
 }
 
 Result<Response> restore(const RouteContext& context, const Request& request) {
-  const auto entry = find_entry(context, request);
-  if (!entry) return tl::unexpected(entry.error());
-  if (entry->kind == BinEntry::Kind::record) {
-    const auto respond = [&](const store::TableChange&) { return to_response({*entry, {}, {}}); };
-    const auto change = context.store.bin().restore_record(
-        *entry, request.user(), first_answer<store::TableChange>(request, respond));
-    if (!change) return tl::unexpected(change.error());
-    tell_change(context, *change, request.user());
-    return respond(*change);
+  const auto entry = STRATA_TRY(find_entry(context, request));
+  if (entry.kind == BinEntry::Kind::record) {
+    const auto respond = [&](const store::TableChange&) { return to_response({entry, {}, {}}); };
+    const auto change = STRATA_TRY(context.store.bin().restore_record(
+        entry, request.user(), first_answer<store::TableChange>(request, respond)));
+    tell_change(context, change, request.user());
+    return respond(change);
   }
   const auto answer = first_answer<BinRestored>(request, to_response);
-  if (entry->kind == BinEntry::Kind::model) {
-    const auto restored = context.store.bin().restore(*entry, answer);
+  if (entry.kind == BinEntry::Kind::model) {
+    const auto restored = context.store.bin().restore(entry, answer);
     return restored ? Result<Response>(to_response(*restored)) : tl::unexpected(restored.error());
   }
   // Through the room: those who look at the model are told.
-  const auto room = context.rooms.open(std::to_string(entry->model_id), request.role());
-  if (!room) return tl::unexpected(room.error());
-  const auto restored = (*room)->restore_layer(*entry, answer);
+  const auto room = STRATA_TRY(context.rooms.open(std::to_string(entry.model_id), request.role()));
+  const auto restored = room->restore_layer(entry, answer);
   return restored ? Result<Response>(to_response(*restored)) : tl::unexpected(restored.error());
 }
 
 Result<Response> erase(const RouteContext& context, const Request& request) {
-  const auto entry = find_entry(context, request);
-  if (!entry) return tl::unexpected(entry.error());
-  const auto gone = context.store.bin().erase(
-      *entry, first_answer<>(request, [] { return empty_response(204); }));
-  if (!gone) return tl::unexpected(gone.error());
+  const auto entry = STRATA_TRY(find_entry(context, request));
+  STRATA_TRY(context.store.bin().erase(
+      entry, first_answer<>(request, [] { return empty_response(204); })));
   context.bin_keeper.look();
   return empty_response(204);
 }

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/log.h"
+#include "core/no_such.h"
 #include "core/timestamp.h"
 #include "net/annotated_routes.h"
 #include "net/answer_book.h"
@@ -66,8 +67,7 @@ Result<Response> page_response(const RouteContext& context, const Request& reque
                              [](const Comment& comment) { return ListPlace::array({comment.id}); });
   nlohmann::json comments = nlohmann::json::array();
   for (const Comment& comment : found.comments) comments.push_back(to_json(comment));
-  if (auto named = People::add_to(context.store, comments); !named)
-    return tl::unexpected(named.error());
+  STRATA_TRY(People::add_to(context.store, comments));
   Response response = json_response({{list, std::move(comments)}, {"total", found.total}});
   add_page_links(response, request, page, last);
   return response;
@@ -85,62 +85,53 @@ void tell(const RouteContext& context, CommentEventEvent event, const Comment& c
 
 Result<Comment> stored_comment(const RouteContext& context, const Request& request) {
   const auto id = parse_integer(request.param("comment"), 1, INT64_MAX, "comment");
-  if (!id) return fail(404, "Not found", "Comments have whole numbers as ids.");
+  if (!id) return no_such("comment", request.param("comment"));
   return context.store.comments().comment(*id, request.role());
 }
 
 Result<Response> list_comments(const RouteContext& context, const Request& request) {
-  const auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
+  const auto page = STRATA_TRY(page_of(request));
   Comments::Query query;
-  const auto after = number_after(*page);
-  if (!after) return tl::unexpected(after.error());
-  query.limit = page->limit + 1;
-  query.offset = page->offset;
-  query.after = *after;
+  const auto after = STRATA_TRY(number_after(page));
+  query.limit = page.limit + 1;
+  query.offset = page.offset;
+  query.after = after;
   if (const auto state = request.query.find("state"); state != request.query.end()) {
     if (state->second != "open" && state->second != "resolved")
-      return fail(422, "No such state", "`state` is open or resolved.", "state");
+      return fail(ErrorCode::invalid, "No such state", "`state` is open or resolved.", "state");
     query.resolved = state->second == "resolved";
   }
   if (const auto since = request.query.find("since"); since != request.query.end()) {
     query.since = utc_timestamp(since->second);
     if (!query.since)
-      return fail(422, "Not a time",
+      return fail(ErrorCode::invalid, "Not a time",
                   "`since` is a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).",
                   "since");
   }
-  const auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  const auto found = context.store.comments().of_model(model->id, request.role(), query);
-  if (!found) return tl::unexpected(found.error());
-  return page_response(context, request, "comments", *found, *page);
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto found = STRATA_TRY(context.store.comments().of_model(model.id, request.role(), query));
+  return page_response(context, request, "comments", found, page);
 }
 
 Result<Response> list_replies(const RouteContext& context, const Request& request) {
-  const auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  const auto thread = stored_comment(context, request);
-  if (!thread) return tl::unexpected(thread.error());
-  const auto after = number_after(*page);
-  if (!after) return tl::unexpected(after.error());
-  auto found = context.store.comments().replies(thread->id, request.role(), page->limit + 1,
-                                                page->offset, *after);
-  if (!found) return tl::unexpected(found.error());
-  return page_response(context, request, "replies", *found, *page);
+  const auto page = STRATA_TRY(page_of(request));
+  const auto thread = STRATA_TRY(stored_comment(context, request));
+  const auto after = STRATA_TRY(number_after(page));
+  auto found = STRATA_TRY(context.store.comments().replies(thread.id, request.role(),
+                                                           page.limit + 1, page.offset, after));
+  return page_response(context, request, "replies", found, page);
 }
 
 Result<Comment::Place> place_on(room::Room& room, const glm::dvec3& world) {
-  const auto nearest = room.position(world, {});
-  if (!nearest) return tl::unexpected(nearest.error());
+  const auto nearest = STRATA_TRY(room.position(world, {}));
   const Model model = room.model();
   const double farthest = kFarthest * glm::length(model.bounds_max - model.bounds_min);
-  if (!nearest->hit || nearest->distance > farthest)
+  if (!nearest.hit || nearest.distance > farthest)
     return fail(
-        422, "Not on the model",
+        ErrorCode::invalid, "Not on the model",
         "`position` must lie on the surface or within 5 % of the model's diagonal from it, in world coordinates.",
         "position");
-  return Comment::Place{nearest->position, glm::dvec3(nearest->normal)};
+  return Comment::Place{nearest.position, glm::dvec3(nearest.normal)};
 }
 
 // What the comment is about, as asked for.
@@ -148,23 +139,22 @@ Result<void> put_subject(const RouteContext& context, const room::Room& room,
                          const protocol::CommentCreate& asked, Comment& comment) {
   if (!asked.layer) {
     if (asked.record)
-      return fail(422, "Record of no layer", "`record` is a key of a `layer`; name it, too.",
-                  "layer");
+      return fail(ErrorCode::invalid, "Record of no layer",
+                  "`record` is a key of a `layer`; name it, too.", "layer");
     return {};
   }
-  const auto layers = find_layers(room, {protocol::to_ref(*asked.layer)}, "layer");
-  if (!layers) return tl::unexpected(layers.error());
-  const Layer& layer = layers->front();
+  const auto layers = STRATA_TRY(find_layers(room, {protocol::to_ref(*asked.layer)}, "layer"));
+  const Layer& layer = layers.front();
   comment.layer_id = layer.id;
   if (!asked.record) return {};
   if (!layer.table)
-    return fail(422, "No records", "The layer `" + layer.slug + "` is numeric: it has no records.",
-                "record");
-  const auto missing = context.store.missing_records(*layer.table, std::vector{*asked.record});
-  if (!missing) return tl::unexpected(missing.error());
-  if (!missing->empty())
+    return fail(ErrorCode::invalid, "No records",
+                "The layer `" + layer.slug + "` is numeric: it has no records.", "record");
+  const auto missing =
+      STRATA_TRY(context.store.missing_records(*layer.table, std::vector{*asked.record}));
+  if (!missing.empty())
     return fail(
-        422, "No such record",
+        ErrorCode::invalid, "No such record",
         "The table of `" + layer.slug + "` has no record " + std::to_string(*asked.record) + ".",
         "record");
   comment.table_id = *layer.table;
@@ -174,99 +164,87 @@ Result<void> put_subject(const RouteContext& context, const room::Room& room,
 
 Result<Response> write(const RouteContext& context, const Request& request,
                        const Comment& comment) {
-  const auto people = people_of(context, comment, request.user());
-  if (!people) return tl::unexpected(people.error());
+  const auto people = STRATA_TRY(people_of(context, comment, request.user()));
   const auto answer = [&people](const Comment& made) {
-    return json_response(to_json(made, *people), 201)
+    return json_response(to_json(made, people), 201)
         .with("Location", "/api/v1/comments/" + std::to_string(made.id))
         .with("ETag", etag_of(made.version));
   };
   const auto written =
       context.store.comments().create(comment, first_answer<Comment>(request, answer));
   if (!written) return tl::unexpected(written.error());
-  tell(context, CommentEventEvent::created, *written, *people, request.user());
+  tell(context, CommentEventEvent::created, *written, people, request.user());
   return answer(*written);
 }
 
 Result<Response> create_comment(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::CommentCreate>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  const auto place = place_on(**room, asked->position);
-  if (!place) return tl::unexpected(place.error());
+  const auto asked = STRATA_TRY(body_of<protocol::CommentCreate>(request));
+  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto place = STRATA_TRY(place_on(*room, asked.position));
   Comment comment;
-  comment.model_id = (*room)->model().id;
-  comment.place = *place;
-  if (auto put = put_subject(context, **room, *asked, comment); !put)
-    return tl::unexpected(put.error());
-  comment.text = asked->text;
+  comment.model_id = room->model().id;
+  comment.place = place;
+  STRATA_TRY(put_subject(context, *room, asked, comment));
+  comment.text = asked.text;
   comment.user = request.user();
   return write(context, request, comment);
 }
 
 Result<Response> create_reply(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::ReplyCreate>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto thread = stored_comment(context, request);
-  if (!thread) return tl::unexpected(thread.error());
+  const auto asked = STRATA_TRY(body_of<protocol::ReplyCreate>(request));
+  const auto thread = STRATA_TRY(stored_comment(context, request));
   Comment comment;
-  comment.thread = thread->id;
-  comment.text = asked->text;
+  comment.thread = thread.id;
+  comment.text = asked.text;
   comment.user = request.user();
   return write(context, request, comment);
 }
 
 Result<Response> change_comment(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::CommentPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto comment = stored_comment(context, request);
-  if (!comment) return tl::unexpected(comment.error());
-  if (auto fresh = check_if_match(request, comment->version); !fresh)
-    return tl::unexpected(fresh.error());
-  if (asked->text) {
-    if (comment->user != request.user())
-      return fail(403, "Not yours",
-                  "Only " + comment->user + " changes the text of this comment. Reply to it.",
+  const auto asked = STRATA_TRY(body_of<protocol::CommentPatch>(request));
+  auto comment = STRATA_TRY(stored_comment(context, request));
+  STRATA_TRY(check_if_match(request, comment.version));
+  if (asked.text) {
+    if (comment.user != request.user())
+      return fail(ErrorCode::forbidden, "Not yours",
+                  "Only " + comment.user + " changes the text of this comment. Reply to it.",
                   "text");
-    if (comment->deleted)
-      return fail(409, "Deleted already",
+    if (comment.deleted)
+      return fail(ErrorCode::conflict, "Deleted already",
                   "The comment was deleted; it stands there for its replies.", "text");
-    comment->text = *asked->text;
+    comment.text = *asked.text;
   }
-  if (asked->state) {
-    if (comment->thread)
-      return fail(422, "State of a reply",
+  if (asked.state) {
+    if (comment.thread)
+      return fail(ErrorCode::invalid, "State of a reply",
                   "The state is that of the thread: change comment " +
-                      std::to_string(*comment->thread) + ".",
+                      std::to_string(*comment.thread) + ".",
                   "state");
-    if (*asked->state == protocol::CommentState::open)
-      comment->resolved.reset();
-    else if (!comment->resolved)
-      comment->resolved = Comment::Resolution{request.user(), {}};
+    if (*asked.state == protocol::CommentState::open)
+      comment.resolved.reset();
+    else if (!comment.resolved)
+      comment.resolved = Comment::Resolution{request.user(), {}};
   }
-  const auto people = people_of(context, *comment, request.user());
-  if (!people) return tl::unexpected(people.error());
+  const auto people = STRATA_TRY(people_of(context, comment, request.user()));
   const auto answer = [&people](const Comment& now) {
-    return json_response(to_json(now, *people)).with("ETag", etag_of(now.version));
+    return json_response(to_json(now, people)).with("ETag", etag_of(now.version));
   };
   const auto changed =
-      context.store.comments().update(*comment, first_answer<Comment>(request, answer));
+      context.store.comments().update(comment, first_answer<Comment>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
-  tell(context, CommentEventEvent::changed, *changed, *people, request.user());
+  tell(context, CommentEventEvent::changed, *changed, people, request.user());
   return answer(*changed);
 }
 
 Result<Response> delete_comment(const RouteContext& context, const Request& request) {
-  const auto comment = stored_comment(context, request);
-  if (!comment) return tl::unexpected(comment.error());
-  if (auto fresh = check_if_match(request, comment->version); !fresh)
-    return tl::unexpected(fresh.error());
-  if (comment->user != request.user() && request.principal->role < Role::curator)
-    return fail(403, "Not yours", "Only " + comment->user + " and curators delete this comment.");
+  const auto comment = STRATA_TRY(stored_comment(context, request));
+  STRATA_TRY(check_if_match(request, comment.version));
+  if (comment.user != request.user() && request.principal->role < Role::curator)
+    return fail(ErrorCode::forbidden, "Not yours",
+                "Only " + comment.user + " and curators delete this comment.");
   const auto answer = [](const Comments::Removal&) { return empty_response(204); };
   const auto removal =
-      context.store.comments().remove(*comment, first_answer<Comments::Removal>(request, answer));
+      context.store.comments().remove(comment, first_answer<Comments::Removal>(request, answer));
   if (!removal) return tl::unexpected(removal.error());
   if (removal->left) {
     const auto people = people_of(context, *removal->left, request.user());
@@ -330,11 +308,10 @@ void add_comment_routes(Router& router, const RouteContext& context) {
   routes.read(of_model, list_comments, {"state", "since", "limit", "offset", "after"});
   routes.change(Method::post, of_model, create_comment);
   routes.read(comment, [](const RouteContext& of, const Request& request) -> Result<Response> {
-    const auto found = stored_comment(of, request);
-    if (!found) return tl::unexpected(found.error());
-    nlohmann::json answer = to_json(*found);
-    if (auto named = People::add_to(of.store, answer); !named) return tl::unexpected(named.error());
-    return with_etag(json_response(std::move(answer)), request, found->version);
+    const auto found = STRATA_TRY(stored_comment(of, request));
+    nlohmann::json answer = to_json(found);
+    STRATA_TRY(People::add_to(of.store, answer));
+    return with_etag(json_response(std::move(answer)), request, found.version);
   });
   routes.change(Method::patch, comment, change_comment);
   routes.change(Method::remove, comment, delete_comment);

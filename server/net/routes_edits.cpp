@@ -7,55 +7,45 @@ namespace strata::net {
 namespace {
 
 Result<Response> history(const RouteContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  auto layer = stored_layer(context, request);
-  if (!layer) return tl::unexpected(layer.error());
-  const auto before = number_after(*page, INT64_MAX);
-  if (!before) return tl::unexpected(before.error());
-  auto rows = context.store.history(layer->id, page->limit + 1, page->offset, *before);
-  if (!rows) return tl::unexpected(rows.error());
+  auto page = STRATA_TRY(page_of(request));
+  auto layer = STRATA_TRY(stored_layer(context, request));
+  const auto before = STRATA_TRY(number_after(page, INT64_MAX));
+  auto rows = STRATA_TRY(context.store.history(layer.id, page.limit + 1, page.offset, before));
   const auto last =
-      end_page(rows->rows, *page, [](const auto& row) { return ListPlace::array({row.sequence}); });
+      end_page(rows.rows, page, [](const auto& row) { return ListPlace::array({row.sequence}); });
   nlohmann::json list = nlohmann::json::array();
-  for (const auto& row : rows->rows) {
+  for (const auto& row : rows.rows) {
     nlohmann::json told = to_json(row);
     // An expression of then may name what fewer people see now.
     if (told.contains("expression")) {
-      const auto seen = sees_all_of(context, request.role(), layer->model_id,
-                                    told.at("expression").get<std::string>());
-      if (!seen) return tl::unexpected(seen.error());
-      if (!*seen) told.erase("expression");
+      const auto seen = STRATA_TRY(sees_all_of(context, request.role(), layer.model_id,
+                                               told.at("expression").get<std::string>()));
+      if (!seen) told.erase("expression");
     }
     list.push_back(std::move(told));
   }
-  Response response = json_response({{"edits", list}, {"total", rows->total}});
-  add_page_links(response, request, *page, last);
+  Response response = json_response({{"edits", list}, {"total", rows.total}});
+  add_page_links(response, request, page, last);
   return response;
 }
 
 Result<Response> list_review(const RouteContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  auto layer = stored_layer(context, request);
-  if (!layer) return tl::unexpected(layer.error());
+  auto page = STRATA_TRY(page_of(request));
+  auto layer = STRATA_TRY(stored_layer(context, request));
   std::optional<std::string> user;
   if (const auto asked = request.query.find("user"); asked != request.query.end())
     user = asked->second;
   if (user && (user->empty() || user->size() > 200))
-    return fail(422, "Bad name", "`user` is the name of a person.", "user");
-  const auto after = number_after(*page);
-  if (!after) return tl::unexpected(after.error());
-  auto queue = context.store.review_queue(layer->id, user, page->limit + 1, page->offset, *after);
-  if (!queue) return tl::unexpected(queue.error());
-  const auto last = end_page(queue->strokes, *page, [](const auto& stroke) {
-    return ListPlace::array({stroke.sequence});
-  });
-  nlohmann::json answer = to_json(*queue);
-  if (auto named = People::add_to(context.store, answer); !named)
-    return tl::unexpected(named.error());
+    return fail(ErrorCode::invalid, "Bad name", "`user` is the name of a person.", "user");
+  const auto after = STRATA_TRY(number_after(page));
+  auto queue =
+      STRATA_TRY(context.store.review_queue(layer.id, user, page.limit + 1, page.offset, after));
+  const auto last = end_page(
+      queue.strokes, page, [](const auto& stroke) { return ListPlace::array({stroke.sequence}); });
+  nlohmann::json answer = to_json(queue);
+  STRATA_TRY(People::add_to(context.store, answer));
   Response response = json_response(std::move(answer));
-  add_page_links(response, request, *page, last);
+  add_page_links(response, request, page, last);
   return response;
 }
 
@@ -65,11 +55,9 @@ struct Target {
 };
 
 Result<Target> target_of(const RouteContext& context, const Request& request) {
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  auto layer = (*room)->layer(request.param("layer"));
-  if (!layer) return tl::unexpected(layer.error());
-  return Target{std::move(*room), std::move(*layer)};
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto layer = STRATA_TRY(room->layer(request.param("layer")));
+  return Target{std::move(room), std::move(layer)};
 }
 
 // Runs `make` for the layer that is named by the path and applies the edit that it returns.
@@ -91,27 +79,26 @@ room::EditRequest bare_edit(const Request& request, const Target& target, std::s
 }
 
 Result<room::EditRequest> review_edit(const Request& request, const Target& target) {
-  const auto asked = body_of<protocol::Review>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto decision = *parse_decision(name(asked->decision));
-  if (decision == Decision::reopen && !asked->edits)
-    return fail(422, "Edits missing", "Name the edits whose review is to be taken back.", "edits");
+  const auto asked = STRATA_TRY(body_of<protocol::Review>(request));
+  const auto decision = *parse_decision(name(asked.decision));
+  if (decision == Decision::reopen && !asked.edits)
+    return fail(ErrorCode::invalid, "Edits missing",
+                "Name the edits whose review is to be taken back.", "edits");
   auto edit = bare_edit(request, target, std::string(name(decision)));
   edit.id = edit_id(request, target.layer, "review");  // one key is for one decision, whichever
-  if (asked->edits) edit.record["edits"] = *asked->edits;
-  if (asked->user) edit.record["user"] = *asked->user;
-  if (asked->reason) edit.record["reason"] = *asked->reason;
+  if (asked.edits) edit.record["edits"] = *asked.edits;
+  if (asked.user) edit.record["user"] = *asked.user;
+  if (asked.reason) edit.record["reason"] = *asked.reason;
   edit.edit = room::ReviewEdit{decision,
-                               {asked->edits.value_or(std::vector<std::int64_t>{}), asked->user},
-                               asked->reason.value_or("")};
+                               {asked.edits.value_or(std::vector<std::int64_t>{}), asked.user},
+                               asked.reason.value_or("")};
   return edit;
 }
 
 // Undo and redo take no members; no body is the same as an empty object.
 Result<void> check_empty(const Request& request) {
   if (request.body.empty()) return {};
-  auto body = body_of<protocol::Empty>(request);
-  if (!body) return tl::unexpected(body.error());
+  STRATA_TRY(body_of<protocol::Empty>(request));
   return {};
 }
 
@@ -137,9 +124,8 @@ void add_edit_routes(Router& router, const RouteContext& context) {
          editing(
              context,
              [&context](const Request& request, const Target& target) -> Result<room::EditRequest> {
-               auto asked = body_of<protocol::Edit>(request);
-               if (!asked) return tl::unexpected(asked.error());
-               return edit_request(*asked, target.layer, target.room->model(),
+               auto asked = STRATA_TRY(body_of<protocol::Edit>(request));
+               return edit_request(asked, target.layer, target.room->model(),
                                    edit_id(request, target.layer, "edit"), request.author(),
                                    [&](const std::string& ref) { return context.tools.find(ref); });
              }));
@@ -152,8 +138,7 @@ void add_edit_routes(Router& router, const RouteContext& context) {
   change(layer + "/undo",
          editing(context,
                  [](const Request& request, const Target& target) -> Result<room::EditRequest> {
-                   if (auto empty = check_empty(request); !empty)
-                     return tl::unexpected(empty.error());
+                   STRATA_TRY(check_empty(request));
                    auto edit = bare_edit(request, target, "undo");
                    edit.edit = room::UndoEdit{};
                    return edit;
@@ -161,8 +146,7 @@ void add_edit_routes(Router& router, const RouteContext& context) {
   change(layer + "/redo",
          editing(context,
                  [](const Request& request, const Target& target) -> Result<room::EditRequest> {
-                   if (auto empty = check_empty(request); !empty)
-                     return tl::unexpected(empty.error());
+                   STRATA_TRY(check_empty(request));
                    auto edit = bare_edit(request, target, "redo");
                    edit.edit = room::RedoEdit{};
                    return edit;
@@ -170,16 +154,15 @@ void add_edit_routes(Router& router, const RouteContext& context) {
   change(layer + "/restore",
          editing(context,
                  [](const Request& request, const Target& target) -> Result<room::EditRequest> {
-                   auto asked = body_of<protocol::Restore>(request);
-                   if (!asked) return tl::unexpected(asked.error());
-                   if (asked->sequence > target.room->sequence())
-                     return fail(422, "Not yet there",
+                   auto asked = STRATA_TRY(body_of<protocol::Restore>(request));
+                   if (asked.sequence > target.room->sequence())
+                     return fail(ErrorCode::invalid, "Not yet there",
                                  "The newest sequence of this model is " +
                                      std::to_string(target.room->sequence()) + ".",
                                  "sequence");
                    auto edit = bare_edit(request, target, "restore");
-                   edit.record["sequence"] = asked->sequence;
-                   edit.edit = room::RestoreEdit{asked->sequence};
+                   edit.record["sequence"] = asked.sequence;
+                   edit.edit = room::RestoreEdit{asked.sequence};
                    return edit;
                  }));
 }

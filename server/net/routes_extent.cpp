@@ -11,20 +11,16 @@ namespace {
 // Where the records lie that a person highlights, with what is painted and with their lines and
 // points: to fly there, and to tell how much surface they have.
 Result<Response> extent(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::Highlight>(request);
-  if (!asked) return tl::unexpected(asked.error());
+  auto asked = STRATA_TRY(body_of<protocol::Highlight>(request));
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  auto layer = (*room)->layer(request.param("layer"));
-  if (!layer) return tl::unexpected(layer.error());
-  auto highlight = highlight_of(*asked, *layer, "");
-  if (!highlight) return tl::unexpected(highlight.error());
+  auto layer = STRATA_TRY((*room)->layer(request.param("layer")));
+  auto highlight = STRATA_TRY(highlight_of(asked, layer, ""));
   auto keys =
-      room::highlighted_keys(context.store, *layer->table, request.role(), *highlight, "filter");
+      room::highlighted_keys(context.store, *layer.table, request.role(), highlight, "filter");
   if (!keys) return tl::unexpected(keys.error());
-  auto areas = (*room)->key_areas(layer->slug);
-  if (!areas) return tl::unexpected(areas.error());
-  const auto marks = context.store.marks(*layer->table, request.role(), (*room)->model().id);
+  auto areas = STRATA_TRY((*room)->key_areas(layer.slug));
+  const auto marks = context.store.marks(*layer.table, request.role(), (*room)->model().id);
   if (!marks) return tl::unexpected(marks.error());
   query::KeyArea all;
   CompensatedSum area_m2;
@@ -36,8 +32,8 @@ Result<Response> extent(const RouteContext& context, const Request& request) {
   };
   std::size_t painted = 0;
   for (const std::uint32_t key : *keys) {
-    const auto area = areas->find(key);
-    if (area == areas->end()) continue;
+    const auto area = areas.find(key);
+    if (area == areas.end()) continue;
     const query::KeyArea& one = area->second;
     add_bounds(one.bounds_min, one.bounds_max);
     all.texels += one.texels;

@@ -20,30 +20,25 @@ Result<FeatureFormat> feature_format(const Request& request) {
                : FeatureFormat::gpkg;
   if (asked->second == "geojson") return FeatureFormat::geojson;
   if (asked->second == "gpkg") return FeatureFormat::gpkg;
-  return fail(406, "Unknown format", "`f` is geojson or gpkg.", "f");
+  return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is geojson or gpkg.", "f");
 }
 
 Result<Response> read_features(const RouteContext& context, const Request& request) {
-  const auto format = feature_format(request);
-  if (!format) return tl::unexpected(format.error());
-  const auto axis = axis_of(request);
-  if (!axis) return tl::unexpected(axis.error());
-  const auto language = asked_language(request);
-  if (!language) return tl::unexpected(language.error());
-  const auto asked = LayerQuery::from(context, request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto set = layer_features(context, {asked->room,
-                                      asked->layer,
-                                      asked->at,
-                                      {axis->u, axis->v, 3 - axis->u - axis->v},
-                                      request.role(),
-                                      *language});
-  if (!set) return tl::unexpected(set.error());
-  auto response = *format == FeatureFormat::geojson ? feature_json(std::move(*set))
-                                                    : geopackage(*set, context.options.upload_dir);
-  if (!response) return response;
-  add_sequences(*response, asked->sequence, asked->room->durable_sequence());
-  response->with("Vary", "Accept");
+  const auto format = STRATA_TRY(feature_format(request));
+  const auto axis = STRATA_TRY(axis_of(request));
+  const auto language = STRATA_TRY(asked_language(request));
+  const auto asked = STRATA_TRY(LayerQuery::from(context, request));
+  auto set = STRATA_TRY(layer_features(context, {asked.room,
+                                                 asked.layer,
+                                                 asked.at,
+                                                 {axis.u, axis.v, 3 - axis.u - axis.v},
+                                                 request.role(),
+                                                 language}));
+  auto response =
+      STRATA_TRY(format == FeatureFormat::geojson ? feature_json(std::move(set))
+                                                  : geopackage(set, context.options.upload_dir));
+  add_sequences(response, asked.sequence, asked.room->durable_sequence());
+  response.with("Vary", "Accept");
   return response;
 }
 

@@ -29,10 +29,9 @@ Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteB
         model.project_id,
         [&context, budget, wish = std::move(*wish),
          id = model.id](Progress& progress) -> Result<jobs::JobResult> {
-          auto file = make_figure(context, *budget, wish, progress);
-          if (!file) return tl::unexpected(file.error());
+          auto file = STRATA_TRY(make_figure(context, *budget, wish, progress));
           jobs::JobResult result(id);
-          result.file = std::move(*file);
+          result.file = std::move(file);
           return result;
         },
         request.user(), jobs::JobKind::figure);
@@ -40,9 +39,8 @@ Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteB
     return std::move(job_response(context, *job).with("Preference-Applied", "respond-async"));
   }
   Progress unwatched;
-  auto file = make_figure(context, *budget, *wish, unwatched);
-  if (!file) return tl::unexpected(file.error());
-  Response response = file_response(std::move(*file));
+  auto file = STRATA_TRY(make_figure(context, *budget, *wish, unwatched));
+  Response response = file_response(std::move(file));
   add_sequences(response, *wish->shown.at, wish->room->durable_sequence());
   return response;
 }

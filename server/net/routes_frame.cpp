@@ -7,57 +7,51 @@ namespace strata::net {
 namespace {
 
 Result<Response> frame(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::FrameRequest>(request);
-  if (!asked) return tl::unexpected(asked.error());
+  auto asked = STRATA_TRY(body_of<protocol::FrameRequest>(request));
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   room::PictureRequest wanted;
-  if (asked->layers) {
+  if (asked.layers) {
     wanted.layers.emplace();
-    for (std::size_t i = 0; i < asked->layers->size(); ++i) {
-      auto layer = (*room)->layer(protocol::to_ref((*asked->layers)[i]));
+    for (std::size_t i = 0; i < asked.layers->size(); ++i) {
+      auto layer = (*room)->layer(protocol::to_ref((*asked.layers)[i]));
       if (!layer) {
-        Problem problem = layer.error();
+        Error problem = layer.error();
         problem.field = "layers[" + std::to_string(i) + "]";
         return tl::unexpected(std::move(problem));
       }
       wanted.layers->push_back(layer->slug);
     }
   }
-  if (asked->highlights) {
-    for (std::size_t i = 0; i < asked->highlights->size(); ++i) {
-      const auto& wished = (*asked->highlights)[i];
+  if (asked.highlights) {
+    for (std::size_t i = 0; i < asked.highlights->size(); ++i) {
+      const auto& wished = (*asked.highlights)[i];
       const std::string field = "highlights[" + std::to_string(i) + "]";
       auto layer = (*room)->layer(protocol::to_ref(wished.layer));
       if (!layer) {
-        Problem problem = layer.error();
+        Error problem = layer.error();
         problem.field = field + ".layer";
         return tl::unexpected(std::move(problem));
       }
-      auto highlight = highlight_of(wished.highlight, *layer, field + ".highlight");
-      if (!highlight) return tl::unexpected(highlight.error());
+      auto highlight = STRATA_TRY(highlight_of(wished.highlight, *layer, field + ".highlight"));
       wanted.shown.layers.push_back(
-          {layer->id, std::nullopt, std::nullopt, std::nullopt, std::move(*highlight)});
+          {layer->id, std::nullopt, std::nullopt, std::nullopt, std::move(highlight)});
     }
   }
   const auto sequence = (*room)->sequence();
-  const auto at = find_sequence(context, **room, asked->at);
-  if (!at) return tl::unexpected(at.error());
-  wanted.at = *at;
-  if (asked->looks) {
-    auto looks = look_views(**room, *asked->looks);
-    if (!looks) return tl::unexpected(looks.error());
-    wanted.shown.looks = std::move(*looks);
+  const auto at = STRATA_TRY(find_sequence(context, **room, asked.at));
+  wanted.at = at;
+  if (asked.looks) {
+    auto looks = STRATA_TRY(look_views(**room, *asked.looks));
+    wanted.shown.looks = std::move(looks);
   }
-  if (asked->light) wanted.shown.light = *asked->light;
-  if (auto lit = validate(wanted.shown.light); !lit) return tl::unexpected(lit.error());
-  const auto background = background_of(asked->background);
-  if (!background) return tl::unexpected(background.error());
-  wanted.shown.background = *background;
-  auto response = picture_response(**room, wanted, asked->camera,
-                                   asked->format == protocol::FrameRequestFormat::png);
-  if (!response) return response;
-  add_sequences(*response, wanted.at.value_or(sequence), (*room)->durable_sequence());
+  if (asked.light) wanted.shown.light = *asked.light;
+  STRATA_TRY(validate(wanted.shown.light));
+  const auto background = STRATA_TRY(background_of(asked.background));
+  wanted.shown.background = background;
+  auto response = STRATA_TRY(picture_response(**room, wanted, asked.camera,
+                                              asked.format == protocol::FrameRequestFormat::png));
+  add_sequences(response, wanted.at.value_or(sequence), (*room)->durable_sequence());
   return response;
 }
 

@@ -23,87 +23,69 @@ nlohmann::json to_json(const GroupDetail& group) {
 }
 
 Result<Response> list_groups(const RouteContext& context, const Request& request) {
-  const auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  const auto groups = context.store.groups().all();
-  if (!groups) return tl::unexpected(groups.error());
+  const auto page = STRATA_TRY(page_of(request));
+  const auto groups = STRATA_TRY(context.store.groups().all());
   nlohmann::json list = nlohmann::json::array();
-  const int total = static_cast<int>(groups->size());
-  const auto part = slice_by_name(*page, *groups, context.store, [](const store::Group& group) {
-    return store::Store::NamedId{group.name, group.id};
-  });
-  if (!part) return tl::unexpected(part.error());
-  for (std::size_t i = part->begin; i < part->end; ++i) {
-    const auto& [id, group, people, projects] = (*groups)[i];
+  const int total = static_cast<int>(groups.size());
+  const auto part =
+      STRATA_TRY(slice_by_name(page, groups, context.store, [](const store::Group& group) {
+        return store::Store::NamedId{group.name, group.id};
+      }));
+  for (std::size_t i = part.begin; i < part.end; ++i) {
+    const auto& [id, group, people, projects] = groups[i];
     list.push_back({{"id", id}, {"name", group}, {"people", people}, {"projects", projects}});
   }
   Response response = json_response({{"groups", std::move(list)}, {"total", total}});
-  add_page_links(response, request, *page, part->last);
+  add_page_links(response, request, page, part.last);
   return response;
 }
 
 Result<Response> create_group(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::GroupCreate>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto made = context.store.groups().create(
-      asked->name, asked->members.value_or(std::vector<std::string>()));
-  if (!made) return tl::unexpected(made.error());
-  return json_response(to_json(*made), 201)
-      .with("Location", "/api/v1/groups/" + std::to_string(made->group.id));
+  auto asked = STRATA_TRY(body_of<protocol::GroupCreate>(request));
+  const auto made = STRATA_TRY(context.store.groups().create(
+      asked.name, asked.members.value_or(std::vector<std::string>())));
+  return json_response(to_json(made), 201)
+      .with("Location", "/api/v1/groups/" + std::to_string(made.group.id));
 }
 
 Result<Response> show_group(const RouteContext& context, const Request& request) {
-  const auto id = id_of(request, "group");
-  if (!id) return tl::unexpected(id.error());
-  const auto group = context.store.groups().group(*id);
-  if (!group) return tl::unexpected(group.error());
-  return json_response(to_json(*group));
+  const auto id = STRATA_TRY(id_of(request, "group"));
+  const auto group = STRATA_TRY(context.store.groups().group(id));
+  return json_response(to_json(group));
 }
 
 Result<Response> change_group(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::GroupPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto id = id_of(request, "group");
-  if (!id) return tl::unexpected(id.error());
-  const store::GroupChange change{asked->name, asked->add.value_or(std::vector<std::string>()),
-                                  asked->remove.value_or(std::vector<std::string>())};
-  const auto changed = context.store.groups().change(*id, change, request.user());
-  if (!changed) return tl::unexpected(changed.error());
-  roles_changed(context, changed->people);
-  return json_response(to_json(changed->now));
+  auto asked = STRATA_TRY(body_of<protocol::GroupPatch>(request));
+  const auto id = STRATA_TRY(id_of(request, "group"));
+  const store::GroupChange change{asked.name, asked.add.value_or(std::vector<std::string>()),
+                                  asked.remove.value_or(std::vector<std::string>())};
+  const auto changed = STRATA_TRY(context.store.groups().change(id, change, request.user()));
+  roles_changed(context, changed.people);
+  return json_response(to_json(changed.now));
 }
 
 Result<Response> delete_group(const RouteContext& context, const Request& request) {
-  const auto id = id_of(request, "group");
-  if (!id) return tl::unexpected(id.error());
-  const auto people = context.store.groups().remove(*id, request.user());
-  if (!people) return tl::unexpected(people.error());
-  roles_changed(context, *people);
+  const auto id = STRATA_TRY(id_of(request, "group"));
+  const auto people = STRATA_TRY(context.store.groups().remove(id, request.user()));
+  roles_changed(context, people);
   return empty_response(204);
 }
 
 Result<Response> put_role(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::MemberPut>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto project = context.store.project(request.param("project"));
-  if (!project) return tl::unexpected(project.error());
-  const auto id = id_of(request, "group");
-  if (!id) return tl::unexpected(id.error());
-  const Role role = parse_role(protocol::name(asked->role)).value_or(Role::viewer);
-  const auto put = context.store.groups().put(project->id, *id, role, request.user());
-  if (!put) return tl::unexpected(put.error());
-  roles_changed(context, put->people);
-  return json_response(net::to_json(put->now));
+  const auto asked = STRATA_TRY(body_of<protocol::MemberPut>(request));
+  const auto project = STRATA_TRY(context.store.project(request.param("project")));
+  const auto id = STRATA_TRY(id_of(request, "group"));
+  const Role role = parse_role(protocol::name(asked.role)).value_or(Role::viewer);
+  const auto put = STRATA_TRY(context.store.groups().put(project.id, id, role, request.user()));
+  roles_changed(context, put.people);
+  return json_response(net::to_json(put.now));
 }
 
 Result<Response> take_role(const RouteContext& context, const Request& request) {
-  const auto project = context.store.project(request.param("project"));
-  if (!project) return tl::unexpected(project.error());
-  const auto id = id_of(request, "group");
-  if (!id) return tl::unexpected(id.error());
-  const auto people = context.store.groups().take(project->id, *id, request.user());
-  if (!people) return tl::unexpected(people.error());
-  roles_changed(context, *people);
+  const auto project = STRATA_TRY(context.store.project(request.param("project")));
+  const auto id = STRATA_TRY(id_of(request, "group"));
+  const auto people = STRATA_TRY(context.store.groups().take(project.id, id, request.user()));
+  roles_changed(context, people);
   return empty_response(204);
 }
 

@@ -39,7 +39,7 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
   asked.name = request.query_or("name", {});
   asked.project = request.query_or("project", "default");
   if (auto project = context.store.project(asked.project); !project) {
-    Problem problem = project.error();
+    Error problem = project.error();
     problem.field = "project";
     return tl::unexpected(std::move(problem));
   }
@@ -49,7 +49,7 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
   } else if (!unit.empty()) {
     asked.unit = parse_unit(unit);
     if (!asked.unit)
-      return fail(422, "Unknown unit",
+      return fail(ErrorCode::invalid, "Unknown unit",
                   "The unit is mm, cm or m, or `proposed` for what the file lets one guess.",
                   "unit");
   }
@@ -60,20 +60,20 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
   }
   asked.crs = request.query_or("crs", {});
   if (auto text = request.query_or("resolution", {}); !text.empty()) {
-    auto resolution = parse_integer(text, 1, INT32_MAX, "resolution");
-    if (!resolution) return tl::unexpected(resolution.error());
-    asked.resolution = static_cast<int>(*resolution);
+    auto resolution = STRATA_TRY(parse_integer(text, 1, INT32_MAX, "resolution"));
+    asked.resolution = static_cast<int>(resolution);
   }
   if (auto text = request.query_or("weld", {}); !text.empty()) {
     const auto [end, error] =
         std::from_chars(text.data(), text.data() + text.size(), asked.weld_distance);
     if (error != std::errc() || end != text.data() + text.size())
-      return fail(422, "Not a number", "`weld` is a distance in the file's units, such as 0.05.",
-                  "weld");
+      return fail(ErrorCode::invalid, "Not a number",
+                  "`weld` is a distance in the file's units, such as 0.05.", "weld");
   }
   const std::string strict = request.query_or("strict", "false");
   if (strict != "true" && strict != "false")
-    return fail(422, "Neither true nor false", "`strict` is true or false.", "strict");
+    return fail(ErrorCode::invalid, "Neither true nor false", "`strict` is true or false.",
+                "strict");
   asked.strict = strict == "true";
   asked.files.push_back({base_filename(request.query_or("filename", {})), {}});
   return asked;
@@ -81,10 +81,9 @@ Result<jobs::ImportRequest> import_request(const RouteContext& context, const Re
 
 // Before the upload; its name may be in there.
 Result<void> check_import(const RouteContext& context, const Request& request) {
-  auto asked = import_request(context, request);
-  if (!asked) return tl::unexpected(asked.error());
-  if (asked->files[0].filename.empty()) asked->files[0].filename = "named in the body.ply";
-  return jobs::check(*asked);
+  auto asked = STRATA_TRY(import_request(context, request));
+  if (asked.files[0].filename.empty()) asked.files[0].filename = "named in the body.ply";
+  return jobs::check(asked);
 }
 
 // The upload under a name of its own: the request's file goes with the answer, the job needs it
@@ -96,30 +95,28 @@ Result<std::shared_ptr<TemporaryFile>> keep_upload(const Request& request, const
   std::error_code error;
   fs::rename(file, kept, error);
   if (error)
-    return fail(500, "Upload lost", "The uploaded file could not be kept: " + error.message());
+    return fail(ErrorCode::internal, "Upload lost",
+                "The uploaded file could not be kept: " + error.message());
   return std::make_shared<TemporaryFile>(kept);
 }
 
 Result<Response> start_import(const RouteContext& context, JobBook& book, const Request& request) {
-  auto known = book.find(request);
-  if (!known) return tl::unexpected(known.error());
-  if (*known) return std::move(job_response(context, **known).with("Idempotency-Replayed", "true"));
+  auto known = STRATA_TRY(book.find(request));
+  if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
   auto asked = import_request(context, request);
   if (!asked) return tl::unexpected(asked.error());
-  auto uploads = take_upload(request, context.options.upload_dir);
-  if (!uploads) return tl::unexpected(uploads.error());
+  auto uploads = STRATA_TRY(take_upload(request, context.options.upload_dir));
   std::vector<std::shared_ptr<TemporaryFile>> kept;
   const std::string named = asked->files[0].filename;
   asked->files.clear();
-  for (const Upload& upload : *uploads) {
-    auto file = keep_upload(request, upload.file, context.options.upload_dir);
-    if (!file) return tl::unexpected(file.error());
-    kept.push_back(std::move(*file));
+  for (const Upload& upload : uploads) {
+    auto file = STRATA_TRY(keep_upload(request, upload.file, context.options.upload_dir));
+    kept.push_back(std::move(file));
     asked->files.push_back({upload.filename, kept.back()->path()});
   }
   // One file goes by the name that the query gives it, whatever a form calls it.
   if (asked->files.size() == 1 && !named.empty()) asked->files[0].filename = named;
-  if (auto good = jobs::check(*asked); !good) return tl::unexpected(good.error());
+  STRATA_TRY(jobs::check(*asked));
 
   const store::FirstAnswer<Model> answer{
       scoped_key(request),
@@ -127,10 +124,9 @@ Result<Response> start_import(const RouteContext& context, JobBook& book, const 
         return nlohmann::json{{"request", print}, {"model", model.id}};
       },
       request.user()};
-  const auto project = context.store.project(asked->project);
-  if (!project) return tl::unexpected(project.error());
-  auto job = context.jobs.add(
-      project->id,
+  const auto project = STRATA_TRY(context.store.project(asked->project));
+  auto job = STRATA_TRY(context.jobs.add(
+      project.id,
       [&store = context.store, &memory = context.rooms.memory(), asked = *asked,
        kept = std::move(kept), answer](Progress& progress) -> Result<jobs::JobResult> {
         store::FirstAnswer<Model> kept_answer = answer;
@@ -138,23 +134,19 @@ Result<Response> start_import(const RouteContext& context, JobBook& book, const 
         auto model = jobs::import_model(store, asked, progress, kept_answer, &memory);
         if (!model) return tl::unexpected(model.error());
         return model->id;
-      });
-  if (!job) return tl::unexpected(job.error());
-  book.started(request, *job);
-  return job_response(context, *job);
+      }));
+  book.started(request, job);
+  return job_response(context, job);
 }
 
 // The import succeeded. Its job is known where this server did it.
 Result<Response> repeat_import(const RouteContext& context, JobBook& book, const Request& request,
                                const nlohmann::json& kept) {
-  auto known = book.find(request);
-  if (!known) return tl::unexpected(known.error());
-  if (*known) return job_response(context, **known);
-  const auto project = context.store.project(request.query_or("project", "default"));
-  if (!project) return tl::unexpected(project.error());
-  auto job = book.finished(request, project->id, kept.at("model").get<std::int64_t>());
-  if (!job) return tl::unexpected(job.error());
-  return job_response(context, *job);
+  auto known = STRATA_TRY(book.find(request));
+  if (known) return job_response(context, *known);
+  const auto project = STRATA_TRY(context.store.project(request.query_or("project", "default")));
+  auto job = STRATA_TRY(book.finished(request, project.id, kept.at("model").get<std::int64_t>()));
+  return job_response(context, job);
 }
 
 }  // namespace

@@ -8,7 +8,8 @@ Result<jobs::JobStatus> find_job(const RouteContext& context, const Request& req
   auto id = parse_integer(request.param("job"), 1, INT64_MAX, "job");
   auto status = id ? context.jobs.status(*id) : std::nullopt;
   if (!status)
-    return fail(404, "No such job", "There is no job of this id, or it ended long ago.", "job");
+    return fail(ErrorCode::not_found, "No such job",
+                "There is no job of this id, or it ended long ago.", "job");
   return *status;
 }
 
@@ -24,7 +25,7 @@ nlohmann::json job_json(jobs::JobStatus job, const Principal& who) {
     if (job.result) job.result->report = nullptr;
     if (job.problem)
       job.problem =
-          Problem{job.problem->status, job.problem->title, "Curators of the project read why.", {}};
+          Error{job.problem->code, job.problem->title, "Curators of the project read why.", {}};
   }
   return to_json(job);
 }
@@ -40,18 +41,17 @@ void add_job_routes(Router& router, const RouteContext& context) {
       {.method = Method::get,
        .pattern = "/api/v1/jobs",
        .handler = answering([&context](const Request& request) -> Result<Response> {
-         auto page = page_of(request);
-         if (!page) return tl::unexpected(page.error());
+         auto page = STRATA_TRY(page_of(request));
          auto all = context.jobs.all();
          std::erase_if(all, [&](const auto& job) { return !request.principal->sees(job.project); });
          nlohmann::json list = nlohmann::json::array();
          const int total = static_cast<int>(all.size());
-         const auto part = slice_by(*page, all, [](const auto& job) { return NumberKey{-job.id}; });
-         if (!part) return tl::unexpected(part.error());
-         for (std::size_t i = part->begin; i < part->end; ++i)
+         const auto part =
+             STRATA_TRY(slice_by(page, all, [](const auto& job) { return NumberKey{-job.id}; }));
+         for (std::size_t i = part.begin; i < part.end; ++i)
            list.push_back(job_json(all[i], *request.principal));
          Response response = json_response({{"jobs", list}, {"total", total}});
-         add_page_links(response, request, *page, part->last);
+         add_page_links(response, request, page, part.last);
          return response;
        }),
        .role = Role::guest,
@@ -59,35 +59,33 @@ void add_job_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/jobs/{job}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto job = find_job(context, request);
-                if (!job) return tl::unexpected(job.error());
-                return json_response(job_json(*job, *request.principal));
+                auto job = STRATA_TRY(find_job(context, request));
+                return json_response(job_json(job, *request.principal));
               })});
-  router.add(
-      {.method = Method::remove,
-       .pattern = "/api/v1/jobs/{job}",
-       .handler = answering([&context](const Request& request) -> Result<Response> {
-         auto job = find_job(context, request);
-         if (!job) return tl::unexpected(job.error());
-         if (request.role() < Role::curator && !is_own(*job, *request.principal))
-           return fail(403, "Not yours", "Only who started a job and curators cancel it.", "job");
-         if (is_over(*job) || !context.jobs.cancel(job->id))
-           return fail(409, "Job is over", "The job has ended; there is nothing to cancel.", "job");
-         auto now = context.jobs.status(job->id);
-         return json_response(job_json(now.value_or(*job), *request.principal));
-       })});
+  router.add({.method = Method::remove,
+              .pattern = "/api/v1/jobs/{job}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto job = STRATA_TRY(find_job(context, request));
+                if (request.role() < Role::curator && !is_own(job, *request.principal))
+                  return fail(ErrorCode::forbidden, "Not yours",
+                              "Only who started a job and curators cancel it.", "job");
+                if (is_over(job) || !context.jobs.cancel(job.id))
+                  return fail(ErrorCode::conflict, "Job is over",
+                              "The job has ended; there is nothing to cancel.", "job");
+                auto now = context.jobs.status(job.id);
+                return json_response(job_json(now.value_or(job), *request.principal));
+              })});
   router.add({.method = Method::get,
               .pattern = "/api/v1/jobs/{job}/file",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto job = find_job(context, request);
-                if (!job) return tl::unexpected(job.error());
-                if (!is_over(*job) && is_own(*job, *request.principal))
-                  return fail(409, "Not done yet",
+                auto job = STRATA_TRY(find_job(context, request));
+                if (!is_over(job) && is_own(job, *request.principal))
+                  return fail(ErrorCode::conflict, "Not done yet",
                               "The job is still at work: ask again when it is done.", "job");
-                if (!is_own(*job, *request.principal) || !job->result || !job->result->file)
-                  return fail(404, "No such file",
+                if (!is_own(job, *request.principal) || !job.result || !job.result->file)
+                  return fail(ErrorCode::not_found, "No such file",
                               "This job made no file for you, or it is kept no longer.", "job");
-                return file_response(job->result->file);
+                return file_response(job.result->file);
               }),
               // A job makes one file, and its number is never given again.
               .state = [](const Request& request) { return std::optional(request.param("job")); }});

@@ -40,8 +40,7 @@ nlohmann::json to_json(const Kiosk& kiosk) {
 }
 
 Result<Response> list_kiosks(const RouteContext& context, const Request& request) {
-  const auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
+  const auto page = STRATA_TRY(page_of(request));
   const Roles& roles = request.principal->roles;
   std::optional<std::vector<std::int64_t>> projects;
   if (roles.everywhere < Role::curator) {
@@ -49,95 +48,82 @@ Result<Response> list_kiosks(const RouteContext& context, const Request& request
     for (const auto& [project, role] : roles.in_projects)
       if (role >= Role::curator) projects->push_back(project);
   }
-  const auto after = number_after(*page);
-  if (!after) return tl::unexpected(after.error());
-  auto found = context.store.kiosks().all(projects, page->limit + 1, page->offset, *after);
-  if (!found) return tl::unexpected(found.error());
-  const auto last = end_page(found->kiosks, *page,
-                             [](const Kiosk& kiosk) { return ListPlace::array({kiosk.id}); });
+  const auto after = STRATA_TRY(number_after(page));
+  auto found = STRATA_TRY(context.store.kiosks().all(projects, page.limit + 1, page.offset, after));
+  const auto last =
+      end_page(found.kiosks, page, [](const Kiosk& kiosk) { return ListPlace::array({kiosk.id}); });
   nlohmann::json kiosks = nlohmann::json::array();
-  for (const Kiosk& kiosk : found->kiosks) kiosks.push_back(to_json(kiosk));
-  Response response = json_response({{"kiosks", std::move(kiosks)}, {"total", found->total}});
-  add_page_links(response, request, *page, last);
+  for (const Kiosk& kiosk : found.kiosks) kiosks.push_back(to_json(kiosk));
+  Response response = json_response({{"kiosks", std::move(kiosks)}, {"total", found.total}});
+  add_page_links(response, request, page, last);
   return response;
 }
 
 Result<Response> create_kiosk(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::KioskCreate>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  const auto tour = context.store.tours().find(model->id, request.param("tour"));
-  if (!tour) return tl::unexpected(tour.error());
+  const auto asked = STRATA_TRY(body_of<protocol::KioskCreate>(request));
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto tour = STRATA_TRY(context.store.tours().find(model.id, request.param("tour")));
   std::optional<std::chrono::seconds> lifetime;
-  if (asked->days) lifetime = std::chrono::hours(24 * *asked->days);
-  const auto made = context.store.kiosks().create(tour->id, asked->name, request.user(), lifetime);
-  if (!made) return tl::unexpected(made.error());
-  return json_response({{"path", "/kiosk/" + made->secret}, {"kiosk", to_json(made->kiosk)}}, 201)
-      .with("Location", "/api/v1/kiosks/" + std::to_string(made->kiosk.id))
+  if (asked.days) lifetime = std::chrono::hours(24 * *asked.days);
+  const auto made =
+      STRATA_TRY(context.store.kiosks().create(tour.id, asked.name, request.user(), lifetime));
+  return json_response({{"path", "/kiosk/" + made.secret}, {"kiosk", to_json(made.kiosk)}}, 201)
+      .with("Location", "/api/v1/kiosks/" + std::to_string(made.kiosk.id))
       .with("Cache-Control", "no-store");
 }
 
 Result<Response> revoke_kiosk(const RouteContext& context, const Request& request) {
-  const auto id = id_of(request, "kiosk");
-  if (!id) return tl::unexpected(id.error());
-  if (auto done = context.store.kiosks().revoke(*id); !done) return tl::unexpected(done.error());
-  end_kiosks(context, {*id}, "the link was revoked");
+  const auto id = STRATA_TRY(id_of(request, "kiosk"));
+  STRATA_TRY(context.store.kiosks().revoke(id));
+  end_kiosks(context, {id}, "the link was revoked");
   return empty_response(204);
 }
 
 Result<Response> reload_kiosk(const RouteContext& context, const Request& request) {
-  const auto id = id_of(request, "kiosk");
-  if (!id) return tl::unexpected(id.error());
-  const auto kiosk = context.store.kiosks().ask_reload(*id);
-  if (!kiosk) return tl::unexpected(kiosk.error());
-  return json_response(to_json(*kiosk));
+  const auto id = STRATA_TRY(id_of(request, "kiosk"));
+  const auto kiosk = STRATA_TRY(context.store.kiosks().ask_reload(id));
+  return json_response(to_json(kiosk));
 }
 
 // --- from the other side of the link
 
 Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool wants_reload) {
-  const auto tour = context.store.tours().find(kiosk.model_id, std::to_string(kiosk.tour_id));
-  if (!tour) return tl::unexpected(tour.error());
-  auto told = to_json(context, *tour, Role::viewer, {});
-  if (!told) return tl::unexpected(told.error());
+  const auto tour =
+      STRATA_TRY(context.store.tours().find(kiosk.model_id, std::to_string(kiosk.tour_id)));
+  auto told = STRATA_TRY(to_json(context, tour, Role::viewer, {}));
   nlohmann::json json{{"id", kiosk.id},           {"name", kiosk.name},
                       {"project", kiosk.project}, {"model", kiosk.model},
-                      {"tour", std::move(*told)}, {"wants_reload", wants_reload}};
+                      {"tour", std::move(told)},  {"wants_reload", wants_reload}};
   if (kiosk.expires) json["expires"] = utc_text(*kiosk.expires);
   return json_response(json).with("Cache-Control", "no-store");
 }
 
 Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Request& request) {
-  const auto asked = body_of<protocol::KioskLogin>(request);
-  if (!asked) return tl::unexpected(asked.error());
+  const auto asked = STRATA_TRY(body_of<protocol::KioskLogin>(request));
   const std::string address = address_of(request);
-  if (auto free = gate.pass(address, {}); !free) return tl::unexpected(free.error());
-  const auto kiosk = context.store.kiosks().find(asked->link);
-  if (!kiosk) return tl::unexpected(kiosk.error());
-  if (!*kiosk)
-    return fail(401, "Link not valid",
+  STRATA_TRY(gate.pass(address, {}));
+  const auto kiosk = STRATA_TRY(context.store.kiosks().find(asked.link));
+  if (!kiosk)
+    return fail(ErrorCode::unauthenticated, "Link not valid",
                 "This link is unknown, expired or revoked. A curator makes a new one.", "link");
   gate.was_right(address, {});
-  if (auto seen = context.store.kiosks().seen((*kiosk)->id, true); !seen)
-    return tl::unexpected(seen.error());
-  auto response = self(context, **kiosk, false);
+  STRATA_TRY(context.store.kiosks().seen(kiosk->id, true));
+  auto response = self(context, *kiosk, false);
   if (response)
     response->with("Set-Cookie",
-                   Authenticator::set_kiosk_cookie(asked->link, needs_secure_cookie(request)));
+                   Authenticator::set_kiosk_cookie(asked.link, needs_secure_cookie(request)));
   return response;
 }
 
 Result<Response> kiosk_self(const RouteContext& context, const Request& request) {
   if (!request.principal->kiosk)
     return fail(
-        403, "Not a kiosk",
+        ErrorCode::forbidden, "Not a kiosk",
         "This is told to kiosks: with the cookie of one and `as=kiosk`, or its bearer token.");
-  const auto kiosk = context.store.kiosks().kiosk(request.principal->kiosk->id);
-  if (!kiosk) return tl::unexpected(kiosk.error());
+  const auto kiosk = STRATA_TRY(context.store.kiosks().kiosk(request.principal->kiosk->id));
   // That it was there is only remembered: it gets its answer also where nothing can be written.
-  (void)context.store.kiosks().seen(kiosk->id, false);
-  return self(context, *kiosk, kiosk->wants_reload);
+  (void)context.store.kiosks().seen(kiosk.id, false);
+  return self(context, kiosk, kiosk.wants_reload);
 }
 
 }  // namespace

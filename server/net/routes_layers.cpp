@@ -14,21 +14,17 @@ namespace strata::net {
 namespace {
 
 Result<Response> list_layers(const RouteContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  auto layers = context.store.layers(model->id, request.role());
-  if (!layers) return tl::unexpected(layers.error());
+  auto page = STRATA_TRY(page_of(request));
+  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto layers = STRATA_TRY(context.store.layers(model.id, request.role()));
   nlohmann::json list = nlohmann::json::array();
-  const int total = static_cast<int>(layers->size());
-  const auto part = slice_by(*page, *layers, [](const Layer& layer) {
+  const int total = static_cast<int>(layers.size());
+  const auto part = STRATA_TRY(slice_by(page, layers, [](const Layer& layer) {
     return NumberKey{layer.order, layer.id};
-  });
-  if (!part) return tl::unexpected(part.error());
-  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*layers)[i]));
+  }));
+  for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(layers[i]));
   Response response = json_response({{"layers", list}, {"total", total}});
-  add_page_links(response, request, *page, part->last);
+  add_page_links(response, request, page, part.last);
   return response;
 }
 
@@ -67,35 +63,35 @@ int order_at_bottom(const std::vector<Layer>& others) {
 Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model,
                         const std::vector<Layer>& others) {
   if ((asked.compute || asked.expression) && asked.kind != LayerKind::numeric)
-    return fail(422, "Kind not usable", "What is computed is numeric.", "kind");
+    return fail(ErrorCode::invalid, "Kind not usable", "What is computed is numeric.", "kind");
   if (asked.compute && asked.expression)
-    return fail(422, "Two ways to compute", "Give either `compute` or `expression`.", "expression");
+    return fail(ErrorCode::invalid, "Two ways to compute", "Give either `compute` or `expression`.",
+                "expression");
   if (asked.recompute && !asked.expression)
-    return fail(422, "No expression", "`recompute` is for layers with an `expression`.",
-                "recompute");
+    return fail(ErrorCode::invalid, "No expression",
+                "`recompute` is for layers with an `expression`.", "recompute");
   Layer layer;
   layer.model_id = model.id;
   layer.name = asked.name;
-  auto slug = slug_of(asked.slug, asked.name);
-  if (!slug) return tl::unexpected(slug.error());
-  layer.slug = *slug;
+  auto slug = STRATA_TRY(slug_of(asked.slug, asked.name));
+  layer.slug = slug;
   layer.kind = asked.kind;
   layer.type = asked.type.value_or(computes_numbers(asked) ? ValueType::f32 : ValueType::u8);
   const bool is_key =
       layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
   if (layer.kind == LayerKind::database && !is_key)
-    return fail(422, "Type not usable", "A database layer holds keys: its type is u8, u16 or u32.",
-                "type");
+    return fail(ErrorCode::invalid, "Type not usable",
+                "A database layer holds keys: its type is u8, u16 or u32.", "type");
   if ((asked.table || asked.columns) && layer.kind != LayerKind::database)
-    return fail(422, "Table on a numeric layer", "Only database layers have a table.",
-                asked.table ? "table" : "columns");
+    return fail(ErrorCode::invalid, "Table on a numeric layer",
+                "Only database layers have a table.", asked.table ? "table" : "columns");
   if (asked.table && asked.columns)
-    return fail(422, "Table and columns", "Name a table, or give the columns of a new one.",
-                "columns");
+    return fail(ErrorCode::invalid, "Table and columns",
+                "Name a table, or give the columns of a new one.", "columns");
   layer.resolution =
       asked.resolution.value_or(std::max(model.default_resolution, model.atlas.lowest_resolution));
   if (layer.resolution < model.atlas.lowest_resolution)
-    return fail(422, "Resolution too low",
+    return fail(ErrorCode::invalid, "Resolution too low",
                 "Layers of this model have at least " +
                     std::to_string(model.atlas.lowest_resolution) + " texels a side.",
                 "resolution");
@@ -106,15 +102,15 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model,
   const bool is_computed = asked.compute || asked.expression;
   if (is_computed && asked.locked == false)
     return fail(
-        422, "Locked at first",
+        ErrorCode::invalid, "Locked at first",
         "A computed layer is locked when it is made. Unlock it afterwards to edit it by hand.",
         "locked");
   const bool is_condition = asked.expression && !computes_numbers(asked);
-  auto palette = is_condition && !asked.palette
+  auto palette =
+      STRATA_TRY(is_condition && !asked.palette
                      ? Result<Palette>(palette_of_condition(asked.name))
-                     : palette_of(asked.palette, layer.type, layer.kind == LayerKind::database);
-  if (!palette) return tl::unexpected(palette.error());
-  layer.palette = std::move(*palette);
+                     : palette_of(asked.palette, layer.type, layer.kind == LayerKind::database));
+  layer.palette = std::move(palette);
   layer.opacity = asked.opacity;
   // It must not cover what others look at.
   layer.visible = asked.visible.value_or(!is_computed);
@@ -126,45 +122,40 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model,
 }
 
 Result<Response> create_layer(const RouteContext& context, JobBook& book, const Request& request) {
-  auto asked = body_of<protocol::LayerCreate>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  const Model model = (*room)->model();
-  auto layer = new_layer(*asked, model, (*room)->layers());
-  if (!layer) return tl::unexpected(layer.error());
-  if (asked->table) {
-    auto table = table_of_project(context.store, model.project_id, *asked->table, "table");
+  auto asked = STRATA_TRY(body_of<protocol::LayerCreate>(request));
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const Model model = room->model();
+  auto layer = STRATA_TRY(new_layer(asked, model, room->layers()));
+  if (asked.table) {
+    auto table = table_of_project(context.store, model.project_id, *asked.table, "table");
     if (!table) return tl::unexpected(table.error());
-    layer->table = table->id;
-    if (!asked->palette && term_columns(*table)) layer->palette = terms_palette({});  // theirs
+    layer.table = table->id;
+    if (!asked.palette && term_columns(*table)) layer.palette = terms_palette({});  // theirs
   }
   Column name;
   name.name = "Name";
   Result<std::vector<Column>> columns = std::vector{name};
-  if (asked->columns) columns = new_columns(context.store, model.project_id, *asked->columns);
+  if (asked.columns) columns = new_columns(context.store, model.project_id, *asked.columns);
   if (!columns) return tl::unexpected(columns.error());
-  if (asked->compute)
-    return start_computing(context, book, request, *room, *asked, std::move(*layer));
-  if (asked->expression) {
+  if (asked.compute) return start_computing(context, book, request, room, asked, std::move(layer));
+  if (asked.expression) {
     auto formula =
-        read_formula(**room, *asked->expression, is_automatic(asked->recompute), layer->visibility);
+        read_formula(*room, *asked.expression, is_automatic(asked.recompute), layer.visibility);
     if (!formula) return tl::unexpected(formula.error());
-    layer->formula = std::move(*formula);
-    layer->origin = LayerOrigin::expression;
+    layer.formula = std::move(*formula);
+    layer.origin = LayerOrigin::expression;
   }
-  if (auto good = check_shows_nothing(context, *layer, {}); !good)
-    return tl::unexpected(good.error());
+  STRATA_TRY(check_shows_nothing(context, layer, {}));
   const auto answer = [model_slug = model.slug](const Layer& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/models/" + model_slug + "/layers/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  if (layer->formula)
-    return create_formula_layer(context, book, request, *room, std::move(*layer),
-                                asked->palette.has_value(), answer);
-  auto created = (*room)->create_layer(std::move(*layer), first_answer<Layer>(request, answer),
-                                       std::move(*columns));
+  if (layer.formula)
+    return create_formula_layer(context, book, request, room, std::move(layer),
+                                asked.palette.has_value(), answer);
+  auto created = room->create_layer(std::move(layer), first_answer<Layer>(request, answer),
+                                    std::move(*columns));
   if (!created) return tl::unexpected(created.error());
   return answer(*created);
 }
@@ -176,7 +167,8 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& ask
   const bool is_seen_by_more = layer.formula && layer.visibility < before;
   if (!asked.expression && !asked.recompute && !is_seen_by_more) return {};
   if (layer.kind != LayerKind::numeric)
-    return fail(422, "Kind not usable", "What is computed is numeric.", "expression");
+    return fail(ErrorCode::invalid, "Kind not usable", "What is computed is numeric.",
+                "expression");
   if (asked.expression && asked.expression->empty()) {
     if (!layer.formula) return {};
     layer.formula.reset();
@@ -185,8 +177,8 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& ask
     return {};
   }
   if (!asked.expression && !layer.formula)
-    return fail(422, "No expression", "`recompute` is for layers with an `expression`.",
-                "recompute");
+    return fail(ErrorCode::invalid, "No expression",
+                "`recompute` is for layers with an `expression`.", "recompute");
   const bool automatic =
       asked.recompute ? is_automatic(asked.recompute) : layer.formula && layer.formula->automatic;
   auto formula =
@@ -205,91 +197,81 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& ask
 }
 
 Result<Response> compute(const RouteContext& context, const Request& request) {
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  auto layer = context.store.layer((*room)->model().id, request.param("layer"), request.role());
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto layer = context.store.layer(room->model().id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
   const std::string overwrite = request.query_or("overwrite", "false");
   if (overwrite != "true" && overwrite != "false")
-    return fail(422, "Bad value", "`overwrite` is true or false.", "overwrite");
+    return fail(ErrorCode::invalid, "Bad value", "`overwrite` is true or false.", "overwrite");
   if (overwrite == "true" && layer->edited_by_hand && request.role() < Role::curator)
-    return fail(403, "Not allowed", "Only curators have what was edited by hand computed again.",
-                "overwrite");
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "Only curators have what was edited by hand computed again.", "overwrite");
   Progress progress;
   auto computed =
-      compute_layer(context, *room, *layer, request.author(), progress, overwrite == "true");
+      compute_layer(context, room, *layer, request.author(), progress, overwrite == "true");
   if (!computed) return tl::unexpected(computed.error());
   return json_response(to_json(*computed)).with("ETag", etag_of(computed->version));
 }
 
 Result<Response> change_layer(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::LayerPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
+  auto asked = STRATA_TRY(body_of<protocol::LayerPatch>(request));
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
   // As it is stored: what is open may be a moment behind.
-  auto layer = context.store.layer((*room)->model().id, request.param("layer"), request.role());
+  auto layer = context.store.layer(room->model().id, request.param("layer"), request.role());
   if (!layer) return tl::unexpected(layer.error());
-  if (auto fresh = check_if_match(request, layer->version); !fresh)
-    return tl::unexpected(fresh.error());
+  STRATA_TRY(check_if_match(request, layer->version));
   const auto answer = [](const Layer& now) {
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
-  if (asked->type) {
+  if (asked.type) {
     protocol::LayerPatch alone;
-    alone.type = asked->type;
-    if (!(*asked == alone))
-      return fail(422, "Type with other changes",
+    alone.type = asked.type;
+    if (!(asked == alone))
+      return fail(ErrorCode::invalid, "Type with other changes",
                   "Change the type of a layer in a call of its own.", "type");
-    auto widened = (*room)->widen_layer(*layer, *asked->type, first_answer<Layer>(request, answer));
+    auto widened = room->widen_layer(*layer, *asked.type, first_answer<Layer>(request, answer));
     return widened ? Result<Response>(answer(*widened)) : tl::unexpected(widened.error());
   }
-  if (asked->name) layer->name = *asked->name;
-  if (asked->unit) layer->unit = *asked->unit;
-  if (asked->description) layer->description = *asked->description;
-  if (asked->labels) layer->labels = *asked->labels;
-  if (asked->descriptions) layer->descriptions = *asked->descriptions;
-  if (asked->palette) {
-    auto palette = palette_from_json(*asked->palette);
-    if (!palette) return tl::unexpected(palette.error());
-    layer->palette = std::move(*palette);
+  if (asked.name) layer->name = *asked.name;
+  if (asked.unit) layer->unit = *asked.unit;
+  if (asked.description) layer->description = *asked.description;
+  if (asked.labels) layer->labels = *asked.labels;
+  if (asked.descriptions) layer->descriptions = *asked.descriptions;
+  if (asked.palette) {
+    auto palette = STRATA_TRY(palette_from_json(*asked.palette));
+    layer->palette = std::move(palette);
     layer->palette_of_terms = false;
   }
-  if (asked->opacity) layer->opacity = *asked->opacity;
-  if (asked->visible) layer->visible = *asked->visible;
-  if (asked->locked == false && is_as_computed(*layer)) layer->edited_by_hand = true;
-  if (asked->locked) layer->locked = *asked->locked;
-  if (asked->review) layer->review = *asked->review;
+  if (asked.opacity) layer->opacity = *asked.opacity;
+  if (asked.visible) layer->visible = *asked.visible;
+  if (asked.locked == false && is_as_computed(*layer)) layer->edited_by_hand = true;
+  if (asked.locked) layer->locked = *asked.locked;
+  if (asked.review) layer->review = *asked.review;
   const Visibility before = layer->visibility;
-  if (asked->visibility) layer->visibility = *asked->visibility;
-  if (asked->order) layer->order = *asked->order;
+  if (asked.visibility) layer->visibility = *asked.visibility;
+  if (asked.order) layer->order = *asked.order;
   const bool was_painted = !layer->formula;
-  if (auto set = set_formula(**room, *asked, before, *layer); !set)
-    return tl::unexpected(set.error());
+  STRATA_TRY(set_formula(*room, asked, before, *layer));
   if (was_painted && layer->formula) {
     const auto queue = context.store.review_queue(layer->id, {}, 0, 0);
     if (!queue) return tl::unexpected(queue.error());
     if (queue->total > 0)
-      return fail(409, "Edits wait for review",
+      return fail(ErrorCode::conflict, "Edits wait for review",
                   "Accept or reject what waits on this layer before it is computed.", "expression");
   }
-  if (auto good = check_shows_nothing(context, *layer, (*room)->layers()); !good)
-    return tl::unexpected(good.error());
-  auto changed = (*room)->update_layer(std::move(*layer), first_answer<Layer>(request, answer));
+  STRATA_TRY(check_shows_nothing(context, *layer, room->layers()));
+  auto changed = room->update_layer(std::move(*layer), first_answer<Layer>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   tell_threads(context, *changed, before, request.user());
   return answer(*changed);
 }
 
 Result<Response> delete_layer(const RouteContext& context, const Request& request) {
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  auto layer = (*room)->layer(request.param("layer"));
-  if (!layer) return tl::unexpected(layer.error());
-  if (auto fresh = check_if_match(request, layer->version); !fresh)
-    return tl::unexpected(fresh.error());
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto layer = STRATA_TRY(room->layer(request.param("layer")));
+  STRATA_TRY(check_if_match(request, layer.version));
   auto gone =
-      (*room)->bin_layer(layer->id, first_answer<>(request, [] { return empty_response(204); }));
+      room->bin_layer(layer.id, first_answer<>(request, [] { return empty_response(204); }));
   if (!gone) return tl::unexpected(gone.error());
   if (context.options.bin_days == 0) context.bin_keeper.look();
   return empty_response(204);
@@ -322,9 +304,8 @@ void add_layer_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = layers + "/{layer}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto layer = stored_layer(context, request);
-                if (!layer) return tl::unexpected(layer.error());
-                return with_etag(json_response(to_json(*layer)), request, layer->version);
+                auto layer = STRATA_TRY(stored_layer(context, request));
+                return with_etag(json_response(to_json(layer)), request, layer.version);
               })});
   router.add({.method = Method::patch,
               .pattern = layers + "/{layer}",

@@ -56,23 +56,21 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
 Result<Painted> paint_readings(const Request& request, const Target& target) {
   const auto file = MappedFile::open(request.body_file);
   if (!file || file->bytes().empty())
-    return fail(400, "Empty body", "Send the file as the body.", "body");
-  const auto radius_mm = number_of(request, "radius_mm", 1e-6, kLargestLength_mm);
-  if (!radius_mm) return tl::unexpected(radius_mm.error());
-  const auto tolerance_mm = number_of(request, "tolerance_mm", 0, kLargestLength_mm, *radius_mm);
-  if (!tolerance_mm) return tl::unexpected(tolerance_mm.error());
-  const auto readings = query::parse_readings(file->view());
-  if (!readings) return tl::unexpected(readings.error());
+    return fail(ErrorCode::malformed, "Empty body", "Send the file as the body.", "body");
+  const auto radius_mm = STRATA_TRY(number_of(request, "radius_mm", 1e-6, kLargestLength_mm));
+  const auto tolerance_mm =
+      STRATA_TRY(number_of(request, "tolerance_mm", 0, kLargestLength_mm, radius_mm));
+  const auto readings = STRATA_TRY(query::parse_readings(file->view()));
   std::vector<room::Room::PlacedValue> values;
-  for (const query::Reading& reading : *readings) {
+  for (const query::Reading& reading : readings) {
     const auto bits =
         bits_of(target.layer, reading.value, "Line " + std::to_string(reading.line) + ": ");
     if (!bits) return tl::unexpected(bits.error());
     values.push_back({reading.position, *bits, reading.line});
   }
   const Unit unit = target.room->model().unit;
-  auto tiles = target.room->dabs(target.layer, values, in_model_units(*radius_mm, unit),
-                                 in_model_units(*tolerance_mm, unit));
+  auto tiles = target.room->dabs(target.layer, values, in_model_units(radius_mm, unit),
+                                 in_model_units(tolerance_mm, unit));
   if (!tiles) return tl::unexpected(tiles.error());
   return Painted{std::move(*tiles),
                  {{"bytes", request.body_bytes}, {"sha256", sha256_hex(file->view())}}};
@@ -84,29 +82,24 @@ using MakeValues = Result<MapValues> (*)(const Request& request, const MapFiles&
 
 Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeValues make,
                           const Request& request, const Target& target) {
-  const auto axis = axis_of(request);
-  if (!axis) return tl::unexpected(axis.error());
-  auto files = MapFiles::take(request, context.options.upload_dir);
-  if (!files) return tl::unexpected(files.error());
+  const auto axis = STRATA_TRY(axis_of(request));
+  auto files = STRATA_TRY(MapFiles::take(request, context.options.upload_dir));
   MapTarget map_target{*target.room, target.layer};
   if (target.layer.table) {
-    auto page = context.store.records(*target.layer.table, request.role(),
-                                      {{}, {}, {}, store::kMostRecords, 0});
-    if (!page) return tl::unexpected(page.error());
-    for (const Record& record : page->records)
+    auto page = STRATA_TRY(context.store.records(*target.layer.table, request.role(),
+                                                 {{}, {}, {}, store::kMostRecords, 0}));
+    for (const Record& record : page.records)
       map_target.records.insert(static_cast<double>(record.key));
   }
-  auto values = make(request, *files, map_target, budget);
-  if (!values) return tl::unexpected(values.error());
-  auto tiles = target.room->project(target.layer, axis->direction, [&](const glm::dvec3& world) {
-    return values->bits_at(axis->on_map(world));
+  auto values = STRATA_TRY(make(request, files, map_target, budget));
+  auto tiles = target.room->project(target.layer, axis.direction, [&](const glm::dvec3& world) {
+    return values.bits_at(axis.on_map(world));
   });
   if (!tiles) return tl::unexpected(tiles.error());
-  if (values->keys)
-    if (auto extended = extend_legend(request, *target.room, target.layer, *values->keys);
-        !extended)
+  if (values.keys)
+    if (auto extended = extend_legend(request, *target.room, target.layer, *values.keys); !extended)
       return tl::unexpected(extended.error());
-  return Painted{std::move(*tiles), files->record()};
+  return Painted{std::move(*tiles), files.record()};
 }
 
 }  // namespace

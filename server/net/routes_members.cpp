@@ -22,79 +22,66 @@ Result<Project> project_of(const RouteContext& context, const Request& request) 
 }
 
 Result<Response> list_members(const RouteContext& context, const Request& request) {
-  const auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  const auto project = project_of(context, request);
-  if (!project) return tl::unexpected(project.error());
-  const auto members = context.store.members(project->id);
-  if (!members) return tl::unexpected(members.error());
-  const auto with_role = context.store.groups().of_project(project->id);
-  if (!with_role) return tl::unexpected(with_role.error());
+  const auto page = STRATA_TRY(page_of(request));
+  const auto project = STRATA_TRY(project_of(context, request));
+  const auto members = STRATA_TRY(context.store.members(project.id));
+  const auto with_role = STRATA_TRY(context.store.groups().of_project(project.id));
   nlohmann::json list = nlohmann::json::array(), groups = nlohmann::json::array();
-  for (const store::ProjectGroup& group : *with_role) groups.push_back(net::to_json(group));
-  const int total = static_cast<int>(members->size());
+  for (const store::ProjectGroup& group : with_role) groups.push_back(net::to_json(group));
+  const int total = static_cast<int>(members.size());
   const auto part =
-      slice_by_name(*page, *members, context.store, [](const store::Membership& member) {
+      slice_by_name(page, members, context.store, [](const store::Membership& member) {
         return store::Store::NamedId{member.person.name, member.person.id};
       });
   if (!part) return tl::unexpected(part.error());
-  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*members)[i]));
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json(members[i]));
   Response response = json_response(
       {{"members", std::move(list)}, {"groups", std::move(groups)}, {"total", total}});
-  add_page_links(response, request, *page, part->last);
+  add_page_links(response, request, page, part->last);
   return response;
 }
 
 // Those who may not sign in see nothing.
 Result<Response> list_people(const RouteContext& context, const Request& request) {
-  const auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  const auto project = project_of(context, request);
-  if (!project) return tl::unexpected(project.error());
-  const auto roles = context.store.groups().people_with_role(project->id);
-  if (!roles) return tl::unexpected(roles.error());
-  auto people = context.store.people();
-  if (!people) return tl::unexpected(people.error());
-  const std::set<std::int64_t> with_role(roles->begin(), roles->end());
-  std::erase_if(*people, [&](const store::Person& person) {
+  const auto page = STRATA_TRY(page_of(request));
+  const auto project = STRATA_TRY(project_of(context, request));
+  const auto roles = STRATA_TRY(context.store.groups().people_with_role(project.id));
+  auto people = STRATA_TRY(context.store.people());
+  const std::set<std::int64_t> with_role(roles.begin(), roles.end());
+  std::erase_if(people, [&](const store::Person& person) {
     return person.disabled || (person.role < Role::viewer && !with_role.contains(person.id));
   });
-  const auto part = slice_by_name(*page, *people, context.store, [](const store::Person& person) {
-    return store::Store::NamedId{person.name, person.id};
-  });
-  if (!part) return tl::unexpected(part.error());
+  const auto part =
+      STRATA_TRY(slice_by_name(page, people, context.store, [](const store::Person& person) {
+        return store::Store::NamedId{person.name, person.id};
+      }));
   nlohmann::json list = nlohmann::json::array();
-  for (std::size_t i = part->begin; i < part->end; ++i) {
-    const store::Person& person = (*people)[i];
+  for (std::size_t i = part.begin; i < part.end; ++i) {
+    const store::Person& person = people[i];
     list.push_back({{"user", person.name}, {"full_name", person.full_name}});
     add_color(list.back(), person);
   }
-  Response response = json_response({{"people", std::move(list)}, {"total", people->size()}});
-  add_page_links(response, request, *page, part->last);
+  Response response = json_response({{"people", std::move(list)}, {"total", people.size()}});
+  add_page_links(response, request, page, part.last);
   return response;
 }
 
 Result<Response> put_member(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::MemberPut>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto project = project_of(context, request);
-  if (!project) return tl::unexpected(project.error());
-  const Role role = parse_role(protocol::name(asked->role)).value_or(Role::viewer);
+  const auto asked = STRATA_TRY(body_of<protocol::MemberPut>(request));
+  const auto project = STRATA_TRY(project_of(context, request));
+  const Role role = parse_role(protocol::name(asked.role)).value_or(Role::viewer);
   const auto member =
-      context.store.put_member(project->id, request.param("user"), role, request.user());
+      context.store.put_member(project.id, request.param("user"), role, request.user());
   if (!member) return tl::unexpected(member.error());
   roles_changed(context, {member->person.name});
   return json_response(to_json(*member));
 }
 
 Result<Response> remove_member(const RouteContext& context, const Request& request) {
-  const auto project = project_of(context, request);
-  if (!project) return tl::unexpected(project.error());
-  const auto person = context.store.person(request.param("user"));
-  if (!person) return tl::unexpected(person.error());
-  if (auto gone = context.store.remove_member(project->id, person->name, request.user()); !gone)
-    return tl::unexpected(gone.error());
-  roles_changed(context, {person->name});
+  const auto project = STRATA_TRY(project_of(context, request));
+  const auto person = STRATA_TRY(context.store.person(request.param("user")));
+  STRATA_TRY(context.store.remove_member(project.id, person.name, request.user()));
+  roles_changed(context, {person.name});
   return empty_response(204);
 }
 

@@ -7,46 +7,38 @@ namespace strata::net {
 namespace {
 
 Result<std::string> project_slug(const RouteContext& context, std::int64_t project_id) {
-  auto project = context.store.project(std::to_string(project_id));
-  if (!project) return tl::unexpected(project.error());
-  return project->slug;
+  auto project = STRATA_TRY(context.store.project(std::to_string(project_id)));
+  return project.slug;
 }
 
 Result<Response> model_answer(const RouteContext& context, const Request& request,
                               const Model& model) {
-  auto slug = project_slug(context, model.project_id);
-  if (!slug) return tl::unexpected(slug.error());
-  return with_etag(json_response(to_json(model, *slug)), request, model.version);
+  auto slug = STRATA_TRY(project_slug(context, model.project_id));
+  return with_etag(json_response(to_json(model, slug)), request, model.version);
 }
 
 Result<Response> list_models(const RouteContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  auto projects = context.store.projects();
-  if (!projects) return tl::unexpected(projects.error());
+  auto page = STRATA_TRY(page_of(request));
+  auto projects = STRATA_TRY(context.store.projects());
   std::map<std::int64_t, std::string> slugs;
-  for (const auto& project : *projects) slugs[project.id] = project.slug;
+  for (const auto& project : projects) slugs[project.id] = project.slug;
   std::optional<std::int64_t> only;
   if (auto wanted = request.query.find("project"); wanted != request.query.end()) {
-    if (auto seen = check_seen(context, request, wanted->second, "project"); !seen)
-      return tl::unexpected(seen.error());
-    auto project = context.store.project(wanted->second);
-    if (!project) return tl::unexpected(project.error());
-    only = project->id;
+    STRATA_TRY(check_seen(context, request, wanted->second, "project"));
+    auto project = STRATA_TRY(context.store.project(wanted->second));
+    only = project.id;
   }
-  auto models = context.store.models(only);
-  if (!models) return tl::unexpected(models.error());
-  std::erase_if(*models,
+  auto models = STRATA_TRY(context.store.models(only));
+  std::erase_if(models,
                 [&](const Model& model) { return !request.principal->sees(model.project_id); });
   nlohmann::json list = nlohmann::json::array();
-  const int total = static_cast<int>(models->size());
-  const auto part =
-      slice_by(*page, *models, [](const Model& model) { return NumberKey{model.id}; });
+  const int total = static_cast<int>(models.size());
+  const auto part = slice_by(page, models, [](const Model& model) { return NumberKey{model.id}; });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i)
-    list.push_back(to_json((*models)[i], slugs[(*models)[i].project_id]));
+    list.push_back(to_json(models[i], slugs[models[i].project_id]));
   Response response = json_response({{"models", list}, {"total", total}});
-  add_page_links(response, request, *page, part->last);
+  add_page_links(response, request, page, part->last);
   return response;
 }
 
@@ -62,7 +54,7 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
   if (patch.crs) model.crs = *patch.crs;
   if (patch.default_resolution) {
     if (*patch.default_resolution < model.atlas.lowest_resolution)
-      return fail(422, "Resolution too low",
+      return fail(ErrorCode::invalid, "Resolution too low",
                   "Layers of this model have at least " +
                       std::to_string(model.atlas.lowest_resolution) + " texels a side.",
                   "default_resolution");
@@ -86,31 +78,27 @@ Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
 }
 
 Result<Response> change_model(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::ModelPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
+  auto asked = STRATA_TRY(body_of<protocol::ModelPatch>(request));
   // Through the room: those who look at the model are told.
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  Model model = (*room)->model();
-  if (auto fresh = check_if_match(request, model.version); !fresh)
-    return tl::unexpected(fresh.error());
-  if (auto fits = apply_patch(*asked, model); !fits) return tl::unexpected(fits.error());
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  Model model = room->model();
+  STRATA_TRY(check_if_match(request, model.version));
+  STRATA_TRY(apply_patch(asked, model));
   auto slug = project_slug(context, model.project_id);
   if (!slug) return tl::unexpected(slug.error());
   const auto answer = [slug = *slug](const Model& now) {
     return json_response(to_json(now, slug)).with("ETag", etag_of(now.version));
   };
-  auto changed = (*room)->update_model(std::move(model), first_answer<Model>(request, answer));
+  auto changed = room->update_model(std::move(model), first_answer<Model>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   return answer(*changed);
 }
 
 Result<Response> source(const RouteContext& context, const Request& request) {
-  auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  if (auto may = check_source_download(request, *model); !may) return tl::unexpected(may.error());
+  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  STRATA_TRY(check_source_download(request, model));
   const std::string& wanted = request.param("name");
-  for (const auto& file : model->source_files) {
+  for (const auto& file : model.source_files) {
     if (file.name != wanted) continue;
     const std::string etag = "\"" + file.sha256 + "\"";
     if (names_tag(request.header("if-none-match"), etag))
@@ -119,12 +107,12 @@ Result<Response> source(const RouteContext& context, const Request& request) {
     response.with("Content-Type", "application/octet-stream").with("ETag", etag);
     name_download(response, file.name);
     response.stream = Response::Stream{
-        file.bytes, [&store = context.store, id = model->id, wanted](const Response::Sink& sink) {
+        file.bytes, [&store = context.store, id = model.id, wanted](const Response::Sink& sink) {
           return store.read_source(id, wanted, sink).has_value();
         }};
     return response;
   }
-  return fail(404, "No such file",
+  return fail(ErrorCode::not_found, "No such file",
               "The model was not made from a file of this name; see `source_files`.", "name");
 }
 
@@ -140,9 +128,8 @@ void add_model_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/models/{model}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto model = context.store.model(request.param("model"));
-                if (!model) return tl::unexpected(model.error());
-                return model_answer(context, request, *model);
+                auto model = STRATA_TRY(context.store.model(request.param("model")));
+                return model_answer(context, request, model);
               })});
   router.add({.method = Method::patch,
               .pattern = "/api/v1/models/{model}",
@@ -156,14 +143,11 @@ void add_model_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::remove,
               .pattern = "/api/v1/models/{model}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto model = context.store.model(request.param("model"));
-                if (!model) return tl::unexpected(model.error());
-                if (auto fresh = check_if_match(request, model->version); !fresh)
-                  return tl::unexpected(fresh.error());
-                auto gone = context.store.bin().put_model(
-                    model->id, first_answer<>(request, [] { return empty_response(204); }));
-                if (!gone) return tl::unexpected(gone.error());
-                context.rooms.forget(model->id);
+                auto model = STRATA_TRY(context.store.model(request.param("model")));
+                STRATA_TRY(check_if_match(request, model.version));
+                STRATA_TRY(context.store.bin().put_model(
+                    model.id, first_answer<>(request, [] { return empty_response(204); })));
+                context.rooms.forget(model.id);
                 if (context.options.bin_days == 0) context.bin_keeper.look();
                 return empty_response(204);
               }),

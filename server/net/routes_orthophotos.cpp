@@ -18,19 +18,19 @@ struct Wish {
 };
 
 Result<Wish> wish_of(const Request& request) {
-  const auto axis = axis_of(request);
-  if (!axis) return tl::unexpected(axis.error());
-  Wish wish{{}, *axis, 0};
+  const auto axis = STRATA_TRY(axis_of(request));
+  Wish wish{{}, axis, 0};
   wish.look.name = request.query_or("name", {});
   if (wish.look.name.empty() || wish.look.name.size() > 200)
-    return fail(422, "Name missing", "A look has a name of 1 to 200 bytes.", "name");
+    return fail(ErrorCode::invalid, "Name missing", "A look has a name of 1 to 200 bytes.", "name");
   wish.look.description = request.query_or("description", {});
   if (const std::string text = request.query_or("resolution", {}); !text.empty()) {
-    const auto resolution = parse_integer(text, 1, jobs::kLargestOrthophotoLook, "resolution");
-    if (!resolution) return tl::unexpected(resolution.error());
-    wish.resolution = static_cast<int>(*resolution);
+    const auto resolution =
+        STRATA_TRY(parse_integer(text, 1, jobs::kLargestOrthophotoLook, "resolution"));
+    wish.resolution = static_cast<int>(resolution);
     if (!std::has_single_bit(static_cast<unsigned>(wish.resolution)))
-      return fail(422, "Resolution not usable", "`resolution` is a power of two.", "resolution");
+      return fail(ErrorCode::invalid, "Resolution not usable", "`resolution` is a power of two.",
+                  "resolution");
   }
   return wish;
 }
@@ -56,13 +56,12 @@ Result<Look> bake(room::Room& room, const Wish& wish, const MapPicture& map,
   if (!tiles) return tl::unexpected(tiles.error());
   if (tiles->empty())
     return fail(
-        422, "Beside the model",
+        ErrorCode::invalid, "Beside the model",
         "Nothing of the model lies under the picture. Check its place, the direction and the unit.",
         "world");
   progress.report(0.4, "Painting the look");
-  const auto map_of_surface = room.surface_map(wish.resolution);
-  if (!map_of_surface) return tl::unexpected(map_of_surface.error());
-  const Picture picture = jobs::orthophoto_look(*tiles, **map_of_surface);
+  const auto map_of_surface = STRATA_TRY(room.surface_map(wish.resolution));
+  const Picture picture = jobs::orthophoto_look(*tiles, *map_of_surface);
   if (progress.cancelled()) return cancelled_problem();
   progress.report(0.6, "Packing the look");
   const auto png = encode_png(picture.rgba, picture.width, picture.height);
@@ -80,22 +79,20 @@ Result<Look> bake(room::Room& room, const Wish& wish, const MapPicture& map,
 
 Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, ByteBudget& budget,
                                   const Request& request) {
-  auto known = book.find(request);
-  if (!known) return tl::unexpected(known.error());
-  if (*known) return std::move(job_response(context, **known).with("Idempotency-Replayed", "true"));
+  auto known = STRATA_TRY(book.find(request));
+  if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
   auto wish = wish_of(request);
   if (!wish) return tl::unexpected(wish.error());
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
   const Model model = (*room)->model();
   if (wish->resolution != 0 && wish->resolution < model.atlas.lowest_resolution)
-    return fail(422, "Resolution too low",
+    return fail(ErrorCode::invalid, "Resolution too low",
                 "Pictures of this model have at least " +
                     std::to_string(model.atlas.lowest_resolution) + " texels a side.",
                 "resolution");
-  const auto files = MapFiles::take(request, context.options.upload_dir);
-  if (!files) return tl::unexpected(files.error());
-  auto map = map_picture(request, *files, model, budget);
+  const auto files = STRATA_TRY(MapFiles::take(request, context.options.upload_dir));
+  auto map = map_picture(request, files, model, budget);
   if (!map) return tl::unexpected(map.error());
   if (wish->resolution == 0) wish->resolution = jobs::orthophoto_resolution(model, map->world);
 
@@ -112,10 +109,9 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
           Progress& progress) -> Result<jobs::JobResult> {
         store::FirstAnswer<Look> kept = answer;
         kept.job = progress.job();
-        auto look = bake(*room, wish, *map, kept, progress);
-        if (!look) return tl::unexpected(look.error());
-        jobs::JobResult result(look->model_id);
-        result.look = look->id;
+        auto look = STRATA_TRY(bake(*room, wish, *map, kept, progress));
+        jobs::JobResult result(look.model_id);
+        result.look = look.id;
         return result;
       },
       {}, jobs::JobKind::look);
@@ -126,16 +122,13 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
 
 Result<Response> repeat_orthophoto(const RouteContext& context, JobBook& book,
                                    const Request& request, const nlohmann::json& kept) {
-  auto known = book.find(request);
-  if (!known) return tl::unexpected(known.error());
-  if (*known) return job_response(context, **known);
+  auto known = STRATA_TRY(book.find(request));
+  if (known) return job_response(context, *known);
   jobs::JobResult result(kept.at("model").get<std::int64_t>());
   result.look = kept.at("look").get<std::int64_t>();
-  const auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  auto job = book.finished(request, model->project_id, std::move(result));
-  if (!job) return tl::unexpected(job.error());
-  return job_response(context, *job);
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
+  return job_response(context, job);
 }
 
 }  // namespace

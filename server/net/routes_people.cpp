@@ -27,19 +27,16 @@ nlohmann::json to_json(const Person& person) {
 }
 
 Result<Response> list_people(const RouteContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  auto people = context.store.people();
-  if (!people) return tl::unexpected(people.error());
+  auto page = STRATA_TRY(page_of(request));
+  auto people = STRATA_TRY(context.store.people());
   nlohmann::json list = nlohmann::json::array();
-  const int total = static_cast<int>(people->size());
-  const auto part = slice_by_name(*page, *people, context.store, [](const Person& person) {
+  const int total = static_cast<int>(people.size());
+  const auto part = STRATA_TRY(slice_by_name(page, people, context.store, [](const Person& person) {
     return store::Store::NamedId{person.name, person.id};
-  });
-  if (!part) return tl::unexpected(part.error());
-  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*people)[i]));
+  }));
+  for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(people[i]));
   Response response = json_response({{"users", std::move(list)}, {"total", total}});
-  add_page_links(response, request, *page, part->last);
+  add_page_links(response, request, page, part.last);
   return response;
 }
 
@@ -47,9 +44,11 @@ Result<Role> usable_role(const Request& request, std::optional<protocol::Role> a
                          Role otherwise) {
   const Role role = asked ? static_cast<Role>(static_cast<int>(*asked)) : otherwise;
   if (role == Role::owner)
-    return fail(422, "One owner", "A server has one owner. Make the person administrator.", "role");
+    return fail(ErrorCode::invalid, "One owner",
+                "A server has one owner. Make the person administrator.", "role");
   if (role > request.principal->role)
-    return fail(403, "Not allowed", "Nobody gives a role above their own.", "role");
+    return fail(ErrorCode::forbidden, "Not allowed", "Nobody gives a role above their own.",
+                "role");
   return role;
 }
 
@@ -66,104 +65,88 @@ Result<Response> with_invitation(const RouteContext& context, const Person& pers
 }
 
 Result<Response> invite(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::PersonCreate>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto role = usable_role(request, asked->role, Role::viewer);
-  if (!role) return tl::unexpected(role.error());
-  const auto person = context.store.create_person(
-      asked->user, asked->full_name.value_or(""), *role,
-      asked->groups.value_or(std::vector<std::int64_t>()), request.user());
-  if (!person) return tl::unexpected(person.error());
-  auto response = with_invitation(context, *person, 201);
-  if (response) response->with("Location", "/api/v1/users/" + percent_encode(person->name));
+  const auto asked = STRATA_TRY(body_of<protocol::PersonCreate>(request));
+  const auto role = STRATA_TRY(usable_role(request, asked.role, Role::viewer));
+  const auto person = STRATA_TRY(context.store.create_person(
+      asked.user, asked.full_name.value_or(""), role,
+      asked.groups.value_or(std::vector<std::int64_t>()), request.user()));
+  auto response = with_invitation(context, person, 201);
+  if (response) response->with("Location", "/api/v1/users/" + percent_encode(person.name));
   return response;
 }
 
 // Whom the caller may change: not themselves, so that no server is left without who runs it, and
 // not the owner.
 Result<Person> somebody_else(const RouteContext& context, const Request& request) {
-  auto person = context.store.person(request.param("user"));
-  if (!person) return person;
-  if (person->name == request.user())
-    return fail(409, "That is you",
+  auto person = STRATA_TRY(context.store.person(request.param("user")));
+  if (person.name == request.user())
+    return fail(ErrorCode::conflict, "That is you",
                 "Nobody changes their own account here. Ask another administrator.");
-  if (person->role == Role::owner)
-    return fail(409, "The owner", "The owner's account is changed by nobody else.");
+  if (person.role == Role::owner)
+    return fail(ErrorCode::conflict, "The owner", "The owner's account is changed by nobody else.");
   // Otherwise they could let themselves in as one another.
-  if (person->role == Role::administrator && request.principal->role < Role::owner)
-    return fail(403, "Not allowed", "Only the owner changes accounts of administrators.");
+  if (person.role == Role::administrator && request.principal->role < Role::owner)
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "Only the owner changes accounts of administrators.");
   return person;
 }
 
 Result<Response> change_person(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::PersonPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto person = somebody_else(context, request);
-  if (!person) return tl::unexpected(person.error());
-  const auto role = usable_role(request, asked->role, person->role);
-  if (!role) return tl::unexpected(role.error());
-  const store::PersonChange change{
-      asked->full_name, asked->role ? std::optional(*role) : std::nullopt, asked->disabled};
-  const auto changed = context.store.change_person(person->id, change);
-  if (!changed) return tl::unexpected(changed.error());
+  const auto asked = STRATA_TRY(body_of<protocol::PersonPatch>(request));
+  const auto person = STRATA_TRY(somebody_else(context, request));
+  const auto role = STRATA_TRY(usable_role(request, asked.role, person.role));
+  const store::PersonChange change{asked.full_name, asked.role ? std::optional(role) : std::nullopt,
+                                   asked.disabled};
+  const auto changed = STRATA_TRY(context.store.change_person(person.id, change));
   context.auth.forget();
-  if (changed->role != person->role || changed->disabled != person->disabled)
-    context.live_sockets.close_user(changed->name, kClosePolicy, "your account was changed");
-  return json_response(to_json(*changed));
+  if (changed.role != person.role || changed.disabled != person.disabled)
+    context.live_sockets.close_user(changed.name, kClosePolicy, "your account was changed");
+  return json_response(to_json(changed));
 }
 
 Result<Response> delete_person(const RouteContext& context, const Request& request) {
-  const auto person = somebody_else(context, request);
-  if (!person) return tl::unexpected(person.error());
+  const auto person = STRATA_TRY(somebody_else(context, request));
   // Out first, so that nothing more is written under the name.
   const auto out =
-      context.store.change_person(person->id, {.full_name = {}, .role = {}, .disabled = true});
+      context.store.change_person(person.id, {.full_name = {}, .role = {}, .disabled = true});
   if (!out) return tl::unexpected(out.error());
   context.auth.forget();
-  context.live_sockets.close_user(person->name, kClosePolicy, "your account was deleted");
+  context.live_sockets.close_user(person.name, kClosePolicy, "your account was deleted");
   // What they drew last may be on its way to the journal still.
-  if (auto settled = context.rooms.settle(); !settled) return tl::unexpected(settled.error());
-  if (auto done = context.store.delete_person(person->name); !done)
-    return tl::unexpected(done.error());
+  STRATA_TRY(context.rooms.settle());
+  STRATA_TRY(context.store.delete_person(person.name));
   return empty_response(204);
 }
 
 // --- from the other side of the link
 
 Result<Person> invited_by(const RouteContext& context, const std::string& invitation) {
-  const auto principal = context.store.find_token(invitation);
-  if (!principal) return tl::unexpected(principal.error());
-  if (!*principal || (*principal)->kind != TokenKind::invitation)
-    return fail(401, "Link not valid",
+  const auto principal = STRATA_TRY(context.store.find_token(invitation));
+  if (!principal || principal->kind != TokenKind::invitation)
+    return fail(ErrorCode::unauthenticated, "Link not valid",
                 "This invitation was used, or is too old. Ask for a new one.", "invitation");
-  return context.store.person((*principal)->user);
+  return context.store.person(principal->user);
 }
 
 Result<Response> show_invitation(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::InvitationShow>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto person = invited_by(context, asked->invitation);
-  if (!person) return tl::unexpected(person.error());
-  return json_response(to_json(*person)).with("Cache-Control", "no-store");
+  const auto asked = STRATA_TRY(body_of<protocol::InvitationShow>(request));
+  const auto person = STRATA_TRY(invited_by(context, asked.invitation));
+  return json_response(to_json(person)).with("Cache-Control", "no-store");
 }
 
 Result<Response> accept_invitation(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::InvitationAccept>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto person = invited_by(context, asked->invitation);
-  if (!person) return tl::unexpected(person.error());
-  if (auto good = store::check_password(asked->password, person->name, "password"); !good)
-    return tl::unexpected(good.error());
-  const auto hash = store::hash_password(asked->password);
-  if (!hash) return tl::unexpected(hash.error());
-  const auto session = context.store.accept_invitation(asked->invitation, *hash, asked->full_name,
-                                                       kSessionLifetime, agent_of(request));
-  if (!session) return tl::unexpected(session.error());
-  if (!*session)
-    return fail(401, "Link not valid", "This invitation was used meanwhile.", "invitation");
+  const auto asked = STRATA_TRY(body_of<protocol::InvitationAccept>(request));
+  const auto person = STRATA_TRY(invited_by(context, asked.invitation));
+  STRATA_TRY(store::check_password(asked.password, person.name, "password"));
+  const auto hash = STRATA_TRY(store::hash_password(asked.password));
+  const auto session = STRATA_TRY(context.store.accept_invitation(
+      asked.invitation, hash, asked.full_name, kSessionLifetime, agent_of(request)));
+  if (!session)
+    return fail(ErrorCode::unauthenticated, "Link not valid", "This invitation was used meanwhile.",
+                "invitation");
   context.auth.forget();
-  context.live_sockets.close_user(person->name, kClosePolicy, "the password was changed");
-  return signed_in(context, request, **session);
+  context.live_sockets.close_user(person.name, kClosePolicy, "the password was changed");
+  return signed_in(context, request, *session);
 }
 
 }  // namespace
@@ -190,9 +173,8 @@ void add_people_routes(Router& router, const RouteContext& context) {
   add(
       Method::get, "/api/v1/users/{user}",
       [](const RouteContext& of, const Request& request) -> Result<Response> {
-        const auto person = of.store.person(request.param("user"));
-        if (!person) return tl::unexpected(person.error());
-        return json_response(to_json(*person));
+        const auto person = STRATA_TRY(of.store.person(request.param("user")));
+        return json_response(to_json(person));
       },
       Role::administrator);
   add(Method::patch, "/api/v1/users/{user}", change_person, Role::administrator);
@@ -200,9 +182,8 @@ void add_people_routes(Router& router, const RouteContext& context) {
   add(
       Method::post, "/api/v1/users/{user}/invite",
       [](const RouteContext& of, const Request& request) -> Result<Response> {
-        const auto person = somebody_else(of, request);
-        if (!person) return tl::unexpected(person.error());
-        return with_invitation(of, *person, 200);
+        const auto person = STRATA_TRY(somebody_else(of, request));
+        return with_invitation(of, person, 200);
       },
       Role::administrator);
   add(Method::post, "/api/v1/invitations/show", show_invitation, std::nullopt);

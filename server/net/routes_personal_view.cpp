@@ -6,46 +6,39 @@ namespace strata::net {
 
 Result<nlohmann::json> personal_view(store::Store& store, const std::string& user, Role role,
                                      const room::Room& room) {
-  auto layers = store.personal_view(user, room.model().id);
-  if (!layers) return tl::unexpected(layers.error());
-  leave_out_unseen(store, role, room, *layers);
-  return nlohmann::json{{"layers", std::move(*layers)}};
+  auto layers = STRATA_TRY(store.personal_view(user, room.model().id));
+  leave_out_unseen(store, role, room, layers);
+  return nlohmann::json{{"layers", std::move(layers)}};
 }
 
 namespace {
 
 Result<Response> get_view(const RouteContext& context, const Request& request) {
-  const auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  auto view = personal_view(context.store, request.user(), request.role(), **room);
-  if (!view) return tl::unexpected(view.error());
-  return json_response(std::move(*view)).with("Cache-Control", "no-store");
+  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto view = STRATA_TRY(personal_view(context.store, request.user(), request.role(), *room));
+  return json_response(std::move(view)).with("Cache-Control", "no-store");
 }
 
 Result<Response> put_view(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::PersonalView>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  for (std::size_t i = 0; i < asked->layers.size(); ++i)
-    if (asked->layers[i].highlight)
-      return fail(422, "Not kept",
+  const auto asked = STRATA_TRY(body_of<protocol::PersonalView>(request));
+  for (std::size_t i = 0; i < asked.layers.size(); ++i)
+    if (asked.layers[i].highlight)
+      return fail(ErrorCode::invalid, "Not kept",
                   "Records that stand out belong to a named view; here they are not kept.",
                   "layers[" + std::to_string(i) + "].highlight");
-  const auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  const auto settings = view_settings(**room, asked->layers, {}, {});
-  if (!settings) return tl::unexpected(settings.error());
-  if (auto kept = context.store.keep_personal_view(request.user(), (*room)->model().id,
-                                                   kept_layers(asked->layers, *settings));
+  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto settings = STRATA_TRY(view_settings(*room, asked.layers, {}, {}));
+  if (auto kept = context.store.keep_personal_view(request.user(), room->model().id,
+                                                   kept_layers(asked.layers, settings));
       !kept)
     return tl::unexpected(kept.error());
   return get_view(context, request);
 }
 
 Result<Response> delete_view(const RouteContext& context, const Request& request) {
-  const auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
   if (auto gone =
-          context.store.keep_personal_view(request.user(), model->id, nlohmann::json::array());
+          context.store.keep_personal_view(request.user(), model.id, nlohmann::json::array());
       !gone)
     return tl::unexpected(gone.error());
   return empty_response(204);

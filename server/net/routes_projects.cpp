@@ -11,49 +11,43 @@ Result<std::map<std::int64_t, nlohmann::json>> groups_that_give(const RouteConte
                                                                 const Principal& who) {
   std::map<std::int64_t, nlohmann::json> groups;
   if (who.roles.in_projects.empty()) return groups;
-  const auto given = context.store.groups().roles_of(who.user);
-  if (!given) return tl::unexpected(given.error());
-  for (const store::GivenRole& role : *given)
+  const auto given = STRATA_TRY(context.store.groups().roles_of(who.user));
+  for (const store::GivenRole& role : given)
     if (role.role > who.roles.everywhere && role.role == who.roles.in(role.project_id))
       groups[role.project_id].push_back(role.group);
   return groups;
 }
 
 Result<Response> list_projects(const RouteContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  auto projects = context.store.projects();
-  if (!projects) return tl::unexpected(projects.error());
-  std::erase_if(*projects,
+  auto page = STRATA_TRY(page_of(request));
+  auto projects = STRATA_TRY(context.store.projects());
+  std::erase_if(projects,
                 [&](const Project& project) { return !request.principal->sees(project.id); });
-  const auto groups = groups_that_give(context, *request.principal);
-  if (!groups) return tl::unexpected(groups.error());
+  const auto groups = STRATA_TRY(groups_that_give(context, *request.principal));
   nlohmann::json list = nlohmann::json::array();
-  const int total = static_cast<int>(projects->size());
+  const int total = static_cast<int>(projects.size());
   const auto part =
-      slice_by(*page, *projects, [](const Project& project) { return NumberKey{project.id}; });
+      slice_by(page, projects, [](const Project& project) { return NumberKey{project.id}; });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i) {
-    const Project& project = (*projects)[i];
+    const Project& project = projects[i];
     list.push_back(to_json(project));
     list.back()["role"] = std::string(name(request.principal->roles.in(project.id)));
-    if (const auto by = groups->find(project.id); by != groups->end())
+    if (const auto by = groups.find(project.id); by != groups.end())
       list.back()["groups"] = by->second;
   }
   Response response = json_response({{"projects", list}, {"total", total}});
-  add_page_links(response, request, *page, part->last);
+  add_page_links(response, request, page, part->last);
   return response;
 }
 
 Result<Response> create_project(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::ProjectCreate>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto slug = slug_of(asked->slug, asked->name);
-  if (!slug) return tl::unexpected(slug.error());
+  auto asked = STRATA_TRY(body_of<protocol::ProjectCreate>(request));
+  auto slug = STRATA_TRY(slug_of(asked.slug, asked.name));
   Project project;
-  project.name = asked->name;
-  project.slug = *slug;
-  project.description = asked->description;
+  project.name = asked.name;
+  project.slug = slug;
+  project.description = asked.description;
   const auto answer = [](const Project& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/projects/" + made.slug)
@@ -66,24 +60,21 @@ Result<Response> create_project(const RouteContext& context, const Request& requ
 }
 
 Result<Response> change_project(const RouteContext& context, const Request& request) {
-  auto project = context.store.project(request.param("project"));
-  if (!project) return tl::unexpected(project.error());
-  if (auto fresh = check_if_match(request, project->version); !fresh)
-    return tl::unexpected(fresh.error());
-  auto asked = body_of<protocol::ProjectPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
+  auto project = STRATA_TRY(context.store.project(request.param("project")));
+  STRATA_TRY(check_if_match(request, project.version));
+  auto asked = STRATA_TRY(body_of<protocol::ProjectPatch>(request));
   // Curators say how work goes on in their project, not what it is called.
-  if ((asked->name || asked->description) && request.role() < Role::administrator)
-    return fail(403, "Not allowed", "Administrators name and describe projects.",
-                asked->name ? "name" : "description");
-  if (asked->require_if_match) project->require_if_match = *asked->require_if_match;
-  if (asked->name) project->name = *asked->name;
-  if (asked->description) project->description = *asked->description;
+  if ((asked.name || asked.description) && request.role() < Role::administrator)
+    return fail(ErrorCode::forbidden, "Not allowed", "Administrators name and describe projects.",
+                asked.name ? "name" : "description");
+  if (asked.require_if_match) project.require_if_match = *asked.require_if_match;
+  if (asked.name) project.name = *asked.name;
+  if (asked.description) project.description = *asked.description;
   const auto answer = [](const Project& now) {
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
   auto changed =
-      context.store.update_project(std::move(*project), first_answer<Project>(request, answer));
+      context.store.update_project(std::move(project), first_answer<Project>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   return answer(*changed);
 }
@@ -108,9 +99,8 @@ void add_project_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = "/api/v1/projects/{project}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto project = context.store.project(request.param("project"));
-                if (!project) return tl::unexpected(project.error());
-                return with_etag(json_response(to_json(*project)), request, project->version);
+                auto project = STRATA_TRY(context.store.project(request.param("project")));
+                return with_etag(json_response(to_json(project)), request, project.version);
               })});
   router.add({.method = Method::patch,
               .pattern = "/api/v1/projects/{project}",
@@ -124,13 +114,10 @@ void add_project_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::remove,
               .pattern = "/api/v1/projects/{project}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto project = context.store.project(request.param("project"));
-                if (!project) return tl::unexpected(project.error());
-                if (auto fresh = check_if_match(request, project->version); !fresh)
-                  return tl::unexpected(fresh.error());
-                auto gone = context.store.delete_project(
-                    project->id, first_answer<>(request, [] { return empty_response(204); }));
-                if (!gone) return tl::unexpected(gone.error());
+                auto project = STRATA_TRY(context.store.project(request.param("project")));
+                STRATA_TRY(check_if_match(request, project.version));
+                STRATA_TRY(context.store.delete_project(
+                    project.id, first_answer<>(request, [] { return empty_response(204); })));
                 return empty_response(204);
               }),
               .role = Role::administrator,

@@ -44,13 +44,12 @@ Result<OfMarks> marks_of(const RouteContext& context, const Table& table, Role s
   if (std::ranges::none_of(table.columns,
                            [](const Column& column) { return holds_marks(column.kind); }))
     return OfMarks{};
-  const auto page = context.store.records(table.id, seen_by, query);
-  if (!page) return tl::unexpected(page.error());
+  const auto page = STRATA_TRY(context.store.records(table.id, seen_by, query));
   const auto measures =
-      RecordMeasures::of_place(context, {page->table, model, {}}, page->table.columns);
+      RecordMeasures::of_place(context, {page.table, model, {}}, page.table.columns);
   if (!measures) return tl::unexpected(measures.error());
   OfMarks marks{measures->names(), {}};
-  for (const Record& record : page->records) {
+  for (const Record& record : page.records) {
     auto values = measures->of(record);
     if (std::ranges::any_of(values, [](double value) { return value > 0; }))
       marks.of_key[record.key] = std::move(values);
@@ -158,49 +157,44 @@ Result<Response> quantity_sheet(const RouteContext& context, Sheet sheet, SheetF
 }
 
 Result<Response> layer_quantities(const RouteContext& context, const Request& request) {
-  const auto format = sheet_format(request);
-  if (!format) return tl::unexpected(format.error());
-  const auto separator = csv_separator(request);
-  if (!separator) return tl::unexpected(separator.error());
-  const auto language = asked_language(request);
-  if (!language) return tl::unexpected(language.error());
-  const auto asked = LayerQuery::from(context, request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto all = asked->room->quantities(asked->layer.slug, asked->at);
+  const auto format = STRATA_TRY(sheet_format(request));
+  const auto separator = STRATA_TRY(csv_separator(request));
+  const auto language = STRATA_TRY(asked_language(request));
+  const auto asked = STRATA_TRY(LayerQuery::from(context, request));
+  auto all = asked.room->quantities(asked.layer.slug, asked.at);
   if (!all) return tl::unexpected(all.error());
   Names names;
   OfMarks marks;
-  if (asked->layer.table) {
+  if (asked.layer.table) {
     std::optional<std::int64_t> records_at;  // as they were when that edit was made
-    if (asked->at) {
+    if (asked.at) {
       auto found =
-          context.store.table_sequence_when(*asked->layer.table, asked->layer.model_id, *asked->at);
+          context.store.table_sequence_when(*asked.layer.table, asked.layer.model_id, *asked.at);
       if (!found) return tl::unexpected(found.error());
       records_at = *found;
     }
-    const auto table = context.store.table(std::to_string(*asked->layer.table), request.role());
+    const auto table = context.store.table(std::to_string(*asked.layer.table), request.role());
     if (!table) return tl::unexpected(table.error());
-    auto marked = marks_of(context, *table, request.role(), asked->room->model(), records_at);
+    auto marked = marks_of(context, *table, request.role(), asked.room->model(), records_at);
     if (!marked) return tl::unexpected(marked.error());
     marks = std::move(*marked);
     add_classes(*all, marks);
     std::vector<std::int64_t> keys;
     for (const query::Quantity& quantity : all->classes)
       keys.push_back(static_cast<std::int64_t>(*quantity.value));
-    auto found = record_names(context, *asked->layer.table, request.role(), std::move(keys),
-                              records_at, *language);
+    auto found = record_names(context, *asked.layer.table, request.role(), std::move(keys),
+                              records_at, language);
     if (!found) return tl::unexpected(found.error());
     names = std::move(*found);
   }
-  auto response = *format == SheetFormat::json
-                      ? json_response(to_json(*all, asked->layer, names, marks))
-                      : quantity_sheet(context,
-                                       to_sheet(*all, asked->layer, names, marks,
-                                                asked->layer.slug + "-quantities"),
-                                       *format, *separator);
-  if (!response) return response;
-  add_sequences(*response, asked->sequence, asked->room->durable_sequence());
-  response->with("Vary", "Accept");
+  auto response = STRATA_TRY(format == SheetFormat::json
+                                 ? json_response(to_json(*all, asked.layer, names, marks))
+                                 : quantity_sheet(context,
+                                                  to_sheet(*all, asked.layer, names, marks,
+                                                           asked.layer.slug + "-quantities"),
+                                                  format, separator));
+  add_sequences(response, asked.sequence, asked.room->durable_sequence());
+  response.with("Vary", "Accept");
   return response;
 }
 
@@ -214,18 +208,16 @@ struct OfLayer {
 
 Result<std::vector<OfLayer>> of_layers(const RouteContext& context, std::int64_t table_id,
                                        Role seen_by) {
-  auto layers = context.store.layers_of_table(table_id, seen_by);
-  if (!layers) return tl::unexpected(layers.error());
+  auto layers = STRATA_TRY(context.store.layers_of_table(table_id, seen_by));
   std::vector<OfLayer> found;
-  for (Layer& layer : *layers) {
+  for (Layer& layer : layers) {
     if (layer.sequence == 0) continue;  // nothing was ever painted there
-    auto room = context.rooms.open(std::to_string(layer.model_id), seen_by);
-    if (!room) return tl::unexpected(room.error());
-    auto all = (*room)->quantities(layer.slug);
-    if (!all && all.error().status == 404) continue;  // deleted meanwhile
+    auto room = STRATA_TRY(context.rooms.open(std::to_string(layer.model_id), seen_by));
+    auto all = room->quantities(layer.slug);
+    if (!all && all.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
     if (!all) return tl::unexpected(all.error());
     if (all->classes.empty()) continue;
-    OfLayer of_layer{(*room)->model(), std::move(layer), {}};
+    OfLayer of_layer{room->model(), std::move(layer), {}};
     for (const query::Quantity& quantity : all->classes)
       of_layer.of_key[static_cast<std::int64_t>(*quantity.value)] = quantity;
     found.push_back(std::move(of_layer));
@@ -249,40 +241,34 @@ class QuantitySum {
 };
 
 Result<Response> table_quantities(const RouteContext& context, const Request& request) {
-  const auto format = sheet_format(request);
-  if (!format) return tl::unexpected(format.error());
-  const auto separator = csv_separator(request);
-  if (!separator) return tl::unexpected(separator.error());
-  const auto language = asked_language(request);
-  if (!language) return tl::unexpected(language.error());
-  const auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  const auto layers = of_layers(context, table->id, request.role());
-  if (!layers) return tl::unexpected(layers.error());
+  const auto format = STRATA_TRY(sheet_format(request));
+  const auto separator = STRATA_TRY(csv_separator(request));
+  const auto language = STRATA_TRY(asked_language(request));
+  const auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  const auto layers = STRATA_TRY(of_layers(context, table.id, request.role()));
   std::map<std::int64_t, QuantitySum> of_key;
   QuantitySum of_all;
-  for (const OfLayer& layer : *layers)
+  for (const OfLayer& layer : layers)
     for (const auto& [key, quantity] : layer.of_key) {
       of_key[key].add(quantity);
       of_all.add(quantity);
     }
   const query::Quantity& sum = of_all.sum();
-  const auto marks = marks_of(context, *table, request.role(), {}, {});
-  if (!marks) return tl::unexpected(marks.error());
-  for (const auto& [key, values] : marks->of_key) of_key.try_emplace(key);
+  const auto marks = STRATA_TRY(marks_of(context, table, request.role(), {}, {}));
+  for (const auto& [key, values] : marks.of_key) of_key.try_emplace(key);
   std::vector<std::int64_t> keys;
   for (const auto& [key, quantity] : of_key) keys.push_back(key);
-  const auto names = record_names(context, table->id, request.role(), keys, {}, *language);
-  if (!names) return tl::unexpected(names.error());
+  const auto names =
+      STRATA_TRY(record_names(context, table.id, request.role(), keys, {}, language));
   const auto text_of = [&](std::int64_t key) {
-    const auto name = names->find(key);
-    return name == names->end() || name->second.empty() ? std::to_string(key) : name->second;
+    const auto name = names.find(key);
+    return name == names.end() || name->second.empty() ? std::to_string(key) : name->second;
   };
-  if (*format == SheetFormat::json) {
+  if (format == SheetFormat::json) {
     nlohmann::json list = nlohmann::json::array();
     for (const auto& [key, quantity] : of_key) {
       nlohmann::json json = sums_json(quantity.sum()), parts = nlohmann::json::array();
-      for (const OfLayer& layer : *layers)
+      for (const OfLayer& layer : layers)
         if (const auto part = layer.of_key.find(key); part != layer.of_key.end()) {
           parts.push_back(sums_json(part->second));
           parts.back()["model"] = layer.model.id;
@@ -290,29 +276,29 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
         }
       json["class"] = text_of(key);
       json["key"] = key;
-      json["has_record"] = names->contains(key);
-      add_measures(json, marks->names, marks->of(key));
+      json["has_record"] = names.contains(key);
+      add_measures(json, marks.names, marks.of(key));
       json["layers"] = std::move(parts);
       list.push_back(std::move(json));
     }
     const std::size_t count = list.size();
     nlohmann::json total = sums_json(sum);
-    add_measures(total, marks->names, marks->sum());
+    add_measures(total, marks.names, marks.sum());
     return json_response(
                {{"quantities", std::move(list)}, {"total", count}, {"sum", std::move(total)}})
         .with("Vary", "Accept");
   }
-  Sheet sheet{table->slug + "-quantities", {"class", "key", "pieces", "texels", "area_m2"}, {}};
-  sheet.heads.insert(sheet.heads.end(), marks->names.begin(), marks->names.end());
-  for (const OfLayer& layer : *layers)
+  Sheet sheet{table.slug + "-quantities", {"class", "key", "pieces", "texels", "area_m2"}, {}};
+  sheet.heads.insert(sheet.heads.end(), marks.names.begin(), marks.names.end());
+  for (const OfLayer& layer : layers)
     sheet.heads.push_back(layer.model.slug + "/" + layer.layer.slug + " area_m2");
   for (const auto& [key, of_one] : of_key) {
     const query::Quantity& quantity = of_one.sum();
     std::vector<SheetCell> row{text_of(key), double(key), double(quantity.pieces),
                                double(quantity.texels), quantity.area_m2};
-    const auto marked = marks->of(key);
+    const auto marked = marks.of(key);
     row.insert(row.end(), marked.begin(), marked.end());
-    for (const OfLayer& layer : *layers) {
+    for (const OfLayer& layer : layers) {
       const auto part = layer.of_key.find(key);
       row.push_back(part == layer.of_key.end() ? SheetCell() : SheetCell(part->second.area_m2));
     }
@@ -320,15 +306,15 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   }
   std::vector<SheetCell> last{
       std::string("total"), {}, double(sum.pieces), double(sum.texels), sum.area_m2};
-  const auto marked = marks->sum();
+  const auto marked = marks.sum();
   last.insert(last.end(), marked.begin(), marked.end());
-  for (const OfLayer& layer : *layers) {
+  for (const OfLayer& layer : layers) {
     QuantitySum of_layer;
     for (const auto& [key, quantity] : layer.of_key) of_layer.add(quantity);
     last.emplace_back(of_layer.sum().area_m2);
   }
   sheet.rows.push_back(std::move(last));
-  auto response = quantity_sheet(context, std::move(sheet), *format, *separator);
+  auto response = quantity_sheet(context, std::move(sheet), format, separator);
   if (response) response->with("Vary", "Accept");
   return response;
 }

@@ -23,24 +23,21 @@ Result<std::vector<Layer>> asked_layers(
 }
 
 Result<Response> position(const RouteContext& context, const Request& request) {
-  auto coordinates = parse_point(request.query_or("coords", {}));
-  if (!coordinates) return tl::unexpected(coordinates.error());
+  auto coordinates = STRATA_TRY(parse_point(request.query_or("coords", {})));
   const std::string format = request.query_or("f", "json");
   if (format != "json" && format != "covjson" && format != "csv")
-    return fail(406, "Unknown format", "`f` is json, covjson or csv.", "f");
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  std::vector<Layer> layers = (*room)->layers();
+    return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is json, covjson or csv.", "f");
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  std::vector<Layer> layers = room->layers();
   if (auto named = request.query.find("parameter-name"); named != request.query.end()) {
-    auto found = find_layers(**room, split_list(named->second), "parameter-name");
+    auto found = find_layers(*room, split_list(named->second), "parameter-name");
     if (!found) return tl::unexpected(found.error());
     layers = std::move(*found);
   }
   const auto asked = as_of(request);
-  const auto at = find_sequence(context, **room, asked);
-  if (!at) return tl::unexpected(at.error());
-  const auto sequence = at->value_or((*room)->sequence());
-  auto point = (*room)->position(*coordinates, slugs_of(layers), *at);
+  const auto at = STRATA_TRY(find_sequence(context, *room, asked));
+  const auto sequence = at.value_or(room->sequence());
+  auto point = room->position(coordinates, slugs_of(layers), at);
   if (!point) return tl::unexpected(point.error());
   Response response;
   if (format == "csv")
@@ -48,62 +45,57 @@ Result<Response> position(const RouteContext& context, const Request& request) {
   else if (format == "json")
     response = json_response(protocol::to_json(to_protocol(*point)));
   else if (!point->hit)
-    return fail(404, "No surface", "The model has no surface to measure at.", "coords");
+    return fail(ErrorCode::not_found, "No surface", "The model has no surface to measure at.",
+                "coords");
   else {
-    response = json_response(point_coverage(*point, layers, (*room)->model()));
+    response = json_response(point_coverage(*point, layers, room->model()));
     response.headers = {{"Content-Type", "application/prs.coverage+json"}};
   }
-  add_sequences(response, sequence, (*room)->durable_sequence());
+  add_sequences(response, sequence, room->durable_sequence());
   return response;
 }
 
 Result<Response> positions(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::PositionsRequest>(request, context.options.max_positions_bytes);
-  if (!asked) return tl::unexpected(asked.error());
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  const auto layers = asked_layers(**room, asked->layers);
-  if (!layers) return tl::unexpected(layers.error());
-  const std::vector<glm::dvec3> points(asked->points.begin(), asked->points.end());
-  const auto at = find_sequence(context, **room, asked->at);
-  if (!at) return tl::unexpected(at.error());
-  const auto sequence = at->value_or((*room)->sequence());
-  auto answers = (*room)->positions(points, slugs_of(*layers), *at);
+  auto asked =
+      STRATA_TRY(body_of<protocol::PositionsRequest>(request, context.options.max_positions_bytes));
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto layers = STRATA_TRY(asked_layers(*room, asked.layers));
+  const std::vector<glm::dvec3> points(asked.points.begin(), asked.points.end());
+  const auto at = STRATA_TRY(find_sequence(context, *room, asked.at));
+  const auto sequence = at.value_or(room->sequence());
+  auto answers = room->positions(points, slugs_of(layers), at);
   if (!answers) return tl::unexpected(answers.error());
   Response response;
   if (request.header("accept").find("text/csv") != std::string_view::npos) {
-    response = text_response(points_csv(*answers, slugs_of(*layers)), kCsvType);
+    response = text_response(points_csv(*answers, slugs_of(layers)), kCsvType);
   } else {
     nlohmann::json list = nlohmann::json::array();
     for (const auto& point : *answers) list.push_back(protocol::to_json(to_protocol(point)));
     const std::size_t total = list.size();
     response = json_response({{"positions", std::move(list)}, {"total", total}});
   }
-  add_sequences(response, sequence, (*room)->durable_sequence());
+  add_sequences(response, sequence, room->durable_sequence());
   response.with("Vary", "Accept");
   return response;
 }
 
 Result<Response> profile(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::ProfileRequest>(request);
-  if (!asked) return tl::unexpected(asked.error());
+  const auto asked = STRATA_TRY(body_of<protocol::ProfileRequest>(request));
   const auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  const auto layers = asked_layers(**room, asked->layers);
-  if (!layers) return tl::unexpected(layers.error());
+  const auto layers = STRATA_TRY(asked_layers(**room, asked.layers));
   const Unit unit = (*room)->model().unit;
   room::ProfileLine line;
-  if (asked->places)
-    line = room::PlacesInSteps{*asked->places, in_model_units(*asked->step_mm, unit)};
+  if (asked.places)
+    line = room::PlacesInSteps{*asked.places, in_model_units(*asked.step_mm, unit)};
   else
-    line = room::SeenLine{*asked->camera, *asked->path};
-  const auto at = find_sequence(context, **room, asked->at);
-  if (!at) return tl::unexpected(at.error());
-  const auto sequence = at->value_or((*room)->sequence());
-  const auto found = (*room)->profile(line, slugs_of(*layers), *at);
+    line = room::SeenLine{*asked.camera, *asked.path};
+  const auto at = STRATA_TRY(find_sequence(context, **room, asked.at));
+  const auto sequence = at.value_or((*room)->sequence());
+  const auto found = (*room)->profile(line, slugs_of(layers), at);
   if (!found) return tl::unexpected(found.error());
   const bool as_csv = request.header("accept").find("text/csv") != std::string_view::npos;
-  Response response = as_csv ? text_response(profile_csv(*found, unit, slugs_of(*layers)), kCsvType)
+  Response response = as_csv ? text_response(profile_csv(*found, unit, slugs_of(layers)), kCsvType)
                              : json_response(to_json(*found, unit));
   add_sequences(response, sequence, (*room)->durable_sequence());
   response.with("Vary", "Accept");
@@ -111,17 +103,14 @@ Result<Response> profile(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> pick(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::PickRequest>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  const auto at = find_sequence(context, **room, asked->at);
-  if (!at) return tl::unexpected(at.error());
-  const auto sequence = at->value_or((*room)->sequence());
-  auto point = (*room)->pick(asked->camera, asked->x, asked->y, slugs_of((*room)->layers()), *at);
+  auto asked = STRATA_TRY(body_of<protocol::PickRequest>(request));
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto at = STRATA_TRY(find_sequence(context, *room, asked.at));
+  const auto sequence = at.value_or(room->sequence());
+  auto point = room->pick(asked.camera, asked.x, asked.y, slugs_of(room->layers()), at);
   if (!point) return tl::unexpected(point.error());
   Response response = json_response(protocol::to_json(to_protocol(*point)));
-  add_sequences(response, sequence, (*room)->durable_sequence());
+  add_sequences(response, sequence, room->durable_sequence());
   return response;
 }
 

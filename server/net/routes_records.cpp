@@ -36,7 +36,7 @@ Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& te
         std::ranges::find(order, word, &std::pair<std::string, bool>::first) == order.end())
       order.emplace_back(std::move(word), descending);
     if (order.size() > kMostSortColumns)
-      return fail(422, "Too many columns to sort by",
+      return fail(ErrorCode::invalid, "Too many columns to sort by",
                   "Records are sorted by at most " + std::to_string(kMostSortColumns) + " columns.",
                   "sortby");
     begin = end + 1;
@@ -58,12 +58,11 @@ Result<store::Store::RecordPage> page_by_measure(const RouteContext& context,
   query.order.erase(query.order.begin());
   query.limit = store::kMostRecords;
   query.offset = 0;
-  auto page = context.store.records(place.table.id, seen_by, query);
-  if (!page) return page;
+  auto page = STRATA_TRY(context.store.records(place.table.id, seen_by, query));
   // worked out once: a line may have thousands of places
   std::vector<std::pair<double, Record>> by_value;
-  by_value.reserve(page->records.size());
-  for (Record& record : page->records) {
+  by_value.reserve(page.records.size());
+  for (Record& record : page.records) {
     const double value = measures.of(record)[measure];
     by_value.emplace_back(value, std::move(record));
   }
@@ -87,11 +86,11 @@ Result<store::Store::RecordPage> page_by_measure(const RouteContext& context,
   }
   const auto end =
       begin + static_cast<std::ptrdiff_t>(std::min<std::size_t>(limit, by_value.end() - begin));
-  auto& records = page->records;
+  auto& records = page.records;
   records.clear();
-  page->last.reset();
+  page.last.reset();
   if (end != by_value.end() && end != begin)
-    page->last = ListPlace::array({(end - 1)->first, (end - 1)->second.key});
+    page.last = ListPlace::array({(end - 1)->first, (end - 1)->second.key});
   for (; begin != end; ++begin) records.push_back(std::move(begin->second));
   return page;
 }
@@ -131,24 +130,18 @@ Result<Response> records_book(const RouteContext& context, const store::Store::R
 }
 
 Result<Response> list_records(const RouteContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  const auto format = sheet_format(request);
-  if (!format) return tl::unexpected(format.error());
-  auto separator = csv_separator(request);
-  if (!separator) return tl::unexpected(separator.error());
-  auto place = record_place(context, request);
-  if (!place) return tl::unexpected(place.error());
+  auto page = STRATA_TRY(page_of(request));
+  const auto format = STRATA_TRY(sheet_format(request));
+  auto separator = STRATA_TRY(csv_separator(request));
+  auto place = STRATA_TRY(record_place(context, request));
   store::Store::RecordQuery query;
-  auto order = order_of(request.query_or("sortby", {}));
-  if (!order) return tl::unexpected(order.error());
-  query.order = std::move(*order);
-  const auto language = asked_language(request);
-  if (!language) return tl::unexpected(language.error());
-  query.language = *language;
+  auto order = STRATA_TRY(order_of(request.query_or("sortby", {})));
+  query.order = std::move(order);
+  const auto language = STRATA_TRY(asked_language(request));
+  query.language = language;
   const std::string terms = request.query_or("terms", "words");
   if (terms != "words" && terms != "keys")
-    return fail(422, "Unknown choice", "`terms` is words or keys.", "terms");
+    return fail(ErrorCode::invalid, "Unknown choice", "`terms` is words or keys.", "terms");
   if (auto filter = request.query.find("filter");
       filter != request.query.end() && !filter->second.empty()) {
     auto condition = query::parse_condition(filter->second, "filter", query::Names::columns);
@@ -156,90 +149,81 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     query.filter = std::move(*condition);
   }
   // A table to work on elsewhere is all of it, unless a part is asked for.
-  const bool whole = *format != SheetFormat::json && !request.query.contains("limit");
-  query.limit = whole ? store::kMostRecords : page->limit;
-  query.offset = page->offset;
-  query.after = page->after;
+  const bool whole = format != SheetFormat::json && !request.query.contains("limit");
+  query.limit = whole ? store::kMostRecords : page.limit;
+  query.offset = page.offset;
+  query.after = page.after;
   if (auto at = request.query.find("at"); at != request.query.end()) {
-    auto sequence = sequence_at(context.store, place->table, at->second);
-    if (!sequence) return tl::unexpected(sequence.error());
-    query.at = *sequence;
+    auto sequence = STRATA_TRY(sequence_at(context.store, place.table, at->second));
+    query.at = sequence;
   }
   // Of the columns as they are now: what was a line and is none any more has no length.
-  auto measures = RecordMeasures::of_place(context, *place, place->table.columns);
-  if (!measures) return tl::unexpected(measures.error());
-  const auto& names = measures->names();
+  auto measures = STRATA_TRY(RecordMeasures::of_place(context, place, place.table.columns));
+  const auto& names = measures.names();
   const auto measure =
       query.order.empty() ? names.end() : std::ranges::find(names, query.order.front().first);
-  auto records = measure == names.end()
-                     ? context.store.records(place->table.id, request.role(), query)
-                     : page_by_measure(context, *place, *measures,
-                                       static_cast<std::size_t>(measure - names.begin()),
-                                       request.role(), query);
-  if (!records) return tl::unexpected(records.error());
+  auto records = STRATA_TRY(measure == names.end()
+                                ? context.store.records(place.table.id, request.role(), query)
+                                : page_by_measure(context, place, measures,
+                                                  static_cast<std::size_t>(measure - names.begin()),
+                                                  request.role(), query));
   WordsOfTables words;
-  if (*format != SheetFormat::json && terms == "words") {
-    auto known = words_of(context.store, records->table.columns, request.role(), *language);
-    if (!known) return tl::unexpected(known.error());
-    words = std::move(*known);
+  if (format != SheetFormat::json && terms == "words") {
+    auto known =
+        STRATA_TRY(words_of(context.store, records.table.columns, request.role(), language));
+    words = std::move(known);
   }
-  if (page->after && records->last && !cursor_of(request, *records->last))
+  if (page.after && records.last && !cursor_of(request, *records.last))
     return fail(
-        422, "Sorted by too much",
+        ErrorCode::invalid, "Sorted by too much",
         "The values by which this page ends are too long for an address; sort by fewer columns.",
         "sortby");
   Response response;
-  if (*format == SheetFormat::xlsx) {
-    auto book = records_book(context, *records, *measures, words);
-    if (!book) return book;
-    response = std::move(*book);
-  } else if (*format == SheetFormat::csv) {
+  if (format == SheetFormat::xlsx) {
+    auto book = STRATA_TRY(records_book(context, records, measures, words));
+    response = std::move(book);
+  } else if (format == SheetFormat::csv) {
     std::vector<std::vector<double>> values;
-    for (const Record& record : records->records) values.push_back(measures->of(record));
-    response = text_response(records_csv(records->records, records->table.columns,
-                                         {measures->names(), std::move(values)}, *separator, words),
+    for (const Record& record : records.records) values.push_back(measures.of(record));
+    response = text_response(records_csv(records.records, records.table.columns,
+                                         {measures.names(), std::move(values)}, separator, words),
                              kCsvType);
-    name_download(response, place->table.slug + ".csv");
+    name_download(response, place.table.slug + ".csv");
   } else {
     nlohmann::json list = nlohmann::json::array();
-    for (const Record& record : records->records) {
-      nlohmann::json json = to_json(record, records->table.columns);
-      add_measures(json, measures->names(), measures->of(record));
+    for (const Record& record : records.records) {
+      nlohmann::json json = to_json(record, records.table.columns);
+      add_measures(json, measures.names(), measures.of(record));
       list.push_back(std::move(json));
     }
-    response = json_response({{"records", std::move(list)}, {"total", records->total}});
+    response = json_response({{"records", std::move(list)}, {"total", records.total}});
   }
-  if (!whole) add_page_links(response, request, *page, records->last);
-  response.with("Strata-Sequence", std::to_string(records->table.sequence)).with("Vary", "Accept");
+  if (!whole) add_page_links(response, request, page, records.last);
+  response.with("Strata-Sequence", std::to_string(records.table.sequence)).with("Vary", "Accept");
   return response;
 }
 
 Result<Response> read_record(const RouteContext& context, const Request& request) {
-  auto key = record_key(request);
-  if (!key) return tl::unexpected(key.error());
-  auto place = record_place(context, request);
-  if (!place) return tl::unexpected(place.error());
+  auto key = STRATA_TRY(record_key(request));
+  auto place = STRATA_TRY(record_place(context, request));
   std::optional<std::int64_t> at;
   if (auto text = request.query.find("at"); text != request.query.end()) {
-    auto sequence = sequence_at(context.store, place->table, text->second);
-    if (!sequence) return tl::unexpected(sequence.error());
-    at = *sequence;
+    auto sequence = STRATA_TRY(sequence_at(context.store, place.table, text->second));
+    at = sequence;
   }
   Table then;
-  auto record = stored_record(context, place->table, request.role(), *key, at, &then);
-  if (!record) return tl::unexpected(record.error());
-  nlohmann::json json = to_json(*record, then.columns);
-  const auto measures = RecordMeasures::of_place(context, *place, then.columns);
-  if (!measures) return tl::unexpected(measures.error());
-  add_measures(json, measures->names(), measures->of(*record));
-  if (!place->layer) return with_etag(json_response(json), request, record->version);
-  return json_response(json).with("ETag", etag_of(record->version));
+  auto record = STRATA_TRY(stored_record(context, place.table, request.role(), key, at, &then));
+  nlohmann::json json = to_json(record, then.columns);
+  const auto measures = STRATA_TRY(RecordMeasures::of_place(context, place, then.columns));
+  add_measures(json, measures.names(), measures.of(record));
+  if (!place.layer) return with_etag(json_response(json), request, record.version);
+  return json_response(json).with("ETag", etag_of(record.version));
 }
 
 // --- changes
 
-Problem first_problem(const TableChange& change, bool is_list) {
-  Problem problem = change.problems.front().problem;
+Error first_problem(const TableChange& change, bool is_list) {
+  Error problem = change.problems.front().problem;
   if (is_list && change.problems.front().index)
     problem.field =
         "records[" + std::to_string(*change.problems.front().index) + "]." + problem.field;
@@ -248,19 +232,18 @@ Problem first_problem(const TableChange& change, bool is_list) {
 
 Result<Response> create_from_json(const RouteContext& context, const Request& request,
                                   const RecordPlace& place) {
-  auto asked = body_of<protocol::RecordsCreate>(request, kMaxRecordsBytes);
-  if (!asked) return tl::unexpected(asked.error());
-  if (asked->records && (asked->key || asked->values))
-    return fail(422, "One or several", "Give either `records`, or `key` and `values` of one.",
-                "records");
+  auto asked = STRATA_TRY(body_of<protocol::RecordsCreate>(request, kMaxRecordsBytes));
+  if (asked.records && (asked.key || asked.values))
+    return fail(ErrorCode::invalid, "One or several",
+                "Give either `records`, or `key` and `values` of one.", "records");
   store::WriteRecords write;
   write.may_change = false;
-  const bool is_list = asked->records.has_value();
+  const bool is_list = asked.records.has_value();
   std::vector<protocol::RecordInput> inputs;
   if (is_list)
-    inputs = std::move(*asked->records);
+    inputs = std::move(*asked.records);
   else
-    inputs.push_back({asked->key, asked->values});
+    inputs.push_back({asked.key, asked.values});
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const std::string field = is_list ? "records[" + std::to_string(i) + "].values" : "values";
     auto values =
@@ -282,24 +265,23 @@ Result<Response> create_from_json(const RouteContext& context, const Request& re
     const std::size_t total = list.size();
     return json_response({{"records", std::move(list)}, {"total", total}}, 201);
   };
-  auto change = context.store.write_records(place.table.id, write, request.user(),
-                                            first_answer<TableChange>(request, answer));
-  if (!change) return tl::unexpected(change.error());
-  if (!change->problems.empty()) return tl::unexpected(first_problem(*change, is_list));
-  tell_change(context, *change, request.user());
-  return answer(*change);
+  auto change = STRATA_TRY(context.store.write_records(place.table.id, write, request.user(),
+                                                       first_answer<TableChange>(request, answer)));
+  if (!change.problems.empty()) return tl::unexpected(first_problem(change, is_list));
+  tell_change(context, change, request.user());
+  return answer(change);
 }
 
 nlohmann::json report_of(const RecordRows& rows, const TableChange& change, bool dry_run) {
   nlohmann::json problems = nlohmann::json::array();
-  const auto add = [&](int line, const std::string& column, const Problem& problem) {
+  const auto add = [&](int line, const std::string& column, const Error& problem) {
     if (problems.size() == store::kMostRowProblems) return;
     problems.push_back({{"line", line}, {"title", problem.title}, {"detail", problem.detail}});
     if (!column.empty()) problems.back()["column"] = column;
   };
   for (const RowMistake& mistake : rows.mistakes)
     add(mistake.line, mistake.column, mistake.problem);
-  for (const store::RowProblem& problem : change.problems) {
+  for (const store::RowError& problem : change.problems) {
     std::string head = problem.problem.field;
     for (const Column& column : change.table.columns)
       if ("values." + column.slug == head) {
@@ -325,29 +307,26 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
                             const RecordPlace& place) {
   const std::string tried = request.query_or("dry_run", "false");
   if (tried != "true" && tried != "false")
-    return fail(422, "Bad value", "`dry_run` is true or false.", "dry_run");
-  const auto words = words_of(context.store, place.table.columns, request.role(), {});
-  if (!words) return tl::unexpected(words.error());
-  auto rows = read_records_csv(request.body, place.table, *words);
-  if (!rows) return tl::unexpected(rows.error());
+    return fail(ErrorCode::invalid, "Bad value", "`dry_run` is true or false.", "dry_run");
+  const auto words = STRATA_TRY(words_of(context.store, place.table.columns, request.role(), {}));
+  auto rows = STRATA_TRY(read_records_csv(request.body, place.table, words));
   store::WriteRecords write;
-  write.records = rows->records;
+  write.records = rows.records;
   write.op = "import";
   // Where a row cannot even be read, the others are looked at all the same, so that one look finds
   // all that is wrong.
-  write.dry_run = tried == "true" || !rows->mistakes.empty();
+  write.dry_run = tried == "true" || !rows.mistakes.empty();
   const auto answer = [&rows](const TableChange& change) {
-    return json_response(report_of(*rows, change, false));
+    return json_response(report_of(rows, change, false));
   };
-  auto change = context.store.write_records(place.table.id, write, request.user(),
-                                            first_answer<TableChange>(request, answer));
-  if (!change) return tl::unexpected(change.error());
-  const bool refused = !rows->mistakes.empty() || !change->problems.empty();
-  if (tried == "true") return json_response(report_of(*rows, *change, true));
+  auto change = STRATA_TRY(context.store.write_records(place.table.id, write, request.user(),
+                                                       first_answer<TableChange>(request, answer)));
+  const bool refused = !rows.mistakes.empty() || !change.problems.empty();
+  if (tried == "true") return json_response(report_of(rows, change, true));
   if (refused) {
-    const nlohmann::json report = report_of(*rows, *change, false);
+    const nlohmann::json report = report_of(rows, change, false);
     const auto& first = report.at("problems").front();
-    Response response = problem_response({422, "Rows refused",
+    Response response = problem_response({ErrorCode::invalid, "Rows refused",
                                           "Nothing was written. Line " +
                                               std::to_string(first.at("line").get<int>()) + ": " +
                                               first.at("detail").get<std::string>(),
@@ -357,34 +336,29 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
     response.body = body.dump();
     return response;
   }
-  tell_change(context, *change, request.user());
-  return answer(*change);
+  tell_change(context, change, request.user());
+  return answer(change);
 }
 
 Result<Response> create_records(const RouteContext& context, const Request& request) {
-  auto place = record_place(context, request);
-  if (!place) return tl::unexpected(place.error());
+  auto place = STRATA_TRY(record_place(context, request));
   if (to_lower(request.header("content-type")).starts_with("text/csv"))
-    return import_csv(context, request, *place);
+    return import_csv(context, request, place);
   if (request.query.contains("dry_run"))
-    return fail(422, "Not for JSON", "`dry_run` is for records sent as text/csv.", "dry_run");
-  return create_from_json(context, request, *place);
+    return fail(ErrorCode::invalid, "Not for JSON", "`dry_run` is for records sent as text/csv.",
+                "dry_run");
+  return create_from_json(context, request, place);
 }
 
 Result<Response> change_record(const RouteContext& context, const Request& request) {
-  auto key = record_key(request);
-  if (!key) return tl::unexpected(key.error());
-  auto asked = body_of<protocol::RecordPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto place = record_place(context, request);
-  if (!place) return tl::unexpected(place.error());
-  auto version = wished_record_version(context, request, place->table, *key);
-  if (!version) return tl::unexpected(version.error());
-  auto values = values_by_column(place->table, asked->values, "values");
-  if (!values) return tl::unexpected(values.error());
+  auto key = STRATA_TRY(record_key(request));
+  auto asked = STRATA_TRY(body_of<protocol::RecordPatch>(request));
+  auto place = STRATA_TRY(record_place(context, request));
+  auto version = STRATA_TRY(wished_record_version(context, request, place.table, key));
+  auto values = STRATA_TRY(values_by_column(place.table, asked.values, "values"));
   store::WriteRecords write;
   write.may_create = false;
-  write.records.push_back({*key, std::move(*values), *version ? *version : asked->version});
+  write.records.push_back({key, std::move(values), version ? version : asked.version});
   const auto answer = [role = request.role()](const TableChange& change) {
     const Record& record = change.records.front();
     return json_response(to_json(record, seen_by(change.table, role).columns))
@@ -392,19 +366,18 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
   };
   // What stays the same is no entry, and no record comes with it.
   std::optional<Record> same;
-  if (auto now = stored_record(context, place->table, request.role(), *key, {}))
+  if (auto now = stored_record(context, place.table, request.role(), key, {}))
     same = std::move(*now);
   const auto keep = [&](const TableChange& change) {
     if (!change.records.empty() || !same) return answer(change);
     return json_response(to_json(*same, seen_by(change.table, request.role()).columns))
         .with("ETag", etag_of(same->version));
   };
-  auto change = context.store.write_records(place->table.id, write, request.user(),
-                                            first_answer<TableChange>(request, keep));
-  if (!change) return tl::unexpected(change.error());
-  if (!change->problems.empty()) return tl::unexpected(first_problem(*change, false));
-  tell_change(context, *change, request.user());
-  return keep(*change);
+  auto change = STRATA_TRY(context.store.write_records(place.table.id, write, request.user(),
+                                                       first_answer<TableChange>(request, keep)));
+  if (!change.problems.empty()) return tl::unexpected(first_problem(change, false));
+  tell_change(context, change, request.user());
+  return keep(change);
 }
 
 // Nothing paints the key any more.
@@ -412,59 +385,52 @@ Result<Response> delete_retired(const RouteContext& context, const Request& requ
                                 const Table& table, std::int64_t key,
                                 std::optional<std::int64_t> version, const std::string& texels,
                                 std::optional<std::int64_t> to) {
-  auto painted = painted_layers(context, table.id, request.role());
-  if (!painted) return tl::unexpected(painted.error());
-  const std::string where = where_painted(*painted, {key});
+  auto painted = STRATA_TRY(painted_layers(context, table.id, request.role()));
+  const std::string where = where_painted(painted, {key});
   if (!where.empty() && texels == "refuse")
-    return fail(409, "Record is painted",
+    return fail(ErrorCode::conflict, "Record is painted",
                 "Record " + std::to_string(key) + " covers " + where +
                     ". Say what becomes of it: texels=clear, or texels=reassign&to=KEY.",
                 "texels");
-  if (auto done = repaint_key(context, *painted, key, to, request.author()); !done)
-    return tl::unexpected(done.error());
+  STRATA_TRY(repaint_key(context, painted, key, to, request.author()));
   const auto answer = [](const TableChange&) { return empty_response(204); };
-  auto change = context.store.delete_record(table.id, key, version, request.user(), false,
-                                            first_answer<TableChange>(request, answer));
-  if (!change) return tl::unexpected(change.error());
-  tell_change(context, *change, request.user());
-  return answer(*change);
+  auto change = STRATA_TRY(context.store.delete_record(
+      table.id, key, version, request.user(), false, first_answer<TableChange>(request, answer)));
+  tell_change(context, change, request.user());
+  return answer(change);
 }
 
 Result<Response> delete_record(const RouteContext& context, const Request& request) {
-  auto key = record_key(request);
-  if (!key) return tl::unexpected(key.error());
+  auto key = STRATA_TRY(record_key(request));
   const std::string texels = request.query_or("texels", "refuse");
   if (texels != "refuse" && texels != "clear" && texels != "reassign")
-    return fail(422, "Unknown choice", "`texels` is refuse, clear or reassign.", "texels");
+    return fail(ErrorCode::invalid, "Unknown choice", "`texels` is refuse, clear or reassign.",
+                "texels");
   std::optional<std::int64_t> to;
   if ((texels == "reassign") != request.query.contains("to"))
-    return fail(422, "Which record", "`to` is the key that the texels get, with texels=reassign.",
-                "to");
-  auto place = record_place(context, request);
-  if (!place) return tl::unexpected(place.error());
-  const Table& table = place->table;
+    return fail(ErrorCode::invalid, "Which record",
+                "`to` is the key that the texels get, with texels=reassign.", "to");
+  auto place = STRATA_TRY(record_place(context, request));
+  const Table& table = place.table;
   if (texels == "reassign") {
-    auto number = parse_integer(request.query.at("to"), 0, kHighestKey, "to");
-    if (!number) return tl::unexpected(number.error());
-    auto missing = context.store.missing_records(table.id, std::vector{*number});
-    if (!missing) return tl::unexpected(missing.error());
-    if (!missing->empty() || *number == *key)
-      return fail(422, "No such record", "`to` is another record of " + table.name + ".", "to");
-    to = *number;
+    auto number = STRATA_TRY(parse_integer(request.query.at("to"), 0, kHighestKey, "to"));
+    auto missing = STRATA_TRY(context.store.missing_records(table.id, std::vector{number}));
+    if (!missing.empty() || number == key)
+      return fail(ErrorCode::invalid, "No such record",
+                  "`to` is another record of " + table.name + ".", "to");
+    to = number;
   }
-  auto version = wished_record_version(context, request, table, *key);
-  if (!version) return tl::unexpected(version.error());
+  auto version = STRATA_TRY(wished_record_version(context, request, table, key));
   // Before any texel is touched: may it go?
-  auto may = context.store.delete_record(table.id, *key, *version, request.user(), true);
-  if (!may) return tl::unexpected(may.error());
+  STRATA_TRY(context.store.delete_record(table.id, key, version, request.user(), true));
   // A stroke that began while there was a record must not paint it again.
-  const auto retired = context.rooms.retire_key(table.id, *key);
-  auto deleted = retired ? delete_retired(context, request, table, *key, *version, texels, to)
+  const auto retired = context.rooms.retire_key(table.id, key);
+  auto deleted = retired ? delete_retired(context, request, table, key, version, texels, to)
                          : Result<Response>(tl::unexpected(retired.error()));
   if (!deleted)
-    if (const auto missing = context.store.missing_records(table.id, std::vector{*key});
+    if (const auto missing = context.store.missing_records(table.id, std::vector{key});
         missing && missing->empty())
-      context.rooms.admit_keys(table.id, std::vector{*key});
+      context.rooms.admit_keys(table.id, std::vector{key});
   return deleted;
 }
 

@@ -22,22 +22,22 @@ Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& sourc
   if (refs) {
     for (const std::string& ref : *refs) {
       auto layer = store.layer(source.id, ref, seen_by);
-      if (!layer && layer.error().status == 404)
-        return fail(422, "No such layer", source.name + " has no layer \"" + ref + "\".", "layers");
+      if (!layer && layer.error().code == ErrorCode::not_found)
+        return fail(ErrorCode::invalid, "No such layer",
+                    source.name + " has no layer \"" + ref + "\".", "layers");
       if (!layer) return tl::unexpected(layer.error());
       layers.push_back(std::move(*layer));
     }
   } else {
-    auto all = store.layers(source.id, seen_by);
-    if (!all) return tl::unexpected(all.error());
-    layers = std::move(*all);
+    auto all = STRATA_TRY(store.layers(source.id, seen_by));
+    layers = std::move(all);
   }
   if (layers.empty())
-    return fail(422, "No layers", source.name + " has no layers that could be brought over.",
-                "from");
+    return fail(ErrorCode::invalid, "No layers",
+                source.name + " has no layers that could be brought over.", "from");
   for (const Layer& layer : layers)
     if (layer.table && source.project_id != target.project_id)
-      return fail(422, "Table of another project",
+      return fail(ErrorCode::invalid, "Table of another project",
                   "The keys of " + layer.name +
                       " are of a table that this project does not have; name the other layers.",
                   "layers");
@@ -47,14 +47,15 @@ Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& sourc
 Result<jobs::TransferRequest> transfer_request(store::Store& store, const protocol::Transfer& asked,
                                                const Model& target, const Principal& who) {
   auto source = store.model(asked.from);
-  if (source ? !who.sees(source->project_id) : source.error().status == 404)
-    return fail(422, "No such model", "There is no model \"" + asked.from + "\".", "from");
+  if (source ? !who.sees(source->project_id) : source.error().code == ErrorCode::not_found)
+    return fail(ErrorCode::invalid, "No such model", "There is no model \"" + asked.from + "\".",
+                "from");
   if (!source) return tl::unexpected(source.error());
   if (source->id == target.id)
-    return fail(422, "The same model",
+    return fail(ErrorCode::invalid, "The same model",
                 "Name the other version of the scan, whose layers are taken.", "from");
   if (!source->crs.empty() && !target.crs.empty() && source->crs != target.crs)
-    return fail(422, "Other coordinates",
+    return fail(ErrorCode::invalid, "Other coordinates",
                 "This model lies in " + target.crs + ", the other one in " + source->crs +
                     "; bring both into one coordinate system before importing them.",
                 "from");
@@ -96,34 +97,31 @@ Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room,
                                 {"layer", std::to_string(transferred.from->id)},
                                 {"tolerance_mm", request.tolerance_mm},
                                 {"max_angle", request.max_angle_degrees}};
-    auto made = layers.add(std::move(layer), std::move(transferred.tiles), recipe);
-    if (!made) return tl::unexpected(made.error());
+    auto made = STRATA_TRY(layers.add(std::move(layer), std::move(transferred.tiles), recipe));
     report["layers"].push_back({{"from", transferred.from->id},
-                                {"layer", made->id},
-                                {"name", made->name},
+                                {"layer", made.id},
+                                {"name", made.name},
                                 {"source_m2", transferred.source_m2},
                                 {"transferred_m2", transferred.transferred_m2},
                                 {"lost_m2", transferred.lost_m2}});
     return {};
   };
-  auto summary = jobs::transfer_layers(context.store, target, request, deliver, progress);
-  if (!summary) return tl::unexpected(summary.error());
-  report["area_m2"] = summary->area_m2;
-  report["matched_m2"] = summary->matched_m2;
-  const auto brought = bring_marks(context, target, request, user);
-  if (!brought) return tl::unexpected(brought.error());
-  report["marks"] = brought->marks;
-  report["lost_marks"] = brought->lost_marks;
+  auto summary =
+      STRATA_TRY(jobs::transfer_layers(context.store, target, request, deliver, progress));
+  report["area_m2"] = summary.area_m2;
+  report["matched_m2"] = summary.matched_m2;
+  const auto brought = STRATA_TRY(bring_marks(context, target, request, user));
+  report["marks"] = brought.marks;
+  report["lost_marks"] = brought.lost_marks;
   return report;
 }
 
 Result<Response> start_transfer(const RouteContext& context, JobBook& book,
                                 const Request& request) {
-  auto asked = body_of<protocol::Transfer>(request);
-  if (!asked) return tl::unexpected(asked.error());
+  auto asked = STRATA_TRY(body_of<protocol::Transfer>(request));
   auto room = context.rooms.open(request.param("model"), request.role());
   if (!room) return tl::unexpected(room.error());
-  auto wish = transfer_request(context.store, *asked, (*room)->model(), *request.principal);
+  auto wish = transfer_request(context.store, asked, (*room)->model(), *request.principal);
   if (!wish) return tl::unexpected(wish.error());
   return start_layer_job(context, book, request, *room,
                          [&context, room = *room, wish = std::move(*wish), user = request.user()](
@@ -133,13 +131,12 @@ Result<Response> start_transfer(const RouteContext& context, JobBook& book,
 }
 
 Result<Response> list_properties(const RouteContext& context, const Request& request) {
-  auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
+  auto model = STRATA_TRY(context.store.model(request.param("model")));
   nlohmann::json list = nlohmann::json::array();
-  for (const SourceFile& source : model->source_files) {
+  for (const SourceFile& source : model.source_files) {
     std::vector<std::uint8_t> beginning;
     auto read =
-        context.store.read_source(model->id, source.name, [&](std::span<const std::uint8_t> chunk) {
+        context.store.read_source(model.id, source.name, [&](std::span<const std::uint8_t> chunk) {
           beginning.assign(chunk.begin(), chunk.end());
           return false;
         });
@@ -161,7 +158,7 @@ Result<std::string> scan_of(const Model& model, const std::string& wanted) {
     if (has_order && (wanted.empty() || source.name == wanted)) scans.push_back(source.name);
   }
   if (scans.size() == 1) return scans.front();
-  return fail(422, "Which scan?",
+  return fail(ErrorCode::invalid, "Which scan?",
               scans.empty()
                   ? "This model has no such PLY or OBJ file whose vertices the values could be of."
                   : "Several files of this model have vertices; name one as `source`.",
@@ -178,7 +175,8 @@ void write_vertices(const RouteContext& context, const Request& request, const R
   if (!source) return respond(source.error());
   const auto file = MappedFile::open(request.body_file);
   if (!file || file->bytes().empty())
-    return respond(Problem{400, "Empty body", "Send one number a line as the body.", "body"});
+    return respond(
+        Error{ErrorCode::malformed, "Empty body", "Send one number a line as the body.", "body"});
   Progress progress;
   auto scan = jobs::read_source(context.store, model, *source, progress);
   if (!scan) return respond(scan.error());
@@ -190,7 +188,7 @@ void write_vertices(const RouteContext& context, const Request& request, const R
       geometry, mesh::values_at_positions(*geometry, *values, !is_float(layer->type)), layer->type,
       layer->resolution, progress);
   if (!tiles) {
-    Problem problem = tiles.error();
+    Error problem = tiles.error();
     if (problem.field == "type")
       problem.field = "body";  // the layer is there already: it is the values that do not fit
     return respond(problem);

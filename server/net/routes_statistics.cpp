@@ -16,9 +16,8 @@ Result<room::Selection> selection_of(const RouteContext& context, const room::Ro
                                      const std::optional<protocol::At>& at) {
   room::Selection selection;
   if (where) {
-    auto condition = query::parse_condition(*where, "where");
-    if (!condition) return tl::unexpected(condition.error());
-    selection.where = std::move(*condition);
+    auto condition = STRATA_TRY(query::parse_condition(*where, "where"));
+    selection.where = std::move(condition);
   }
   if (within && within->path) {
     selection.within =
@@ -29,9 +28,8 @@ Result<room::Selection> selection_of(const RouteContext& context, const room::Ro
     around.radius = in_model_units(*within->radius_mm, room.model().unit);
     selection.within = std::move(around);
   }
-  auto sequence = find_sequence(context, room, at);
-  if (!sequence) return tl::unexpected(sequence.error());
-  selection.at = *sequence;
+  auto sequence = STRATA_TRY(find_sequence(context, room, at));
+  selection.at = sequence;
   return selection;
 }
 
@@ -45,24 +43,22 @@ Result<Response> statistics(const RouteContext& context, const Request& request)
     else if (part == "quantiles")
       wanted.quantiles = true;
     else
-      return fail(422, "Unknown part",
+      return fail(ErrorCode::invalid, "Unknown part",
                   "`include` takes pieces, perimeter and quantiles, with commas between.",
                   "include");
   }
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  auto layer = (*room)->layer(request.param("layer"));
-  if (!layer) return tl::unexpected(layer.error());
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto layer = STRATA_TRY(room->layer(request.param("layer")));
   std::optional<std::string> where;
   if (const auto given = request.query.find("where"); given != request.query.end())
     where = given->second;
-  const auto selection = selection_of(context, **room, where, std::nullopt, as_of(request));
-  if (!selection) return tl::unexpected(selection.error());
-  const auto sequence = selection->at.value_or((*room)->sequence());
-  auto statistics = (*room)->statistics(layer->slug, *selection, wanted);
+  const auto selection =
+      STRATA_TRY(selection_of(context, *room, where, std::nullopt, as_of(request)));
+  const auto sequence = selection.at.value_or(room->sequence());
+  auto statistics = room->statistics(layer.slug, selection, wanted);
   if (!statistics) return tl::unexpected(statistics.error());
   Response response = json_response(to_json(*statistics));
-  add_sequences(response, sequence, (*room)->durable_sequence());
+  add_sequences(response, sequence, room->durable_sequence());
   return response;
 }
 
@@ -70,15 +66,16 @@ Result<Response> statistics(const RouteContext& context, const Request& request)
 Result<room::EditRequest> painting(const Request& request, const protocol::SelectRequest& asked,
                                    const room::Room& room) {
   if (request.principal->role < Role::annotator)
-    return fail(403, "Not allowed", "`into` paints, which needs the role annotator.", "into");
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "`into` paints, which needs the role annotator.", "into");
   if (!asked.where || asked.within || asked.at)
     return fail(
-        422, "Cannot be painted",
+        ErrorCode::invalid, "Cannot be painted",
         "`into` paints where a condition holds now: give `where`, and neither `within` nor `at`.",
         "into");
   const auto layer = room.layer(protocol::to_ref(asked.into->layer));
   if (!layer) {
-    Problem problem = layer.error();
+    Error problem = layer.error();
     problem.field = "into.layer";
     return tl::unexpected(std::move(problem));
   }
@@ -145,9 +142,9 @@ Result<std::vector<std::string>> side_names(const RouteContext& context, const r
     if (key) values.push_back(*key);
   std::optional<std::int64_t> records_at;  // as they were when that edit was made
   if (layer.table && at) {
-    const auto found = context.store.table_sequence_when(*layer.table, room.model().id, *at);
-    if (!found) return tl::unexpected(found.error());
-    records_at = *found;
+    const auto found =
+        STRATA_TRY(context.store.table_sequence_when(*layer.table, room.model().id, *at));
+    records_at = found;
   }
   auto names = class_names(context, layer, role, values, records_at, language);
   if (names && values.size() < side.size()) names->emplace_back(kNoValue);  // nothing is the last
@@ -190,47 +187,39 @@ Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Layer& c
 }
 
 Result<Response> cross_table(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::CrossTableRequest>(request);
-  if (!asked) return tl::unexpected(asked.error());
+  const auto asked = STRATA_TRY(body_of<protocol::CrossTableRequest>(request));
   // Without `f` scripts get keys; what is asked for as a sheet is for people.
   const bool as_csv = !request.query.contains("f") &&
                       request.header("accept").find("text/csv") != std::string_view::npos;
-  const auto format = as_csv ? Result<SheetFormat>(SheetFormat::csv) : sheet_format(request);
-  if (!format) return tl::unexpected(format.error());
-  const auto separator = csv_separator(request);
-  if (!separator) return tl::unexpected(separator.error());
-  const auto language = asked_language(request);
-  if (!language) return tl::unexpected(language.error());
-  const auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  const auto rows = find_layers(**room, {protocol::to_ref(asked->rows)}, "rows");
-  if (!rows) return tl::unexpected(rows.error());
-  const auto columns = find_layers(**room, {protocol::to_ref(asked->columns)}, "columns");
-  if (!columns) return tl::unexpected(columns.error());
-  const auto selection = selection_of(context, **room, asked->where, asked->within, asked->at);
-  if (!selection) return tl::unexpected(selection.error());
-  const auto sequence = selection->at.value_or((*room)->sequence());
-  const auto table = (*room)->cross_table(rows->front().slug, columns->front().slug, *selection);
+  const auto format =
+      STRATA_TRY(as_csv ? Result<SheetFormat>(SheetFormat::csv) : sheet_format(request));
+  const auto separator = STRATA_TRY(csv_separator(request));
+  const auto language = STRATA_TRY(asked_language(request));
+  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto rows = STRATA_TRY(find_layers(*room, {protocol::to_ref(asked.rows)}, "rows"));
+  const auto columns = STRATA_TRY(find_layers(*room, {protocol::to_ref(asked.columns)}, "columns"));
+  const auto selection =
+      STRATA_TRY(selection_of(context, *room, asked.where, asked.within, asked.at));
+  const auto sequence = selection.at.value_or(room->sequence());
+  const auto table = room->cross_table(rows.front().slug, columns.front().slug, selection);
   if (!table) return tl::unexpected(table.error());
   Response response =
-      as_csv ? text_response(cross_table_csv(*table, rows->front().slug, columns->front().slug),
+      as_csv ? text_response(cross_table_csv(*table, rows.front().slug, columns.front().slug),
                              kCsvType)
              : json_response(to_json(*table));
-  if (!as_csv && *format != SheetFormat::json) {
+  if (!as_csv && format != SheetFormat::json) {
     const auto side = [&](const Layer& layer, const std::vector<query::CrossTable::Key>& keys) {
-      return side_names(context, **room, layer, request.role(), keys, selection->at, *language);
+      return side_names(context, *room, layer, request.role(), keys, selection.at, language);
     };
-    const auto row_names = side(rows->front(), table->rows);
-    if (!row_names) return tl::unexpected(row_names.error());
-    const auto column_names = side(columns->front(), table->columns);
-    if (!column_names) return tl::unexpected(column_names.error());
+    const auto row_names = STRATA_TRY(side(rows.front(), table->rows));
+    const auto column_names = STRATA_TRY(side(columns.front(), table->columns));
     auto sheet =
-        sheet_response(sheet_of(*table, rows->front(), columns->front(), *row_names, *column_names),
-                       *format, *separator, context.options.upload_dir);
+        sheet_response(sheet_of(*table, rows.front(), columns.front(), row_names, column_names),
+                       format, separator, context.options.upload_dir);
     if (!sheet) return sheet;
     response = std::move(*sheet);
   }
-  add_sequences(response, sequence, (*room)->durable_sequence());
+  add_sequences(response, sequence, room->durable_sequence());
   response.with("Vary", "Accept");
   return response;
 }

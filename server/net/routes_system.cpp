@@ -19,7 +19,9 @@ Response readiness(const RouteContext& context) {
 
 Result<Response> contract(const RouteContext& context, const Request& request) {
   std::ifstream file(context.options.protocol_dir / "openapi.json", std::ios::binary);
-  if (!file) return fail(503, "Contract missing", "openapi.json is not part of this installation.");
+  if (!file)
+    return fail(ErrorCode::unavailable, "Contract missing",
+                "openapi.json is not part of this installation.");
   std::ostringstream text;
   text << file.rdbuf();
   Response response = text_response(std::move(text).str(), "application/json");
@@ -61,6 +63,9 @@ void add_system_routes(Router& router, const RouteContext& context) {
     open(pattern, [&context](const Request&) {
       return docs_page(context.options.protocol_dir / "openapi.json");
     });
+  open("/problems", [](const Request&) -> Result<Response> {
+    return text_response(problems_html(), "text/html; charset=utf-8");
+  });
   open("/api/v1/docs.css", [](const Request&) -> Result<Response> {
     return text_response(std::string(docs_style()), "text/css; charset=utf-8");
   });

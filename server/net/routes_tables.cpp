@@ -18,89 +18,75 @@ namespace {
 using TableChange = store::TableChange;
 
 Result<Response> list_tables(const RouteContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  auto project = context.store.project(request.param("project"));
-  if (!project) return tl::unexpected(project.error());
-  auto tables = context.store.tables(project->id, request.role());
-  if (!tables) return tl::unexpected(tables.error());
+  auto page = STRATA_TRY(page_of(request));
+  auto project = STRATA_TRY(context.store.project(request.param("project")));
+  auto tables = STRATA_TRY(context.store.tables(project.id, request.role()));
   nlohmann::json list = nlohmann::json::array();
-  const int total = static_cast<int>(tables->size());
-  const auto part = slice_by_name(*page, *tables, context.store, [](const Table& table) {
+  const int total = static_cast<int>(tables.size());
+  const auto part = STRATA_TRY(slice_by_name(page, tables, context.store, [](const Table& table) {
     return store::Store::NamedId{table.name, table.id};
-  });
-  if (!part) return tl::unexpected(part.error());
-  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*tables)[i]));
+  }));
+  for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(tables[i]));
   Response response = json_response({{"tables", list}, {"total", total}});
-  add_page_links(response, request, *page, part->last);
+  add_page_links(response, request, page, part.last);
   return response;
 }
 
 Result<Response> create_table(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::TableCreate>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto project = context.store.project(request.param("project"));
-  if (!project) return tl::unexpected(project.error());
-  auto slug = slug_of(asked->slug, asked->name);
-  if (!slug) return tl::unexpected(slug.error());
+  auto asked = STRATA_TRY(body_of<protocol::TableCreate>(request));
+  auto project = STRATA_TRY(context.store.project(request.param("project")));
+  auto slug = STRATA_TRY(slug_of(asked.slug, asked.name));
   Table table;
-  table.project_id = project->id;
-  table.name = asked->name;
-  table.slug = *slug;
-  if (asked->labels) table.labels = *asked->labels;
-  table.description = asked->description;
-  if (asked->columns) {
-    auto columns = new_columns(context.store, project->id, *asked->columns);
-    if (!columns) return tl::unexpected(columns.error());
-    table.columns = std::move(*columns);
+  table.project_id = project.id;
+  table.name = asked.name;
+  table.slug = slug;
+  if (asked.labels) table.labels = *asked.labels;
+  table.description = asked.description;
+  if (asked.columns) {
+    auto columns = STRATA_TRY(new_columns(context.store, project.id, *asked.columns));
+    table.columns = std::move(columns);
   }
   const auto answer = [](const Table& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/tables/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  auto created = context.store.create_table(table, first_answer<Table>(request, answer));
-  if (!created) return tl::unexpected(created.error());
-  tell_table(context, protocol::TableEventEvent::created, *created, request.user());
-  return answer(*created);
+  auto created =
+      STRATA_TRY(context.store.create_table(table, first_answer<Table>(request, answer)));
+  tell_table(context, protocol::TableEventEvent::created, created, request.user());
+  return answer(created);
 }
 
 Result<Response> change_table(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  if (auto fresh = check_if_match(request, table->version); !fresh)
-    return tl::unexpected(fresh.error());
-  auto asked = body_of<protocol::TablePatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  if (asked->name) table->name = *asked->name;
-  if (asked->labels) table->labels = *asked->labels;
-  if (asked->description) table->description = *asked->description;
-  if (asked->title_column) {
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  STRATA_TRY(check_if_match(request, table.version));
+  auto asked = STRATA_TRY(body_of<protocol::TablePatch>(request));
+  if (asked.name) table.name = *asked.name;
+  if (asked.labels) table.labels = *asked.labels;
+  if (asked.description) table.description = *asked.description;
+  if (asked.title_column) {
     const Column* title =
-        asked->title_column->empty() ? nullptr : find_column(table->columns, *asked->title_column);
-    if (!title && !asked->title_column->empty())
-      return fail(422, "No such column",
-                  table->name + " has no column `" + *asked->title_column + "`.", "title_column");
-    table->title_column = title ? std::optional(title->id) : std::nullopt;
+        asked.title_column->empty() ? nullptr : find_column(table.columns, *asked.title_column);
+    if (!title && !asked.title_column->empty())
+      return fail(ErrorCode::invalid, "No such column",
+                  table.name + " has no column `" + *asked.title_column + "`.", "title_column");
+    table.title_column = title ? std::optional(title->id) : std::nullopt;
   }
   const auto answer = [](const Table& now) {
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
-  auto changed = context.store.update_table(*table, first_answer<Table>(request, answer));
-  if (!changed) return tl::unexpected(changed.error());
-  tell_table(context, protocol::TableEventEvent::changed, *changed, request.user());
-  return answer(*changed);
+  auto changed =
+      STRATA_TRY(context.store.update_table(table, first_answer<Table>(request, answer)));
+  tell_table(context, protocol::TableEventEvent::changed, changed, request.user());
+  return answer(changed);
 }
 
 Result<Response> delete_table(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  if (auto fresh = check_if_match(request, table->version); !fresh)
-    return tl::unexpected(fresh.error());
-  auto gone = context.store.delete_table(
-      table->id, first_answer<>(request, [] { return empty_response(204); }));
-  if (!gone) return tl::unexpected(gone.error());
-  tell_table(context, protocol::TableEventEvent::deleted, *table, request.user());
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  STRATA_TRY(check_if_match(request, table.version));
+  STRATA_TRY(context.store.delete_table(
+      table.id, first_answer<>(request, [] { return empty_response(204); })));
+  tell_table(context, protocol::TableEventEvent::deleted, table, request.user());
   return empty_response(204);
 }
 
@@ -113,7 +99,7 @@ std::optional<std::int64_t> wished_version(const Request& request, const Table& 
 Result<const Column*> column_of(const Table& table, const Request& request) {
   const Column* column = find_column(table.columns, request.param("column"));
   if (!column)
-    return fail(404, "Not found",
+    return fail(ErrorCode::not_found, "Not found",
                 table.name + " has no column `" + request.param("column").substr(0, 100) + "`.");
   return column;
 }
@@ -128,44 +114,35 @@ nlohmann::json column_json(const TableChange& change, std::int64_t id) {
 }
 
 Result<Response> list_columns(const RouteContext& context, const Request& request) {
-  const auto page = page_of(request, kMaxPage);
-  if (!page) return tl::unexpected(page.error());
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  const auto part = slice_by(*page, table->columns, [](const Column& column) {
+  const auto page = STRATA_TRY(page_of(request, kMaxPage));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  const auto part = STRATA_TRY(slice_by(page, table.columns, [](const Column& column) {
     return NumberKey{column.order, column.id};
-  });
-  if (!part) return tl::unexpected(part.error());
+  }));
   nlohmann::json list = nlohmann::json::array();
-  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json(table->columns[i]));
+  for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(table.columns[i]));
   Response response =
-      json_response({{"columns", std::move(list)}, {"total", table->columns.size()}});
-  add_page_links(response, request, *page, part->last);
-  return with_etag(std::move(response), request, table->version);
+      json_response({{"columns", std::move(list)}, {"total", table.columns.size()}});
+  add_page_links(response, request, page, part.last);
+  return with_etag(std::move(response), request, table.version);
 }
 
 Result<Response> create_column(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::ColumnCreate>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  if (auto fresh = check_if_match(request, table->version); !fresh)
-    return tl::unexpected(fresh.error());
-  auto column = new_column(context.store, table->project_id, *asked);
-  if (!column) return tl::unexpected(column.error());
-  for (const Column& other : table->columns)
-    column->order = std::max(column->order, other.order + 1);
+  auto asked = STRATA_TRY(body_of<protocol::ColumnCreate>(request));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  STRATA_TRY(check_if_match(request, table.version));
+  auto column = STRATA_TRY(new_column(context.store, table.project_id, asked));
+  for (const Column& other : table.columns) column.order = std::max(column.order, other.order + 1);
   const auto answer = [](const TableChange& change) {
     const std::int64_t id = change.record.at("column").get<std::int64_t>();
     return json_response(column_json(change, id), 201)
         .with("Location", "/api/v1/tables/" + change.table.slug + "/columns/" + std::to_string(id))
         .with("ETag", etag_of(change.table.version));
   };
-  auto change = context.store.create_column(table->id, *column, request.user(),
-                                            first_answer<TableChange>(request, answer));
-  if (!change) return tl::unexpected(change.error());
-  tell_change(context, *change, request.user());
-  return answer(*change);
+  auto change = STRATA_TRY(context.store.create_column(table.id, column, request.user(),
+                                                       first_answer<TableChange>(request, answer)));
+  tell_change(context, change, request.user());
+  return answer(change);
 }
 
 // Null takes a default or a limit away, which the typed body cannot tell from a member that is
@@ -175,9 +152,8 @@ Result<void> change(const RouteContext& context, const Request& request,
   const auto body = nlohmann::json::parse(request.body);
   if (asked.name) column.name = *asked.name;
   if (asked.slug) {
-    auto slug = slug_of(asked.slug, column.name);
-    if (!slug) return tl::unexpected(slug.error());
-    column.slug = *slug;
+    auto slug = STRATA_TRY(slug_of(asked.slug, column.name));
+    column.slug = slug;
   }
   if (asked.labels) column.labels = *asked.labels;
   if (asked.kind) {
@@ -197,9 +173,9 @@ Result<void> change(const RouteContext& context, const Request& request,
   if (asked.comment) column.comment = *asked.comment;
   if (asked.choices) column.choices = *asked.choices;
   if (asked.target) {
-    auto target = table_of_project(context.store, table.project_id, *asked.target, "target");
-    if (!target) return tl::unexpected(target.error());
-    column.target = target->id;
+    auto target =
+        STRATA_TRY(table_of_project(context.store, table.project_id, *asked.target, "target"));
+    column.target = target.id;
   }
   if (body.contains("minimum")) column.minimum = asked.minimum;
   if (body.contains("maximum")) column.maximum = asked.maximum;
@@ -209,63 +185,53 @@ Result<void> change(const RouteContext& context, const Request& request,
 
 Result<Response> show_column(const RouteContext& context, const Request& request,
                              const Table& table, const Column& column, Visibility visibility) {
-  if (auto good = check_shows_nothing(context, table, column, visibility); !good)
-    return tl::unexpected(good.error());
+  STRATA_TRY(check_shows_nothing(context, table, column, visibility));
   const auto answer = [id = column.id](const Table& now) {
     TableChange shown;
     shown.table = now;
     return json_response(column_json(shown, id)).with("ETag", etag_of(now.version));
   };
-  auto now = context.store.show_column(table.id, column.id, visibility, table.version,
-                                       first_answer<Table>(request, answer));
-  if (!now) return tl::unexpected(now.error());
+  auto now = STRATA_TRY(context.store.show_column(table.id, column.id, visibility, table.version,
+                                                  first_answer<Table>(request, answer)));
   // Colours, lines and points that are drawn from it are others for who does not see it any more.
-  context.rooms.records_changed(now->id);
-  tell_table(context, protocol::TableEventEvent::changed, *now, request.user());
-  return answer(*now);
+  context.rooms.records_changed(now.id);
+  tell_table(context, protocol::TableEventEvent::changed, now, request.user());
+  return answer(now);
 }
 
 Result<Response> change_column(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  auto found = column_of(*table, request);
-  if (!found) return tl::unexpected(found.error());
-  if (auto fresh = check_if_match(request, table->version); !fresh)
-    return tl::unexpected(fresh.error());
-  auto asked = body_of<protocol::ColumnPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  if (asked->visibility) {
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto found = STRATA_TRY(column_of(table, request));
+  STRATA_TRY(check_if_match(request, table.version));
+  auto asked = STRATA_TRY(body_of<protocol::ColumnPatch>(request));
+  if (asked.visibility) {
     protocol::ColumnPatch alone;
-    alone.visibility = asked->visibility;
-    if (!(*asked == alone))
-      return fail(422, "Visibility with other changes",
+    alone.visibility = asked.visibility;
+    if (!(asked == alone))
+      return fail(ErrorCode::invalid, "Visibility with other changes",
                   "Say who sees a column in a call of its own.", "visibility");
-    return show_column(context, request, *table, **found, *asked->visibility);
+    return show_column(context, request, table, *found, *asked.visibility);
   }
-  Column column = **found;
-  if (auto good = change(context, request, *asked, *table, column); !good)
-    return tl::unexpected(good.error());
+  Column column = *found;
+  STRATA_TRY(change(context, request, asked, table, column));
   const auto answer = [id = column.id](const TableChange& done) {
     const auto now = done.record.is_object() ? done.record.value("column", id) : id;
     return json_response(column_json(done, now)).with("ETag", etag_of(done.table.version));
   };
   auto done =
-      context.store.update_column(table->id, column, wished_version(request, *table),
-                                  request.user(), first_answer<TableChange>(request, answer));
+      context.store.update_column(table.id, column, wished_version(request, table), request.user(),
+                                  first_answer<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
   tell_change(context, *done, request.user());
   return answer(*done);
 }
 
 Result<Response> drop_column(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  auto column = column_of(*table, request);
-  if (!column) return tl::unexpected(column.error());
-  if (auto fresh = check_if_match(request, table->version); !fresh)
-    return tl::unexpected(fresh.error());
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto column = STRATA_TRY(column_of(table, request));
+  STRATA_TRY(check_if_match(request, table.version));
   const auto answer = [](const TableChange&) { return empty_response(204); };
-  auto done = context.store.drop_column(table->id, (*column)->id, wished_version(request, *table),
+  auto done = context.store.drop_column(table.id, column->id, wished_version(request, table),
                                         request.user(), first_answer<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
   tell_change(context, *done, request.user());
@@ -275,21 +241,18 @@ Result<Response> drop_column(const RouteContext& context, const Request& request
 // A record that lies above itself cannot be: told, not refused, since excavation drawings have such
 // things to be found.
 Result<Response> cycles(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  auto column = column_of(*table, request);
-  if (!column) return tl::unexpected(column.error());
-  if ((*column)->target != table->id)
-    return fail(422, "No relation of its own",
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto column = STRATA_TRY(column_of(table, request));
+  if (column->target != table.id)
+    return fail(ErrorCode::invalid, "No relation of its own",
                 "Cycles are those of a relation or term that names records of its own table.",
                 "column");
   store::Store::RecordQuery query;
   query.limit = store::kMostRecords;
-  auto page = context.store.records(table->id, request.role(), query);
-  if (!page) return tl::unexpected(page.error());
+  auto page = STRATA_TRY(context.store.records(table.id, request.role(), query));
   Relation relation;
-  for (const Record& record : page->records)
-    if (const auto named = record.values.find((*column)->id); named != record.values.end())
+  for (const Record& record : page.records)
+    if (const auto named = record.values.find(column->id); named != record.values.end())
       relation[record.key] = named->second.is_array()
                                  ? named->second.get<std::vector<std::int64_t>>()
                                  : std::vector{named->second.get<std::int64_t>()};
@@ -300,15 +263,14 @@ Result<Response> cycles(const RouteContext& context, const Request& request) {
 // --- history
 
 Result<Response> classes(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  auto column = column_of(*table, request);
-  if (!column) return tl::unexpected(column.error());
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto column = STRATA_TRY(column_of(table, request));
   const auto asked = request.query.find("method");
   const std::string method = asked == request.query.end() ? "unique" : asked->second;
   const bool unique = method == "unique";
   if (!unique && method != "equal" && method != "quantile")
-    return fail(422, "No such method", "Classes are equal, quantile or unique.", "method");
+    return fail(ErrorCode::invalid, "No such method", "Classes are equal, quantile or unique.",
+                "method");
   int count = unique ? 20 : 5;
   if (const auto wished = request.query.find("count"); wished != request.query.end()) {
     auto number = parse_integer(wished->second, 1, 1000, "count");
@@ -318,7 +280,7 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
   nlohmann::json list = nlohmann::json::array();
   std::uint64_t with_value = 0, classified = 0;
   if (unique) {
-    auto cells = context.store.record_texts(table->id, request.role(), (*column)->slug, "column");
+    auto cells = context.store.record_texts(table.id, request.role(), column->slug, "column");
     if (!cells) return tl::unexpected(cells.error());
     std::vector<std::string> values;
     for (KeyText& cell : *cells) values.push_back(std::move(cell.text));
@@ -329,15 +291,15 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
       classified += found.count;
     }
   } else {
-    if ((*column)->kind != ColumnKind::integer && (*column)->kind != ColumnKind::numeric)
-      return fail(422, "Column holds no numbers",
-                  "'" + (*column)->name + "' holds no numbers: its classes are its unique values.",
+    if (column->kind != ColumnKind::integer && column->kind != ColumnKind::numeric)
+      return fail(ErrorCode::invalid, "Column holds no numbers",
+                  "'" + column->name + "' holds no numbers: its classes are its unique values.",
                   "method");
     Expression number;
     number.op = Expression::Op::column;
-    number.path = {(*column)->slug};
+    number.path = {column->slug};
     auto cells =
-        context.store.record_numbers(table->id, request.role(), number, std::nullopt, "column");
+        context.store.record_numbers(table.id, request.role(), number, std::nullopt, "column");
     if (!cells) return tl::unexpected(cells.error());
     std::vector<double> values;
     for (const KeyNumber& cell : *cells) values.push_back(cell.number);
@@ -346,7 +308,7 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
          classify(values, method == "equal" ? ClassMethod::equal : ClassMethod::quantile, count))
       list.push_back({{"from", found.from}, {"to", found.to}, {"records", found.count}});
   }
-  const auto records = static_cast<std::uint64_t>(table->records);
+  const auto records = static_cast<std::uint64_t>(table.records);
   return json_response({{"total", list.size()},
                         {"classes", std::move(list)},
                         {"records", records},
@@ -355,43 +317,33 @@ Result<Response> classes(const RouteContext& context, const Request& request) {
 }
 
 Result<Response> history(const RouteContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
+  auto page = STRATA_TRY(page_of(request));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
   std::optional<std::int64_t> key;
   if (const std::string text = request.query_or("key", {}); !text.empty()) {
-    auto number = parse_integer(text, 0, kHighestKey, "key");
-    if (!number) return tl::unexpected(number.error());
-    key = *number;
+    auto number = STRATA_TRY(parse_integer(text, 0, kHighestKey, "key"));
+    key = number;
   }
-  const auto before = number_after(*page, INT64_MAX);
-  if (!before) return tl::unexpected(before.error());
-  auto rows = context.store.table_history(table->id, request.role(), key, page->limit + 1,
-                                          page->offset, *before);
-  if (!rows) return tl::unexpected(rows.error());
+  const auto before = STRATA_TRY(number_after(page, INT64_MAX));
+  auto rows = STRATA_TRY(context.store.table_history(table.id, request.role(), key, page.limit + 1,
+                                                     page.offset, before));
   const auto last =
-      end_page(rows->rows, *page, [](const auto& row) { return ListPlace::array({row.sequence}); });
+      end_page(rows.rows, page, [](const auto& row) { return ListPlace::array({row.sequence}); });
   nlohmann::json list = nlohmann::json::array();
-  for (const auto& row : rows->rows) list.push_back(to_json(row));
-  Response response = json_response({{"edits", std::move(list)}, {"total", rows->total}});
-  add_page_links(response, request, *page, last);
+  for (const auto& row : rows.rows) list.push_back(to_json(row));
+  Response response = json_response({{"edits", std::move(list)}, {"total", rows.total}});
+  add_page_links(response, request, page, last);
   return response;
 }
 
 Result<Response> undo(const RouteContext& context, const Request& request, bool redo) {
-  if (!request.body.empty())
-    if (auto empty = body_of<protocol::Empty>(request); !empty)
-      return tl::unexpected(empty.error());
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  auto plan = context.store.plan_table_undo(table->id, request.user(), redo);
-  if (!plan) return tl::unexpected(plan.error());
-  if (!plan->vanishing.empty()) {
-    auto painted = painted_layers(context, table->id, request.role());
-    if (!painted) return tl::unexpected(painted.error());
-    if (const std::string where = where_painted(*painted, plan->vanishing); !where.empty())
-      return fail(409, "Record is painted",
+  if (!request.body.empty()) STRATA_TRY(body_of<protocol::Empty>(request));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto plan = STRATA_TRY(context.store.plan_table_undo(table.id, request.user(), redo));
+  if (!plan.vanishing.empty()) {
+    auto painted = STRATA_TRY(painted_layers(context, table.id, request.role()));
+    if (const std::string where = where_painted(painted, plan.vanishing); !where.empty())
+      return fail(ErrorCode::conflict, "Record is painted",
                   "This would take away records that are painted: " + where +
                       ". Delete those records instead, which asks what to do with their texels.");
   }
@@ -402,26 +354,24 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
                           {"deleted", done.deleted},
                           {"columns_changed", done.columns_changed}});
   };
-  auto done = context.store.undo_table(table->id, request.user(), redo, plan->table_sequence,
-                                       first_answer<TableChange>(request, answer));
-  if (!done) return tl::unexpected(done.error());
-  tell_change(context, *done, request.user());
-  return answer(*done);
+  auto done =
+      STRATA_TRY(context.store.undo_table(table.id, request.user(), redo, plan.table_sequence,
+                                          first_answer<TableChange>(request, answer)));
+  tell_change(context, done, request.user());
+  return answer(done);
 }
 
 // --- surface of its keys
 
 Result<Response> areas(const RouteContext& context, const Request& request) {
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  auto painted = painted_layers(context, table->id, request.role());
-  if (!painted) return tl::unexpected(painted.error());
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto painted = STRATA_TRY(painted_layers(context, table.id, request.role()));
   struct Sum {
     CompensatedSum area_m2;
     std::map<std::int64_t, std::pair<CompensatedSum, nlohmann::json>> models;
   };
   std::map<std::int64_t, Sum> sums;
-  for (const PaintedLayer& layer : *painted)
+  for (const PaintedLayer& layer : painted)
     for (const auto& [key, area] : layer.areas) {
       Sum& sum = sums[key];
       sum.area_m2 += area.area_m2;
@@ -432,8 +382,7 @@ Result<Response> areas(const RouteContext& context, const Request& request) {
     }
   std::vector<std::int64_t> keys;
   for (const auto& [key, sum] : sums) keys.push_back(key);
-  auto missing = context.store.missing_records(table->id, keys);
-  if (!missing) return tl::unexpected(missing.error());
+  auto missing = STRATA_TRY(context.store.missing_records(table.id, keys));
   nlohmann::json list = nlohmann::json::array();
   for (auto& [key, sum] : sums) {
     nlohmann::json models = nlohmann::json::array();
@@ -443,7 +392,7 @@ Result<Response> areas(const RouteContext& context, const Request& request) {
                         {"layers", std::move(of_model.second)}});
     list.push_back({{"key", key},
                     {"area_m2", sum.area_m2.value()},
-                    {"has_record", !std::binary_search(missing->begin(), missing->end(), key)},
+                    {"has_record", !std::binary_search(missing.begin(), missing.end(), key)},
                     {"models", std::move(models)}});
   }
   const std::size_t total = list.size();
@@ -481,9 +430,8 @@ void add_table_routes(Router& router, const RouteContext& context) {
   read(tables, list_tables, {"limit", "offset", "after"});
   write(Method::post, tables, create_table);
   read(table, [](const RouteContext& c, const Request& request) -> Result<Response> {
-    auto found = c.store.table(request.param("table"), request.role());
-    if (!found) return tl::unexpected(found.error());
-    return with_etag(json_response(to_json(*found)), request, found->version);
+    auto found = STRATA_TRY(c.store.table(request.param("table"), request.role()));
+    return with_etag(json_response(to_json(found)), request, found.version);
   });
   write(Method::patch, table, change_table);
   write(Method::remove, table, delete_table, BodyKind::none);

@@ -14,19 +14,17 @@ namespace strata::net {
 namespace {
 
 Result<Response> list_templates(const RouteContext& context, const Request& request) {
-  auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
+  auto page = STRATA_TRY(page_of(request));
   const auto& templates = context.templates.all();
   nlohmann::json list = nlohmann::json::array();
   const int total = static_cast<int>(templates.size());
   // They are those that the server began with, in the order of then.
   std::int64_t place = 0;
-  const auto part =
-      slice_by(*page, templates, [&place](const auto&) { return NumberKey{place++}; });
+  const auto part = slice_by(page, templates, [&place](const auto&) { return NumberKey{place++}; });
   if (!part) return tl::unexpected(part.error());
   for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json(templates[i]));
   Response response = json_response({{"templates", std::move(list)}, {"total", total}});
-  add_page_links(response, request, *page, part->last);
+  add_page_links(response, request, page, part->last);
   return response;
 }
 
@@ -57,13 +55,12 @@ Result<std::vector<WishedLayer>> wished_layers(const protocol::Template& of, con
     for (const Layer& other : others)
       if (search_text(other.name) == plain)
         return fail(
-            409, "Name taken",
+            ErrorCode::conflict, "Name taken",
             "The model has a layer \"" + other.name +
                 "\" already. Rename or delete it first, or use the template without a model.",
             "model");
-    auto slug = slug_of({}, told.name);
-    if (!slug) return tl::unexpected(slug.error());
-    next.layer.slug = *slug;
+    auto slug = STRATA_TRY(slug_of({}, told.name));
+    next.layer.slug = slug;
     next.layer.kind = LayerKind::database;
     next.layer.type = *parse_value_type(protocol::name(told.type));
     next.layer.resolution = std::max(model.default_resolution, model.atlas.lowest_resolution);
@@ -82,7 +79,8 @@ Result<std::vector<WishedLayer>> wished_layers(const protocol::Template& of, con
 // Newest first, since columns of later tables name earlier ones.
 void take_back(const RouteContext& context, const std::vector<Table>& tables) {
   for (auto table = tables.rbegin(); table != tables.rend(); ++table)
-    if (auto gone = context.store.delete_table(table->id); !gone && gone.error().status != 404)
+    if (auto gone = context.store.delete_table(table->id);
+        !gone && gone.error().code != ErrorCode::not_found)
       log::warning("table " + std::to_string(table->id) +
                    " of a template that failed could not be removed: " + gone.error().detail);
 }
@@ -93,7 +91,7 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
                                        const std::vector<Table>& tables) {
   NewLayers layers(room, context.metrics, request.author());
   std::vector<Layer> made;
-  const auto refuse = [&](const Problem& problem) {
+  const auto refuse = [&](const Error& problem) {
     layers.take_back();
     return tl::unexpected(problem);
   };
@@ -121,28 +119,25 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
 }
 
 Result<Response> use_template(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::TemplateUse>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto project = context.store.project(request.param("project"));
-  if (!project) return tl::unexpected(project.error());
+  auto asked = STRATA_TRY(body_of<protocol::TemplateUse>(request));
+  auto project = STRATA_TRY(context.store.project(request.param("project")));
   const protocol::Template* of = context.templates.find(request.param("template"));
   if (!of)
-    return fail(404, "Not found",
+    return fail(ErrorCode::not_found, "Not found",
                 "There is no template `" + request.param("template").substr(0, 100) + "`.");
-  auto tables = new_tables(*of, project->id, asked->language);
-  if (!tables) return tl::unexpected(tables.error());
+  auto tables = STRATA_TRY(new_tables(*of, project.id, asked.language));
   std::shared_ptr<room::Room> room;
   std::vector<WishedLayer> wished;
-  if (asked->model) {
-    auto opened = context.rooms.open(*asked->model, request.role());
-    if (!opened && opened.error().status != 404) return tl::unexpected(opened.error());
-    if (!opened || (*opened)->model().project_id != project->id)
-      return fail(422, "No such model", "The project has no model `" + *asked->model + "`.",
-                  "model");
+  if (asked.model) {
+    auto opened = context.rooms.open(*asked.model, request.role());
+    if (!opened && opened.error().code != ErrorCode::not_found)
+      return tl::unexpected(opened.error());
+    if (!opened || (*opened)->model().project_id != project.id)
+      return fail(ErrorCode::invalid, "No such model",
+                  "The project has no model `" + *asked.model + "`.", "model");
     room = std::move(*opened);
-    auto layers = wished_layers(*of, *room, asked->language);
-    if (!layers) return tl::unexpected(layers.error());
-    wished = std::move(*layers);
+    auto layers = STRATA_TRY(wished_layers(*of, *room, asked.language));
+    wished = std::move(layers);
   }
   // The answer is kept with what is made last.
   const auto tables_alone = [](const std::vector<store::TableChange>& changes) {
@@ -150,14 +145,13 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
     for (const auto& change : changes) all.push_back(change.table);
     return answer_with(all, {});
   };
-  auto changes = context.store.create_tables(
-      *tables, false, request.user(), "template",
+  auto changes = STRATA_TRY(context.store.create_tables(
+      tables, false, request.user(), "template",
       wished.empty() ? first_answer<std::vector<store::TableChange>>(request, tables_alone)
                      : store::FirstAnswer<std::vector<store::TableChange>>{
-                           .key = {}, .make = {}, .user = request.user()});
-  if (!changes) return tl::unexpected(changes.error());
+                           .key = {}, .make = {}, .user = request.user()}));
   std::vector<Table> made;
-  for (const auto& change : *changes) {
+  for (const auto& change : changes) {
     if (!change.problems.empty()) return tl::unexpected(change.problems.front().problem);
     made.push_back(change.table);
   }

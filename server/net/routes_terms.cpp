@@ -23,20 +23,20 @@ Result<TermList> read_terms(const Request& request) {
   if (kind == "text/csv") return read_terms_csv(request.body);
   if (kind == "text/turtle") return read_terms_skos(request.body, RdfSyntax::turtle);
   if (kind == "application/rdf+xml") return read_terms_skos(request.body, RdfSyntax::rdf_xml);
-  return fail(415, "Format not known",
+  return fail(ErrorCode::unsupported, "Format not known",
               "Terms come as text/csv, text/turtle or application/rdf+xml.", "Content-Type");
 }
 
 Result<bool> is_dry_run(const Request& request) {
   const std::string tried = request.query_or("dry_run", "false");
   if (tried == "true" || tried == "false") return tried == "true";
-  return fail(422, "Bad value", "`dry_run` is true or false.", "dry_run");
+  return fail(ErrorCode::invalid, "Bad value", "`dry_run` is true or false.", "dry_run");
 }
 
 nlohmann::json report_of(const TermList& list, const TableChange& change, bool dry_run) {
   nlohmann::json problems = nlohmann::json::array();
   const auto add = [&](int line, const std::string& code, const std::string& column,
-                       const Problem& problem) {
+                       const Error& problem) {
     if (problems.size() == store::kMostRowProblems) return;
     problems.push_back({{"line", line}, {"title", problem.title}, {"detail", problem.detail}});
     if (!code.empty()) problems.back()["code"] = code;
@@ -44,7 +44,7 @@ nlohmann::json report_of(const TermList& list, const TableChange& change, bool d
   };
   for (const TermMistake& mistake : list.mistakes)
     add(mistake.line, mistake.code, mistake.column, mistake.problem);
-  for (const store::RowProblem& problem : change.problems) {
+  for (const store::RowError& problem : change.problems) {
     const Term* term = problem.index ? &list.terms[*problem.index] : nullptr;
     constexpr std::string_view kValues = "values.";
     const std::string& field = problem.problem.field;
@@ -75,7 +75,7 @@ Result<Response> refusal(const TermList& list, const TableChange& change) {
                                 ? "\"" + first.at("code").get<std::string>() + "\": "
                                 : std::string();
   Response response = problem_response(
-      {422, "Terms refused",
+      {ErrorCode::invalid, "Terms refused",
        "Nothing was written. " + where + first.at("detail").get<std::string>(), "body"});
   auto body = nlohmann::json::parse(response.body);
   body["rows"] = report;
@@ -84,65 +84,57 @@ Result<Response> refusal(const TermList& list, const TableChange& change) {
 }
 
 Result<Response> create_terms(const RouteContext& context, const Request& request) {
-  auto dry_run = is_dry_run(request);
-  if (!dry_run) return tl::unexpected(dry_run.error());
+  auto dry_run = STRATA_TRY(is_dry_run(request));
   store::Store::NewTable wished;
   wished.table.name = request.query_or("name", {});
   if (wished.table.name.empty() || wished.table.name.size() > kLongestListName)
-    return fail(422, "Name missing", "`name` tells what the list is called, in 1 to 200 bytes.",
-                "name");
-  auto slug = slug_of({}, wished.table.name);
-  if (!slug) return tl::unexpected(slug.error());
-  wished.table.slug = *slug;
-  auto project = context.store.project(request.param("project"));
-  if (!project) return tl::unexpected(project.error());
-  wished.table.project_id = project->id;
-  auto list = read_terms(request);
-  if (!list) return tl::unexpected(list.error());
+    return fail(ErrorCode::invalid, "Name missing",
+                "`name` tells what the list is called, in 1 to 200 bytes.", "name");
+  auto slug = STRATA_TRY(slug_of({}, wished.table.name));
+  wished.table.slug = slug;
+  auto project = STRATA_TRY(context.store.project(request.param("project")));
+  wished.table.project_id = project.id;
+  auto list = STRATA_TRY(read_terms(request));
   std::vector<std::string> languages;
-  for (const std::string& column : list->columns)
+  for (const std::string& column : list.columns)
     if (const auto language = label_language(column)) languages.push_back(*language);
   wished.table.columns = new_term_columns(languages);
-  if (!list->mistakes.empty()) {
-    if (*dry_run) return json_response(report_of(*list, {}, true));
-    return refusal(*list, {});
+  if (!list.mistakes.empty()) {
+    if (dry_run) return json_response(report_of(list, {}, true));
+    return refusal(list, {});
   }
-  wished.terms = *list;
+  wished.terms = list;
   const auto answer = [&list](const std::vector<TableChange>& changes) {
-    return json_response(report_of(*list, changes.front(), false), 201)
+    return json_response(report_of(list, changes.front(), false), 201)
         .with("Location", "/api/v1/tables/" + changes.front().table.slug);
   };
   auto changes =
-      context.store.create_tables({wished}, *dry_run, request.user(), "import",
+      context.store.create_tables({wished}, dry_run, request.user(), "import",
                                   first_answer<std::vector<TableChange>>(request, answer));
   if (!changes) return tl::unexpected(changes.error());
-  if (*dry_run) return json_response(report_of(*list, changes->front(), true));
-  if (!changes->front().problems.empty()) return refusal(*list, changes->front());
+  if (dry_run) return json_response(report_of(list, changes->front(), true));
+  if (!changes->front().problems.empty()) return refusal(list, changes->front());
   tell_table(context, protocol::TableEventEvent::created, changes->front().table, request.user());
   return answer(*changes);
 }
 
 Result<Response> import_terms(const RouteContext& context, const Request& request) {
-  auto dry_run = is_dry_run(request);
-  if (!dry_run) return tl::unexpected(dry_run.error());
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  auto list = read_terms(request);
-  if (!list) return tl::unexpected(list.error());
-  if (!list->mistakes.empty()) {
-    if (*dry_run) return json_response(report_of(*list, {}, true));
-    return refusal(*list, {});
+  auto dry_run = STRATA_TRY(is_dry_run(request));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto list = STRATA_TRY(read_terms(request));
+  if (!list.mistakes.empty()) {
+    if (dry_run) return json_response(report_of(list, {}, true));
+    return refusal(list, {});
   }
   const auto answer = [&list](const TableChange& change) {
-    return json_response(report_of(*list, change, false));
+    return json_response(report_of(list, change, false));
   };
-  auto change = context.store.import_terms(table->id, *list, *dry_run, request.user(),
-                                           first_answer<TableChange>(request, answer));
-  if (!change) return tl::unexpected(change.error());
-  if (*dry_run) return json_response(report_of(*list, *change, true));
-  if (!change->problems.empty()) return refusal(*list, *change);
-  tell_change(context, *change, request.user());
-  return answer(*change);
+  auto change = STRATA_TRY(context.store.import_terms(table.id, list, dry_run, request.user(),
+                                                      first_answer<TableChange>(request, answer)));
+  if (dry_run) return json_response(report_of(list, change, true));
+  if (!change.problems.empty()) return refusal(list, change);
+  tell_change(context, change, request.user());
+  return answer(change);
 }
 
 // --- reading
@@ -205,41 +197,36 @@ Response tree_response(const Request& request, const std::string& language,
 Result<Response> list_terms_of(const RouteContext& context, const Request& request) {
   const std::string format = request.query_or("f", "json");
   if (format != "json" && format != "csv" && format != "turtle")
-    return fail(406, "Unknown format", "`f` is json, csv or turtle.", "f");
-  auto separator = csv_separator(request);
-  if (!separator) return tl::unexpected(separator.error());
-  auto shown = page_of(request);
-  if (!shown) return tl::unexpected(shown.error());
-  const auto language = asked_language(request);
-  if (!language) return tl::unexpected(language.error());
-  auto table = context.store.table(request.param("table"), request.role());
-  if (!table) return tl::unexpected(table.error());
-  if (!term_columns(*table))
-    return fail(409, "No list of terms",
-                table->name + " is a table of records. Read `/records` of it.");
+    return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is json, csv or turtle.", "f");
+  auto separator = STRATA_TRY(csv_separator(request));
+  auto shown = STRATA_TRY(page_of(request));
+  const auto language = STRATA_TRY(asked_language(request));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  if (!term_columns(table))
+    return fail(ErrorCode::conflict, "No list of terms",
+                table.name + " is a table of records. Read `/records` of it.");
   store::Store::RecordQuery all;
   all.limit = store::kMostRecords;
-  auto page = context.store.records(table->id, request.role(), all);
-  if (!page) return tl::unexpected(page.error());
-  const auto columns = term_columns(page->table);
-  if (!columns) return fail(409, "No list of terms", table->name + " was changed meanwhile.");
-  const auto listed = list_terms(*columns, page->records);
+  auto page = STRATA_TRY(context.store.records(table.id, request.role(), all));
+  const auto columns = term_columns(page.table);
+  if (!columns)
+    return fail(ErrorCode::conflict, "No list of terms", table.name + " was changed meanwhile.");
+  const auto listed = list_terms(*columns, page.records);
   Response response;
   if (format == "json") {
-    response = tree_response(request, *language, listed, *shown);
+    response = tree_response(request, language, listed, shown);
   } else {
     std::vector<Term> terms;
     for (const ListedTerm& each : listed) terms.push_back(each.term);
     if (format == "csv") {
-      response = text_response(terms_csv(terms, *separator), kCsvType);
+      response = text_response(terms_csv(terms, separator), kCsvType);
     } else {
-      auto text = terms_skos(page->table.name, terms);
-      if (!text) return tl::unexpected(text.error());
-      response = text_response(std::move(*text), "text/turtle; charset=utf-8");
+      auto text = STRATA_TRY(terms_skos(page.table.name, terms));
+      response = text_response(std::move(text), "text/turtle; charset=utf-8");
     }
-    name_download(response, page->table.slug + (format == "csv" ? ".csv" : ".ttl"));
+    name_download(response, page.table.slug + (format == "csv" ? ".csv" : ".ttl"));
   }
-  response.with("Strata-Sequence", std::to_string(page->table.sequence));
+  response.with("Strata-Sequence", std::to_string(page.table.sequence));
   return response;
 }
 

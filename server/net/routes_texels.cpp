@@ -32,7 +32,7 @@ constexpr Format kFormats[] = {{"tif", "image/tiff", query::encode_tiff, query::
 Result<const Format*> format_of(const Request& request) {
   for (const Format& format : kFormats)
     if (request.param("format") == format.extension) return &format;
-  return fail(404, "Unknown raster format",
+  return fail(ErrorCode::not_found, "Unknown raster format",
               "Texels are there as texels.tif, texels.png, texels.npy and texels.csv.", "format");
 }
 
@@ -45,20 +45,17 @@ std::uint64_t raster_bytes(const Layer& layer) {
 
 Result<Response> read_texels(const RouteContext& context, ByteBudget& budget,
                              const Request& request) {
-  auto format = format_of(request);
-  if (!format) return tl::unexpected(format.error());
-  const auto asked = LayerQuery::from(context, request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto held = budget.take(raster_bytes(asked->layer));
-  if (!held) return tl::unexpected(held.error());
-  auto snapshot = asked->room->tiles(asked->layer.slug, asked->at);
+  auto format = STRATA_TRY(format_of(request));
+  const auto asked = STRATA_TRY(LayerQuery::from(context, request));
+  auto held = STRATA_TRY(budget.take(raster_bytes(asked.layer)));
+  auto snapshot = asked.room->tiles(asked.layer.slug, asked.at);
   if (!snapshot) return tl::unexpected(snapshot.error());
-  auto bytes = (*format)->encode(asked->layer, snapshot->tiles);
+  auto bytes = format->encode(asked.layer, snapshot->tiles);
   if (!bytes) return tl::unexpected(bytes.error());
-  Response response = bytes_response(std::move(*bytes), (*format)->media_type);
-  response.held = std::move(*held);
-  name_download(response, asked->layer.slug + "." + (*format)->extension);
-  add_sequences(response, asked->at.value_or(snapshot->sequence), asked->room->durable_sequence());
+  Response response = bytes_response(std::move(*bytes), format->media_type);
+  response.held = std::move(held);
+  name_download(response, asked.layer.slug + "." + format->extension);
+  add_sequences(response, asked.at.value_or(snapshot->sequence), asked.room->durable_sequence());
   return response;
 }
 
@@ -66,21 +63,18 @@ Result<void> check_size(const Layer& layer, std::uint64_t bytes) {
   const std::uint64_t most =
       std::uint64_t(layer.resolution) * layer.resolution * kTexelBytes + (1u << 20);
   if (bytes <= most) return {};
-  return fail(413, "Raster too large",
+  return fail(ErrorCode::too_large, "Raster too large",
               "A raster of this layer has at most " + std::to_string(most) + " bytes.", "body");
 }
 
 // Before the body, where its length is told.
 Result<void> check_raster(const RouteContext& context, const Request& request) {
-  auto format = format_of(request);
-  if (!format) return tl::unexpected(format.error());
-  auto layer = stored_layer(context, request);
-  if (!layer) return tl::unexpected(layer.error());
+  STRATA_TRY(format_of(request));
+  auto layer = STRATA_TRY(stored_layer(context, request));
   const std::string_view length = request.header("content-length");
   if (length.empty()) return {};
-  auto bytes = parse_integer(length, 0, INT64_MAX, "Content-Length");
-  if (!bytes) return tl::unexpected(bytes.error());
-  return check_size(*layer, static_cast<std::uint64_t>(*bytes));
+  auto bytes = STRATA_TRY(parse_integer(length, 0, INT64_MAX, "Content-Length"));
+  return check_size(layer, static_cast<std::uint64_t>(bytes));
 }
 
 void write_texels(const RouteContext& context, ByteBudget& budget, const Request& request,
@@ -96,7 +90,8 @@ void write_texels(const RouteContext& context, ByteBudget& budget, const Request
   if (!held) return respond(held.error());
   const auto file = MappedFile::open(request.body_file);
   if (!file || file->bytes().empty())
-    return respond(Problem{400, "Empty body", "Send the raster file as the body.", "body"});
+    return respond(
+        Error{ErrorCode::malformed, "Empty body", "Send the raster file as the body.", "body"});
   auto tiles = (*format)->decode(*layer, file->bytes());
   if (!tiles) return respond(tiles.error());
   room::EditRequest edit{edit_id(request, *layer, "import"), request.author(), layer->id};
@@ -129,33 +124,30 @@ Result<void> add_columns(const RouteContext& context, Role seen_by,
                          std::optional<std::int64_t> at, TexelCsv& csv) {
   const Layer& layer = texels.view.layer;
   if (!layer.table)
-    return fail(422, "Numeric layer",
+    return fail(ErrorCode::invalid, "Numeric layer",
                 layer.name + " holds numbers; only database layers have records with columns.",
                 "columns");
   store::Store::RecordQuery query;
   query.keys = keys_of(texels);
   if (at) {
-    auto then = context.store.table_sequence_when(*layer.table, layer.model_id, *at);
-    if (!then) return tl::unexpected(then.error());
-    query.at = *then;
+    auto then = STRATA_TRY(context.store.table_sequence_when(*layer.table, layer.model_id, *at));
+    query.at = then;
   }
-  auto page = context.store.records(*layer.table, seen_by, query);
-  if (!page) return tl::unexpected(page.error());
+  auto page = STRATA_TRY(context.store.records(*layer.table, seen_by, query));
   std::vector<Column> columns;
   for (const std::string& ref : wanted) {
-    const Column* column = find_column(page->table.columns, ref);
+    const Column* column = find_column(page.table.columns, ref);
     if (!column)
-      return fail(422, "No such column",
-                  page->table.name + " has no column `" + ref.substr(0, 100) + "`.", "columns");
+      return fail(ErrorCode::invalid, "No such column",
+                  page.table.name + " has no column `" + ref.substr(0, 100) + "`.", "columns");
     columns.push_back(*column);
   }
-  csv.add_records(page->records, columns);
+  csv.add_records(page.records, columns);
   return {};
 }
 
 Result<Response> read_texel_lines(const RouteContext& context, const Request& request) {
-  const auto separator = csv_separator(request);
-  if (!separator) return tl::unexpected(separator.error());
+  const auto separator = STRATA_TRY(csv_separator(request));
   std::optional<double> cell_m;
   if (const auto given = request.query.find("cell"); given != request.query.end()) {
     auto length = parse_length(given->second, "cell");
@@ -168,27 +160,24 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
     if (!condition) return tl::unexpected(condition.error());
     selection.where = std::move(*condition);
   }
-  const auto asked = LayerQuery::from(context, request);
-  if (!asked) return tl::unexpected(asked.error());
-  selection.at = asked->at;
-  auto found = asked->room->surface_texels(asked->layer.slug, selection);
+  const auto asked = STRATA_TRY(LayerQuery::from(context, request));
+  selection.at = asked.at;
+  auto found = asked.room->surface_texels(asked.layer.slug, selection);
   if (!found) return tl::unexpected(found.error());
   const auto texels = std::make_shared<const query::SurfaceTexels>(std::move(*found));
-  auto csv = std::make_shared<TexelCsv>(asked->room->model().unit, *separator);
+  auto csv = std::make_shared<TexelCsv>(asked.room->model().unit, separator);
   if (const auto wanted = split_list(request.query_or("columns", {})); !wanted.empty())
-    if (auto added = add_columns(context, request.role(), wanted, *texels, asked->at, *csv); !added)
-      return tl::unexpected(added.error());
+    STRATA_TRY(add_columns(context, request.role(), wanted, *texels, asked.at, *csv));
   std::shared_ptr<std::vector<query::TexelSample>> cells;
   if (cell_m) {
-    auto summed = query::samples_by_cell(*texels, *cell_m / texels->metres_per_unit);
-    if (!summed) return tl::unexpected(summed.error());
-    cells = std::make_shared<std::vector<query::TexelSample>>(std::move(*summed));
+    auto summed = STRATA_TRY(query::samples_by_cell(*texels, *cell_m / texels->metres_per_unit));
+    cells = std::make_shared<std::vector<query::TexelSample>>(std::move(summed));
   }
   Response response;
   response.with("Content-Type", kCsvType);
-  name_download(response, asked->layer.slug + ".csv");
-  add_sequences(response, asked->at.value_or(texels->view.snapshot.sequence),
-                asked->room->durable_sequence());
+  name_download(response, asked.layer.slug + ".csv");
+  add_sequences(response, asked.at.value_or(texels->view.snapshot.sequence),
+                asked.room->durable_sequence());
   response.stream = Response::Stream{
       {}, [texels, csv, cells](const Response::Sink& sink) {
         std::string text = csv->head();

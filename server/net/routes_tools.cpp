@@ -22,25 +22,22 @@ void tell_everyone(const RouteContext& context, Event event, const Tool& tool) {
 }
 
 Result<Response> list_tools(const RouteContext& context, const Request& request) {
-  const auto page = page_of(request, kMaxPage);
-  if (!page) return tl::unexpected(page.error());
-  auto tools = context.store.tools();
-  if (!tools) return tl::unexpected(tools.error());
-  const auto part = slice_by_name(*page, *tools, context.store, [](const Tool& tool) {
+  const auto page = STRATA_TRY(page_of(request, kMaxPage));
+  auto tools = STRATA_TRY(context.store.tools());
+  const auto part = STRATA_TRY(slice_by_name(page, tools, context.store, [](const Tool& tool) {
     return store::Store::NamedId{tool.name, tool.id};
-  });
-  if (!part) return tl::unexpected(part.error());
+  }));
   nlohmann::json list = nlohmann::json::array();
-  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(to_json((*tools)[i]));
-  Response response = json_response({{"tools", list}, {"total", tools->size()}});
-  add_page_links(response, request, *page, part->last);
+  for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(tools[i]));
+  Response response = json_response({{"tools", list}, {"total", tools.size()}});
+  add_page_links(response, request, page, part.last);
   return response;
 }
 
 Result<std::string> name_of(const Request& request) {
   std::string name = request.query_or("name", {});
   if (name.empty() || name.size() > kLongestToolName)
-    return fail(422, "Name missing", "A tool has a name of 1 to 200 bytes.", "name");
+    return fail(ErrorCode::invalid, "Name missing", "A tool has a name of 1 to 200 bytes.", "name");
   return name;
 }
 
@@ -50,78 +47,67 @@ Result<std::optional<ShapePart>> part_of(const Request& request) {
   if (part == "opaque") return ShapePart::opaque;
   if (part == "light") return ShapePart::light;
   if (part == "dark") return ShapePart::dark;
-  return fail(422, "Unknown part", "`part` is opaque, light or dark.", "part");
+  return fail(ErrorCode::invalid, "Unknown part", "`part` is opaque, light or dark.", "part");
 }
 
 Result<Response> create_tool(const RouteContext& context, const Request& request) {
   Tool tool;
-  auto name = name_of(request);
-  if (!name) return tl::unexpected(name.error());
-  tool.name = std::move(*name);
-  const auto part = part_of(request);
-  if (!part) return tl::unexpected(part.error());
+  auto name = STRATA_TRY(name_of(request));
+  tool.name = std::move(name);
+  const auto part = STRATA_TRY(part_of(request));
   const auto body = MappedFile::open(request.body_file);
   if (!body || body->bytes().empty())
-    return fail(400, "Empty body", "Send a picture as the body: PNG, JPEG, TIFF, WebP, BMP or TGA.",
-                "body");
+    return fail(ErrorCode::malformed, "Empty body",
+                "Send a picture as the body: PNG, JPEG, TIFF, WebP, BMP or TGA.", "body");
   const auto picture = decode_picture(body->bytes(), kLargestPictureSide_px);
   if (!picture) return tl::unexpected(picture.error());
-  const auto shape = shape_of(*picture, *part);
-  if (!shape) return tl::unexpected(shape.error());
+  const auto shape = STRATA_TRY(shape_of(*picture, part));
   const auto answer = [](const Tool& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/tools/" + made.slug)
         .with("ETag", etag_of(made.version));
   };
-  auto created = context.store.create_tool(tool, *shape, first_answer<Tool>(request, answer));
-  if (!created) return tl::unexpected(created.error());
-  tell_everyone(context, Event::created, *created);
-  return answer(*created);
+  auto created =
+      STRATA_TRY(context.store.create_tool(tool, shape, first_answer<Tool>(request, answer)));
+  tell_everyone(context, Event::created, created);
+  return answer(created);
 }
 
 // One that can be changed: that is not deleted.
 Result<Tool> present_tool(const RouteContext& context, const Request& request) {
   auto tool = context.store.tool(request.param("tool"));
   if (tool && tool->deleted)
-    return fail(404, "Tool deleted",
+    return fail(ErrorCode::not_found, "Tool deleted",
                 "The tool `" + tool->name + "` was deleted: it can be read, but not changed.");
   if (!tool) return tool;
-  if (auto fresh = check_if_match(request, tool->version); !fresh)
-    return tl::unexpected(fresh.error());
+  STRATA_TRY(check_if_match(request, tool->version));
   return tool;
 }
 
 Result<Response> rename_tool(const RouteContext& context, const Request& request) {
-  auto asked = body_of<protocol::ToolPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto tool = present_tool(context, request);
-  if (!tool) return tl::unexpected(tool.error());
-  tool->name = asked->name;
+  auto asked = STRATA_TRY(body_of<protocol::ToolPatch>(request));
+  auto tool = STRATA_TRY(present_tool(context, request));
+  tool.name = asked.name;
   const auto answer = [](const Tool& now) {
     return json_response(to_json(now)).with("ETag", etag_of(now.version));
   };
-  auto changed = context.store.update_tool(*tool, first_answer<Tool>(request, answer));
-  if (!changed) return tl::unexpected(changed.error());
-  tell_everyone(context, Event::changed, *changed);
-  return answer(*changed);
+  auto changed = STRATA_TRY(context.store.update_tool(tool, first_answer<Tool>(request, answer)));
+  tell_everyone(context, Event::changed, changed);
+  return answer(changed);
 }
 
 Result<Response> delete_tool(const RouteContext& context, const Request& request) {
-  auto tool = present_tool(context, request);
-  if (!tool) return tl::unexpected(tool.error());
-  auto gone = context.store.delete_tool(
-      tool->id, first_answer<>(request, [] { return empty_response(204); }));
-  if (!gone) return tl::unexpected(gone.error());
-  tell_everyone(context, Event::deleted, *tool);
+  auto tool = STRATA_TRY(present_tool(context, request));
+  STRATA_TRY(context.store.delete_tool(
+      tool.id, first_answer<>(request, [] { return empty_response(204); })));
+  tell_everyone(context, Event::deleted, tool);
   return empty_response(204);
 }
 
 Result<Response> tool_picture(const RouteContext& context, const Request& request) {
-  auto tool = context.store.tool(request.param("tool"));
-  if (!tool) return tl::unexpected(tool.error());
-  auto shape = context.store.tool_shape(tool->id);
-  if (!shape) return tl::unexpected(shape.error());
-  const Picture picture = picture_of(*shape);
+  auto tool = STRATA_TRY(context.store.tool(request.param("tool")));
+  auto shape = STRATA_TRY(context.store.tool_shape(tool.id));
+  const Picture picture = picture_of(shape);
   Response response =
       bytes_response(encode_png(picture.rgba, picture.width, picture.height), "image/png");
   // An id stands for one shape for ever; a slug may be given to another.
@@ -147,8 +133,8 @@ void add_tool_routes(Router& router, const RouteContext& context) {
               .role = Role::annotator,
               .query = {"name", "part"},
               .check = [](const Request& request) -> Result<void> {
-                if (auto name = name_of(request); !name) return tl::unexpected(name.error());
-                if (auto part = part_of(request); !part) return tl::unexpected(part.error());
+                STRATA_TRY(name_of(request));
+                STRATA_TRY(part_of(request));
                 return {};
               },
               .body = BodyKind::file,
@@ -157,9 +143,8 @@ void add_tool_routes(Router& router, const RouteContext& context) {
   router.add({.method = Method::get,
               .pattern = tools + "/{tool}",
               .handler = answering([&context](const Request& request) -> Result<Response> {
-                auto tool = context.store.tool(request.param("tool"));
-                if (!tool) return tl::unexpected(tool.error());
-                return with_etag(json_response(to_json(*tool)), request, tool->version);
+                auto tool = STRATA_TRY(context.store.tool(request.param("tool")));
+                return with_etag(json_response(to_json(tool)), request, tool.version);
               }),
               .role = Role::guest});
   router.add({.method = Method::patch,

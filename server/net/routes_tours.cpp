@@ -15,17 +15,13 @@ struct Found {
   NamedPart tour;
 };
 Result<Found> find_tour(const RouteContext& context, const Request& request) {
-  auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  auto tour = context.store.tours().find(model->id, request.param("tour"));
-  if (!tour) return tl::unexpected(tour.error());
-  return Found{std::move(*model), std::move(*tour)};
+  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto tour = STRATA_TRY(context.store.tours().find(model.id, request.param("tour")));
+  return Found{std::move(model), std::move(tour)};
 }
 Result<Found> find_to_change(const RouteContext& context, const Request& request) {
-  auto found = find_tour(context, request);
-  if (!found) return found;
-  if (auto fresh = check_if_match(request, found->tour.version); !fresh)
-    return tl::unexpected(fresh.error());
+  auto found = STRATA_TRY(find_tour(context, request));
+  STRATA_TRY(check_if_match(request, found.tour.version));
   return found;
 }
 
@@ -38,92 +34,76 @@ Response answer_of(nlohmann::json told, const NamedPart& now, int status) {
 }
 
 Result<Response> list_tours(const RouteContext& context, const Request& request) {
-  const auto page = page_of(request);
-  if (!page) return tl::unexpected(page.error());
-  const auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  const auto after = number_after(*page);
-  if (!after) return tl::unexpected(after.error());
-  auto found = context.store.tours().of_model(model->id, page->limit + 1, page->offset, *after);
-  if (!found) return tl::unexpected(found.error());
-  const auto last = end_page(found->parts, *page,
+  const auto page = STRATA_TRY(page_of(request));
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto after = STRATA_TRY(number_after(page));
+  auto found =
+      STRATA_TRY(context.store.tours().of_model(model.id, page.limit + 1, page.offset, after));
+  const auto last = end_page(found.parts, page,
                              [](const NamedPart& tour) { return ListPlace::array({tour.id}); });
   nlohmann::json tours = nlohmann::json::array();
-  for (const NamedPart& tour : found->parts) tours.push_back(tour_entry(tour, tour.user));
-  Response response = json_response({{"tours", std::move(tours)}, {"total", found->total}});
-  add_page_links(response, request, *page, last);
+  for (const NamedPart& tour : found.parts) tours.push_back(tour_entry(tour, tour.user));
+  Response response = json_response({{"tours", std::move(tours)}, {"total", found.total}});
+  add_page_links(response, request, page, last);
   return response;
 }
 
 Result<Response> get_tour(const RouteContext& context, const Request& request) {
-  const auto found = find_tour(context, request);
-  if (!found) return tl::unexpected(found.error());
+  const auto found = STRATA_TRY(find_tour(context, request));
   const auto told =
-      to_json(context, found->tour, request.role(), told_name(request, found->tour.user));
+      to_json(context, found.tour, request.role(), told_name(request, found.tour.user));
   if (!told) return tl::unexpected(told.error());
-  return with_etag(json_response(*told), request, found->tour.version);
+  return with_etag(json_response(*told), request, found.tour.version);
 }
 
 Result<Response> create_tour(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::TourCreate>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  const auto model = context.store.model(request.param("model"));
-  if (!model) return tl::unexpected(model.error());
-  auto stops = kept_stops(context, *model, request.role(), asked->stops);
-  if (!stops) return tl::unexpected(stops.error());
+  const auto asked = STRATA_TRY(body_of<protocol::TourCreate>(request));
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto stops = STRATA_TRY(kept_stops(context, model, request.role(), asked.stops));
   NamedPart tour;
-  tour.model_id = model->id;
-  tour.name = asked->name;
-  tour.text = asked->text.value_or("");
+  tour.model_id = model.id;
+  tour.name = asked.name;
+  tour.text = asked.text.value_or("");
   tour.content = {
-      {"languages", asked->languages}, {"idle_s", asked->idle_s}, {"stops", std::move(*stops)}};
+      {"languages", asked.languages}, {"idle_s", asked.idle_s}, {"stops", std::move(stops)}};
   tour.user = request.user();
-  if (auto good = check_languages(tour.content, true); !good) return tl::unexpected(good.error());
-  const auto told = to_json(context, tour, request.role(), tour.user);
-  if (!told) return tl::unexpected(told.error());
+  STRATA_TRY(check_languages(tour.content, true));
+  const auto told = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
   const auto answer = [&](const NamedPart& made) {
-    return answer_of(*told, made, 201)
-        .with("Location", "/api/v1/models/" + model->slug + "/tours/" + made.slug);
+    return answer_of(told, made, 201)
+        .with("Location", "/api/v1/models/" + model.slug + "/tours/" + made.slug);
   };
-  const auto made = context.store.tours().create(tour, first_answer<NamedPart>(request, answer));
-  if (!made) return tl::unexpected(made.error());
-  return answer(*made);
+  const auto made =
+      STRATA_TRY(context.store.tours().create(tour, first_answer<NamedPart>(request, answer)));
+  return answer(made);
 }
 
 Result<Response> change_tour(const RouteContext& context, const Request& request) {
-  const auto asked = body_of<protocol::TourPatch>(request);
-  if (!asked) return tl::unexpected(asked.error());
-  auto found = find_to_change(context, request);
-  if (!found) return tl::unexpected(found.error());
-  NamedPart& tour = found->tour;
-  if (asked->name) tour.name = *asked->name;
-  if (asked->text) tour.text = *asked->text;
-  if (asked->languages) tour.content["languages"] = *asked->languages;
-  if (asked->idle_s) tour.content["idle_s"] = *asked->idle_s;
-  if (asked->stops) {
-    auto stops = kept_stops(context, found->model, request.role(), *asked->stops);
-    if (!stops) return tl::unexpected(stops.error());
-    tour.content["stops"] = std::move(*stops);
+  const auto asked = STRATA_TRY(body_of<protocol::TourPatch>(request));
+  auto found = STRATA_TRY(find_to_change(context, request));
+  NamedPart& tour = found.tour;
+  if (asked.name) tour.name = *asked.name;
+  if (asked.text) tour.text = *asked.text;
+  if (asked.languages) tour.content["languages"] = *asked.languages;
+  if (asked.idle_s) tour.content["idle_s"] = *asked.idle_s;
+  if (asked.stops) {
+    auto stops = STRATA_TRY(kept_stops(context, found.model, request.role(), *asked.stops));
+    tour.content["stops"] = std::move(stops);
   }
-  if (auto good = check_languages(tour.content, asked->stops.has_value()); !good)
-    return tl::unexpected(good.error());
-  const auto told = to_json(context, tour, request.role(), tour.user);
-  if (!told) return tl::unexpected(told.error());
-  const auto answer = [&](const NamedPart& now) { return answer_of(*told, now, 200); };
-  const auto changed = context.store.tours().update(tour, first_answer<NamedPart>(request, answer));
-  if (!changed) return tl::unexpected(changed.error());
-  return answer(*changed);
+  STRATA_TRY(check_languages(tour.content, asked.stops.has_value()));
+  const auto told = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
+  const auto answer = [&](const NamedPart& now) { return answer_of(told, now, 200); };
+  const auto changed =
+      STRATA_TRY(context.store.tours().update(tour, first_answer<NamedPart>(request, answer)));
+  return answer(changed);
 }
 
 Result<Response> delete_tour(const RouteContext& context, const Request& request) {
-  const auto found = find_to_change(context, request);
-  if (!found) return tl::unexpected(found.error());
-  const auto kiosks = context.store.kiosks().of_tour(found->tour.id);
-  if (!kiosks) return tl::unexpected(kiosks.error());
+  const auto found = STRATA_TRY(find_to_change(context, request));
+  const auto kiosks = STRATA_TRY(context.store.kiosks().of_tour(found.tour.id));
   const auto answer = [] { return empty_response(204); };
-  const auto gone = context.store.tours().remove(found->tour, first_answer<>(request, answer));
-  if (!gone) return tl::unexpected(gone.error());
-  end_kiosks(context, *kiosks, "the tour was deleted");
+  STRATA_TRY(context.store.tours().remove(found.tour, first_answer<>(request, answer)));
+  end_kiosks(context, kiosks, "the tour was deleted");
   return answer();
 }
 

@@ -26,10 +26,9 @@ Result<std::vector<query::LayerView>> layer_views(const Request& request, room::
   for (const Layer& layer : layers) {
     for (const query::LayerView& other : views)
       if (other.layer.id == layer.id)
-        return fail(422, "Layer named twice", "Name each layer once.", "layers");
-    auto tiles = room.tiles(layer.slug, at);
-    if (!tiles) return tl::unexpected(tiles.error());
-    views.push_back({layer, std::move(*tiles)});
+        return fail(ErrorCode::invalid, "Layer named twice", "Name each layer once.", "layers");
+    auto tiles = STRATA_TRY(room.tiles(layer.slug, at));
+    views.push_back({layer, std::move(tiles)});
   }
   return views;
 }
@@ -40,7 +39,7 @@ Result<bool> wants_layer_colors(const Request& request) {
   const std::string colors = request.query_or("colors", "scan");
   if (colors != "scan" && colors != "layers")
     return fail(
-        422, "Colours not understood",
+        ErrorCode::invalid, "Colours not understood",
         "`colors` is `scan` (the colours of the file, the default) or `layers` (as the layers are drawn).",
         "colors");
   return colors == "layers";
@@ -57,33 +56,27 @@ std::vector<query::LayerView> shown_layers(const Request& request,
 }
 
 Result<Response> read_vertices(const RouteContext& context, const Request& request) {
-  auto room = context.rooms.open(request.param("model"), request.role());
-  if (!room) return tl::unexpected(room.error());
-  if (auto may = check_source_download(request, (*room)->model()); !may)
-    return tl::unexpected(may.error());
-  const auto by_layers = wants_layer_colors(request);
-  if (!by_layers) return tl::unexpected(by_layers.error());
-  const auto at = find_sequence(context, **room, as_of(request));
-  if (!at) return tl::unexpected(at.error());
-  const auto sequence = at->value_or((*room)->sequence());
-  auto views = layer_views(request, **room, *at);
-  if (!views) return tl::unexpected(views.error());
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  STRATA_TRY(check_source_download(request, room->model()));
+  const auto by_layers = STRATA_TRY(wants_layer_colors(request));
+  const auto at = STRATA_TRY(find_sequence(context, *room, as_of(request)));
+  const auto sequence = at.value_or(room->sequence());
+  auto views = STRATA_TRY(layer_views(request, *room, at));
   MemoryLedger::Share memory;
   std::optional<query::VertexColors> colors;
-  if (*by_layers) {
-    auto composed =
-        compose_vertices(context, **room, request.role(), shown_layers(request, *views));
+  if (by_layers) {
+    auto composed = compose_vertices(context, *room, request.role(), shown_layers(request, views));
     if (!composed) return tl::unexpected(composed.error());
     memory = std::move(composed->memory);
     colors = std::move(composed->colors);
   }
-  query::VertexPly ply((*room)->geometry(), std::move(*views), std::move(colors));
+  query::VertexPly ply(room->geometry(), std::move(views), std::move(colors));
   const auto file =
       std::make_shared<const VertexFile>(VertexFile{std::move(memory), std::move(ply)});
   Response response;
   response.with("Content-Type", "model/ply");
-  name_download(response, (*room)->model().slug + ".ply");
-  add_sequences(response, sequence, (*room)->durable_sequence());
+  name_download(response, room->model().slug + ".ply");
+  add_sequences(response, sequence, room->durable_sequence());
   response.stream = Response::Stream{
       file->ply.bytes(), [file](const Response::Sink& sink) { return file->ply.write(sink); }};
   return response;

@@ -43,7 +43,7 @@ Result<void> prepare_upload_dir(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
-    return fail(500, "Upload folder not usable",
+    return fail(ErrorCode::internal, "Upload folder not usable",
                 "The folder " + folder.string() + " cannot be made: " + error.message() + ".");
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string extension = entry.path().extension().string();
@@ -57,7 +57,7 @@ Result<void> prepare_upload_dir(const fs::path& folder) {
 
 Result<tcp::acceptor> listen(asio::io_context& io, const std::string& host, std::uint16_t port) {
   auto refused = [&](const boost::system::error_code& error) {
-    return fail(500, "Cannot listen",
+    return fail(ErrorCode::internal, "Cannot listen",
                 "Cannot listen on " + host + ":" + std::to_string(port) + ": " + error.message() +
                     ". Choose another address with --listen.",
                 "listen");
@@ -127,24 +127,21 @@ Result<std::unique_ptr<Server>> Server::start(ServerOptions options, store::Stor
                                               render::Renderer& renderer) {
   if (!options.owner_token.empty() && options.owner_token.size() < kMinOwnerTokenLength)
     return fail(
-        422, "Owner token too short",
+        ErrorCode::invalid, "Owner token too short",
         "STRATA_OWNER_TOKEN has at least 32 characters; make one with `openssl rand -hex 32`.",
         "STRATA_OWNER_TOKEN");
-  if (auto ready = prepare_upload_dir(options.upload_dir); !ready)
-    return tl::unexpected(ready.error());
-  auto templates = TemplateShelf::load(options.templates_dir);
-  if (!templates) return tl::unexpected(templates.error());
+  STRATA_TRY(prepare_upload_dir(options.upload_dir));
+  auto templates = STRATA_TRY(TemplateShelf::load(options.templates_dir));
   std::optional<Certificate> certificate;
   if (!options.tls_chain.empty()) {
-    auto loaded = Certificate::load(options.tls_chain, options.tls_key);
-    if (!loaded) return tl::unexpected(loaded.error());
-    certificate = std::move(*loaded);
+    auto loaded = STRATA_TRY(Certificate::load(options.tls_chain, options.tls_key));
+    certificate = std::move(loaded);
   }
   const std::string host = options.host;
   const std::uint16_t port = options.port;
   std::unique_ptr<Server> server(new Server);
   server->impl_ = std::make_unique<Impl>(std::move(options), store, rooms, jobs, renderer,
-                                         std::move(*templates), std::move(certificate));
+                                         std::move(templates), std::move(certificate));
   Impl& impl = *server->impl_;
   auto acceptor = listen(*impl.io, host, port);
   if (!acceptor) {
@@ -168,8 +165,10 @@ void Server::stop() {
     boost::system::error_code ignored;
     impl.acceptor.close(ignored);
   });
-  impl.app.questions().end_all(
-      {503, "Server stops", "The server is shutting down; ask again when it is back.", {}});
+  impl.app.questions().end_all({ErrorCode::unavailable,
+                                "Server stops",
+                                "The server is shutting down; ask again when it is back.",
+                                {}});
   impl.app.live_sockets().close_all(kCloseGoingAway, "the server stops");
   wait_until([&] { return impl.app.metrics().open_sockets.load() == 0; }, kGoodbye);
   wait_until([&] { return impl.connections->requests_at_work.load() == 0; }, kAnswers);

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "jobs/job_queue.h"
 #include "net/server_options.h"
 #include "render/renderer.h"

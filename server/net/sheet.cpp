@@ -18,7 +18,7 @@ Result<SheetFormat> sheet_format(const Request& request) {
   if (asked->second == "json") return SheetFormat::json;
   if (asked->second == "csv") return SheetFormat::csv;
   if (asked->second == "xlsx") return SheetFormat::xlsx;
-  return fail(406, "Unknown format", "`f` is json, csv or xlsx.", "f");
+  return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is json, csv or xlsx.", "f");
 }
 
 Result<char> csv_separator(const Request& request) {
@@ -26,7 +26,8 @@ Result<char> csv_separator(const Request& request) {
   if (text == "comma") return ',';
   if (text == "semicolon") return ';';
   if (text == "tab") return '\t';
-  return fail(422, "Unknown separator", "`separator` is comma, semicolon or tab.", "separator");
+  return fail(ErrorCode::invalid, "Unknown separator", "`separator` is comma, semicolon or tab.",
+              "separator");
 }
 
 namespace {

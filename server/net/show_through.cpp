@@ -9,9 +9,9 @@
 namespace strata::net {
 namespace {
 
-tl::unexpected<Problem> shows_through(const Layer& layer) {
+tl::unexpected<Error> shows_through(const Layer& layer) {
   return fail(
-      409, "Would show through",
+      ErrorCode::conflict, "Would show through",
       "The layer " + layer.name + " is " + std::string(name(layer.visibility)) +
           " and made of this, so that more people would see it. Let fewer see that layer first, or take this out of it.",
       "visibility");
@@ -42,12 +42,11 @@ bool names_unseen_column(const Expression& e, const std::map<std::string, Table>
 Result<void> check_shows_nothing(const RouteContext& context, const Layer& layer,
                                  const std::vector<Layer>& others) {
   if (layer.table && !layer.palette.column.empty()) {
-    const auto table = context.store.table(std::to_string(*layer.table), Role::owner);
-    if (!table) return tl::unexpected(table.error());
-    const Column* column = find_column(table->columns, layer.palette.column);
+    const auto table = STRATA_TRY(context.store.table(std::to_string(*layer.table), Role::owner));
+    const Column* column = find_column(table.columns, layer.palette.column);
     if (column && column->visibility > layer.visibility)
       return fail(
-          422, "Would show through",
+          ErrorCode::invalid, "Would show through",
           "The palette colours by " + column->name + ", which is " +
               std::string(name(column->visibility)) +
               ": more people would see the layer. Let fewer see it, or colour it by something else.",
@@ -63,19 +62,17 @@ Result<void> check_shows_nothing(const RouteContext& context, const Layer& layer
 
 Result<void> check_shows_nothing(const RouteContext& context, const Table& table,
                                  const Column& column, Visibility visibility) {
-  const auto layers = context.store.layers_of_table(table.id, Role::owner);
-  if (!layers) return tl::unexpected(layers.error());
+  const auto layers = STRATA_TRY(context.store.layers_of_table(table.id, Role::owner));
   std::map<std::int64_t, std::set<std::string>> by_model;  // slugs
-  for (const Layer& layer : *layers) {
+  for (const Layer& layer : layers) {
     by_model[layer.model_id].insert(layer.slug);
     if (layer.visibility < visibility &&
         find_column(table.columns, layer.palette.column) == &column)
       return shows_through(layer);
   }
   for (const auto& [model, slugs] : by_model) {
-    const auto all = context.store.layers(model, Role::owner);
-    if (!all) return tl::unexpected(all.error());
-    for (const Layer& layer : *all) {
+    const auto all = STRATA_TRY(context.store.layers(model, Role::owner));
+    for (const Layer& layer : all) {
       if (!layer.formula || layer.visibility >= visibility) continue;
       const auto expression = parse_formula(layer.formula->expression);
       if (expression && reads_column(*expression, slugs, column.slug)) return shows_through(layer);
@@ -89,18 +86,16 @@ Result<bool> sees_all_of(const RouteContext& context, Role role, std::int64_t mo
   if (sees(role, Visibility::curators)) return true;
   const auto expression = parse_formula(text);
   if (!expression) return false;
-  const auto layers = context.store.layers(model_id, Role::owner);
-  if (!layers) return tl::unexpected(layers.error());
+  const auto layers = STRATA_TRY(context.store.layers(model_id, Role::owner));
   const std::vector<std::string> named = layers_of(*expression);
   std::map<std::string, Table> seen, all;  // by the slug of the layer
-  for (const Layer& layer : *layers) {
+  for (const Layer& layer : layers) {
     if (std::ranges::find(named, layer.slug) == named.end()) continue;
     if (!sees(role, layer.visibility)) return false;
     if (!layer.table) continue;
-    auto table = context.store.table(std::to_string(*layer.table), Role::owner);
-    if (!table) return tl::unexpected(table.error());
-    seen.emplace(layer.slug, seen_by(*table, role));
-    all.emplace(layer.slug, std::move(*table));
+    auto table = STRATA_TRY(context.store.table(std::to_string(*layer.table), Role::owner));
+    seen.emplace(layer.slug, seen_by(table, role));
+    all.emplace(layer.slug, std::move(table));
   }
   return !names_unseen_column(*expression, seen, all);
 }

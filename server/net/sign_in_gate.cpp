@@ -26,7 +26,7 @@ TokenBucket& SignInGate::bucket(Buckets& buckets, const std::string& key, Rate r
 Result<void> SignInGate::pass(const std::string& address, const std::string& name,
                               Clock::time_point now) {
   const auto refused = [] {
-    return fail(429, "Too many sign-ins",
+    return fail(ErrorCode::too_many_requests, "Too many sign-ins",
                 "There were too many tries. Wait ten seconds and try again.");
   };
   std::lock_guard lock(mutex_);

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "net/http_types.h"
 #include "net/token_bucket.h"
 

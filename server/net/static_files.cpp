@@ -71,7 +71,8 @@ StaticFiles::StaticFiles(fs::path folder) {
 }
 
 Response StaticFiles::serve(const Request& request) const {
-  const Problem missing{404, "Not found", "There is nothing at " + request.path + ".", {}};
+  const Error missing{
+      ErrorCode::not_found, "Not found", "There is nothing at " + request.path + ".", {}};
   fs::path file = folder_;
   for (const auto& segment : request.segments) {
     if (segment.empty()) continue;
@@ -84,7 +85,7 @@ Response StaticFiles::serve(const Request& request) const {
     file = folder_ / "index.html";
     if (!fs::is_regular_file(file, error))
       return problem_response(
-          {503,
+          {ErrorCode::unavailable,
            "Page not built",
            "The web page is not part of this installation; the API works. Build web-client and start again.",
            {}});

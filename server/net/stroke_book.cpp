@@ -36,7 +36,7 @@ Result<void> StrokeBook::begin(const Owner& owner, const Uuid& stroke, StrokeToo
   if (Stroke* known = find(owner, stroke)) {
     if (!(known->tool == tool))
       return fail(
-          409, "Stroke known",
+          ErrorCode::conflict, "Stroke known",
           "A stroke with this id was begun with another layer, value, camera or brush; take a new id.",
           "stroke");
     known->ended = false;
@@ -75,34 +75,36 @@ Result<StrokeBook::Batch> StrokeBook::extend(const Owner& owner, const Uuid& str
   std::lock_guard lock(mutex_);
   Stroke* known = find(owner, stroke);
   if (!known)
-    return fail(404, "Unknown stroke", "Send stroke.begin for this stroke first.", "stroke");
+    return fail(ErrorCode::not_found, "Unknown stroke", "Send stroke.begin for this stroke first.",
+                "stroke");
   // The first batch after a restart may have any number: what came before it is in the journal.
   if (known->batches.empty() && !known->last) known->first_n = n;
   const int next = known->first_n + static_cast<int>(known->batches.size());
   if (n > next)
-    return fail(409, "Batch out of order",
+    return fail(ErrorCode::conflict, "Batch out of order",
                 "The next batch of this stroke is number " + std::to_string(next) + ".", "n");
   if (n < known->first_n)
-    return fail(409, "Batch too old",
+    return fail(ErrorCode::conflict, "Batch too old",
                 "Batches before number " + std::to_string(known->first_n) +
                     " of this stroke can no longer be repeated.",
                 "n");
   const bool is_new = n == next;
   if (is_new && known->ended)
-    return fail(409, "Stroke ended", "This stroke was ended; begin a new one.", "stroke");
+    return fail(ErrorCode::conflict, "Stroke ended", "This stroke was ended; begin a new one.",
+                "stroke");
   if (!is_new && known->batches[static_cast<std::size_t>(n - known->first_n)].id != id)
-    return fail(409, "Batch number taken", "This number of the stroke was sent with another id.",
-                "n");
+    return fail(ErrorCode::conflict, "Batch number taken",
+                "This number of the stroke was sent with another id.", "n");
 
   const std::optional<End> start =
       is_new ? known->last : known->batches[static_cast<std::size_t>(n - known->first_n)].start;
   if (path.empty() || path.size() + (start ? 1 : 0) > kMaxPath)
-    return fail(422, "Path too long",
+    return fail(ErrorCode::invalid, "Path too long",
                 "A batch has 1 to " + std::to_string(kMaxPath - 1) + " points; send more batches.",
                 "path");
   if (!widths.empty() && widths.size() != path.size())
-    return fail(422, "Widths do not fit", "Give one width for each point of the path, or none.",
-                "widths");
+    return fail(ErrorCode::invalid, "Widths do not fit",
+                "Give one width for each point of the path, or none.", "widths");
   known->touched = now;
   if (is_new) {
     known->batches.push_back({id, start});
@@ -135,7 +137,8 @@ Result<void> StrokeBook::end(const Owner& owner, const Uuid& stroke) {
   std::lock_guard lock(mutex_);
   Stroke* known = find(owner, stroke);
   if (!known)
-    return fail(404, "Unknown stroke", "There is no stroke with this id to end.", "stroke");
+    return fail(ErrorCode::not_found, "Unknown stroke", "There is no stroke with this id to end.",
+                "stroke");
   known->ended = true;
   return {};
 }

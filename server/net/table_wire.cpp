@@ -11,9 +11,10 @@ Result<Table> table_of_project(store::Store& store, std::int64_t project_id,
                                const protocol::TableRef& ref, const std::string& field) {
   const std::string name = protocol::to_ref(ref);
   auto table = store.table(name, Role::curator);
-  if (!table && table.error().status != 404) return table;
+  if (!table && table.error().code != ErrorCode::not_found) return table;
   if (!table || table->project_id != project_id)
-    return fail(422, "No such table", "The project has no table `" + name + "`.", field);
+    return fail(ErrorCode::invalid, "No such table", "The project has no table `" + name + "`.",
+                field);
   return table;
 }
 
@@ -31,9 +32,8 @@ Result<Column> new_column(store::Store& store, std::int64_t project_id,
   column.comment = asked.comment;
   if (asked.choices) column.choices = *asked.choices;
   if (asked.target) {
-    auto table = table_of_project(store, project_id, *asked.target, target_field);
-    if (!table) return tl::unexpected(table.error());
-    column.target = table->id;
+    auto table = STRATA_TRY(table_of_project(store, project_id, *asked.target, target_field));
+    column.target = table.id;
   }
   column.minimum = asked.minimum;
   column.maximum = asked.maximum;
@@ -61,10 +61,10 @@ Result<std::map<std::int64_t, nlohmann::json>> values_by_column(const Table& tab
     const Column* column = find_column(table.columns, ref);
     const std::string shown = mended_utf8(ref.substr(0, 100));
     if (!column)
-      return fail(422, "No such column", table.name + " has no column `" + shown + "`.",
-                  field + "." + shown);
+      return fail(ErrorCode::invalid, "No such column",
+                  table.name + " has no column `" + shown + "`.", field + "." + shown);
     if (!by_column.emplace(column->id, value).second)
-      return fail(422, "Column named twice",
+      return fail(ErrorCode::invalid, "Column named twice",
                   "`" + column->slug + "` stands here by its slug and by its id.",
                   field + "." + ref);
   }
@@ -106,7 +106,7 @@ Result<std::int64_t> sequence_at(store::Store& store, const Table& table, const 
     plain[blank] = '+';
   const auto utc = utc_timestamp(plain);
   if (!utc)
-    return fail(422, "Not a moment",
+    return fail(ErrorCode::invalid, "Not a moment",
                 "`at` is a sequence of the table, or a time such as 2024-02-29T12:00:00Z.", "at");
   return store.table_sequence_at(table.id, *utc);
 }

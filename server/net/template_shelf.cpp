@@ -51,12 +51,13 @@ Result<TermList> terms_of(const std::vector<protocol::TemplateTerm>& terms,
     term.definition = told.definition;
     term.color = told.color.value_or("");
     if (told.pattern) term.pattern = protocol::name(*told.pattern);
-    if (auto good = check_term(term); !good) return tl::unexpected(good.error());
+    STRATA_TRY(check_term(term));
     if (!codes.insert(term.code).second)
-      return fail(422, "Code twice", "The code " + term.code + " stands there twice.");
+      return fail(ErrorCode::invalid, "Code twice",
+                  "The code " + term.code + " stands there twice.");
     // Those below come later, so that there can be no circle.
     if (!term.parent.empty() && !codes.contains(term.parent))
-      return fail(422, "No such parent",
+      return fail(ErrorCode::invalid, "No such parent",
                   term.code + " is below " + term.parent + ", which does not stand before it.");
     list.terms.push_back(std::move(term));
   }
@@ -83,23 +84,23 @@ Result<Column> column_of(const protocol::ColumnCreate& told,
   column.minimum = told.minimum;
   column.maximum = told.maximum;
   if (told.target) column.target = kOwnTable;  // until it is known which
-  if (auto good = check_column(column); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_column(column));
   return column;
 }
 
 Result<protocol::Template> read_template(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
-  auto read = protocol::parse<protocol::Template>(text);
-  if (!read) return read;
-  read->slug = file.stem().string();
-  if (make_slug(*read->slug) != *read->slug)
-    return fail(422, "Bad name", "Its name must be of lower-case letters, digits and hyphens.");
-  if (auto tables = new_tables(*read, 1, {}); !tables) return tl::unexpected(tables.error());
-  for (const protocol::TemplateLayer& layer : read->layers)
-    if (std::none_of(read->tables.begin(), read->tables.end(),
+  auto read = STRATA_TRY(protocol::parse<protocol::Template>(text));
+  read.slug = file.stem().string();
+  if (make_slug(*read.slug) != *read.slug)
+    return fail(ErrorCode::invalid, "Bad name",
+                "Its name must be of lower-case letters, digits and hyphens.");
+  STRATA_TRY(new_tables(read, 1, {}));
+  for (const protocol::TemplateLayer& layer : read.layers)
+    if (std::none_of(read.tables.begin(), read.tables.end(),
                      [&](const auto& table) { return table.slug == layer.table; }))
-      return fail(422, "No such table",
+      return fail(ErrorCode::invalid, "No such table",
                   "The layer " + layer.name + " is of a table that is not there.");
   return read;
 }
@@ -114,14 +115,14 @@ Result<TemplateShelf> TemplateShelf::load(const std::filesystem::path& folder) {
     if (entry.path().extension() != ".json") continue;
     auto read = read_template(entry.path());
     if (!read)
-      return fail(500, "Template not usable",
+      return fail(ErrorCode::internal, "Template not usable",
                   entry.path().string() + ": " +
                       (read.error().field.empty() ? "" : read.error().field + ": ") +
                       read.error().detail);
     shelf.templates_.push_back(std::move(*read));
   }
   if (error)
-    return fail(500, "Templates not found",
+    return fail(ErrorCode::internal, "Templates not found",
                 "The folder " + folder.string() + " cannot be read: " + error.message() + ".");
   std::sort(shelf.templates_.begin(), shelf.templates_.end(), [](const auto& a, const auto& b) {
     return std::tie(a.name, a.slug) < std::tie(b.name, b.slug);
@@ -152,12 +153,12 @@ Result<std::vector<store::Store::NewTable>> new_tables(const protocol::Template&
                                                        const std::optional<std::string>& language) {
   std::vector<store::Store::NewTable> tables;
   for (const protocol::TemplateTable& told : of.tables) {
-    const auto refuse = [&](const Problem& problem) {
-      return fail(problem.status, problem.title, told.slug + ": " + problem.detail, problem.field);
+    const auto refuse = [&](const Error& problem) {
+      return fail(problem.code, problem.title, told.slug + ": " + problem.detail, problem.field);
     };
     if (told.terms.has_value() == told.columns.has_value())
-      return refuse(
-          {422, "Terms or columns", "A table has either `terms` or `columns`.", "tables"});
+      return refuse({ErrorCode::invalid, "Terms or columns",
+                     "A table has either `terms` or `columns`.", "tables"});
     store::Store::NewTable made;
     made.table.project_id = project_id;
     made.table.name = name_in(told.name, told.labels, language);
@@ -178,13 +179,14 @@ Result<std::vector<store::Store::NewTable>> new_tables(const protocol::Template&
         auto fits = column_of(column, language);
         if (!fits) return refuse(fits.error());
         if (!slugs.insert(fits->slug).second)
-          return refuse({422, "Slug twice", "Two columns are " + fits->slug + ".", {}});
+          return refuse(
+              {ErrorCode::invalid, "Slug twice", "Two columns are " + fits->slug + ".", {}});
         if (column.target && protocol::to_ref(*column.target) != told.slug) {
           const auto place = std::find_if(
               of.tables.begin(), of.tables.begin() + static_cast<std::ptrdiff_t>(tables.size()),
               [&](const auto& other) { return other.slug == protocol::to_ref(*column.target); });
           if (place == of.tables.begin() + static_cast<std::ptrdiff_t>(tables.size()))
-            return refuse({422,
+            return refuse({ErrorCode::invalid,
                            "No such table",
                            column.name + " names records of a table that does not stand before it.",
                            {}});

@@ -3,21 +3,19 @@
 namespace strata::net {
 
 Result<FoundTool> ToolShelf::find(const std::string& ref) {
-  auto tool = store_.tool(ref);
-  if (!tool) return tl::unexpected(tool.error());
+  auto tool = STRATA_TRY(store_.tool(ref));
   {
     std::lock_guard lock(mutex_);
-    if (const auto found = ready_.find(tool->id); found != ready_.end())
-      return FoundTool{tool->id, found->second};
+    if (const auto found = ready_.find(tool.id); found != ready_.end())
+      return FoundTool{tool.id, found->second};
   }
-  auto bits = store_.tool_shape(tool->id);
-  if (!bits) return tl::unexpected(bits.error());
-  auto shape = std::make_shared<const ShapeTexture>(*bits);
+  auto bits = STRATA_TRY(store_.tool_shape(tool.id));
+  auto shape = std::make_shared<const ShapeTexture>(bits);
   std::lock_guard lock(mutex_);
   // strokes hold theirs; the next that are asked for come back
   if (ready_.size() >= kMostReady) ready_.clear();
-  ready_[tool->id] = shape;
-  return FoundTool{tool->id, std::move(shape)};
+  ready_[tool.id] = shape;
+  return FoundTool{tool.id, std::move(shape)};
 }
 
 }  // namespace strata::net

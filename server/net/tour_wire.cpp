@@ -17,7 +17,8 @@ std::string at(const std::string& list, std::size_t place) {
 Result<void> once(std::set<std::int64_t>& known, std::int64_t id, const char* what,
                   const std::string& field) {
   if (known.insert(id).second) return {};
-  return fail(422, "Named twice", "This " + std::string(what) + " is named before already.", field);
+  return fail(ErrorCode::invalid, "Named twice",
+              "This " + std::string(what) + " is named before already.", field);
 }
 
 Result<nlohmann::json> kept_columns(const Table& table,
@@ -29,10 +30,9 @@ Result<nlohmann::json> kept_columns(const Table& table,
     const std::string here = at(field, i) + ".column";
     const Column* column = find_column(table.columns, columns[i].column);
     if (!column)
-      return fail(422, "No such column", table.name + " has no column `" + columns[i].column + "`.",
-                  here);
-    if (auto fresh = once(known, column->id, "column", here); !fresh)
-      return tl::unexpected(fresh.error());
+      return fail(ErrorCode::invalid, "No such column",
+                  table.name + " has no column `" + columns[i].column + "`.", here);
+    STRATA_TRY(once(known, column->id, "column", here));
     kept.push_back({{"column", column->id}});
     if (columns[i].labels) kept.back()["labels"] = *columns[i].labels;
   }
@@ -48,22 +48,20 @@ Result<nlohmann::json> kept_records(const RouteContext& context, const Model& mo
     const protocol::TourRecords& asked = all[i];
     const std::string here = at(field, i);
     auto table = context.store.table(asked.table, role);
-    if (!table && table.error().status != 404) return tl::unexpected(table.error());
+    if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
     if (!table || table->project_id != model.project_id)
-      return fail(422, "No such table", "The model's project has no table `" + asked.table + "`.",
-                  here + ".table");
-    if (auto fresh = once(known, table->id, "table", here + ".table"); !fresh)
-      return tl::unexpected(fresh.error());
+      return fail(ErrorCode::invalid, "No such table",
+                  "The model's project has no table `" + asked.table + "`.", here + ".table");
+    STRATA_TRY(once(known, table->id, "table", here + ".table"));
     const auto missing = context.store.missing_records(table->id, asked.keys);
     if (!missing) return tl::unexpected(missing.error());
     for (std::size_t k = 0; k < asked.keys.size(); ++k)
       if (std::ranges::find(*missing, asked.keys[k]) != missing->end())
-        return fail(422, "No such record",
+        return fail(ErrorCode::invalid, "No such record",
                     table->name + " has no record " + std::to_string(asked.keys[k]) + ".",
                     at(here + ".keys", k));
-    auto columns = kept_columns(*table, asked.columns, here + ".columns");
-    if (!columns) return columns;
-    kept.push_back({{"table", table->id}, {"keys", asked.keys}, {"columns", std::move(*columns)}});
+    auto columns = STRATA_TRY(kept_columns(*table, asked.columns, here + ".columns"));
+    kept.push_back({{"table", table->id}, {"keys", asked.keys}, {"columns", std::move(columns)}});
   }
   return kept;
 }
@@ -75,8 +73,7 @@ Result<nlohmann::json> kept_layers(const RouteContext& context, const Model& mod
   for (std::size_t i = 0; i < refs.size(); ++i) {
     const auto layer = context.store.layer(model.id, refs[i], role);
     if (!layer) return at_field(layer.error(), at(field, i));
-    if (auto fresh = once(known, layer->id, "layer", at(field, i)); !fresh)
-      return tl::unexpected(fresh.error());
+    STRATA_TRY(once(known, layer->id, "layer", at(field, i)));
     kept.push_back(layer->id);
   }
   return kept;
@@ -87,7 +84,7 @@ Result<void> check_words(const nlohmann::json& words, const nlohmann::json& lang
                          const std::string& field) {
   for (const auto& [language, text] : words.items())
     if (std::ranges::find(languages, nlohmann::json(language)) == languages.end())
-      return fail(422, "Not a language of the tour",
+      return fail(ErrorCode::invalid, "Not a language of the tour",
                   "The tour has no `" + language +
                       "` among its languages: add it there, or leave these words out.",
                   field + "." + language);
@@ -98,12 +95,11 @@ Result<void> check_stop(const nlohmann::json& stop, const nlohmann::json& langua
                         const std::string& field) {
   const auto first = languages.front().get<std::string>();
   if (!stop.at("title").contains(first))
-    return fail(422, "No title",
+    return fail(ErrorCode::invalid, "No title",
                 "Each stop has a title in the tour's first language, `" + first + "`.",
                 field + ".title");
   for (const char* member : {"title", "text"})
-    if (auto good = check_words(stop.at(member), languages, field + "." + member); !good)
-      return good;
+    STRATA_TRY(check_words(stop.at(member), languages, field + "." + member));
   for (std::size_t i = 0; i < stop.at("records").size(); ++i) {
     const auto& columns = stop.at("records")[i].at("columns");
     for (std::size_t k = 0; k < columns.size(); ++k)
@@ -119,13 +115,11 @@ Result<void> check_stop(const nlohmann::json& stop, const nlohmann::json& langua
 class Seen {
  public:
   static Result<Seen> of(const RouteContext& context, std::int64_t model_id, Role role) {
-    auto views = context.store.views().slugs(model_id);
-    if (!views) return tl::unexpected(views.error());
-    auto layers = context.store.layers(model_id, role);
-    if (!layers) return tl::unexpected(layers.error());
+    auto views = STRATA_TRY(context.store.views().slugs(model_id));
+    auto layers = STRATA_TRY(context.store.layers(model_id, role));
     Seen seen(context, role);
-    seen.views_ = std::move(*views);
-    for (const Layer& layer : *layers) seen.layers_[layer.id] = layer.slug;
+    seen.views_ = std::move(views);
+    for (const Layer& layer : layers) seen.layers_[layer.id] = layer.slug;
     return seen;
   }
 
@@ -141,9 +135,8 @@ class Seen {
       if (const auto layer = layers_.find(id.get<std::int64_t>()); layer != layers_.end())
         told["layers"].push_back(layer->second);
     for (const nlohmann::json& each : kept.at("records")) {
-      auto table = find_table(each.at("table").get<std::int64_t>());
-      if (!table) return tl::unexpected(table.error());
-      if (*table) told["records"].push_back(records(each, **table));
+      auto table = STRATA_TRY(find_table(each.at("table").get<std::int64_t>()));
+      if (table) told["records"].push_back(records(each, *table));
     }
     return told;
   }
@@ -169,7 +162,7 @@ class Seen {
     const auto known = tables_.find(id);
     if (known != tables_.end()) return known->second;
     auto table = context_->store.table(std::to_string(id), role_);
-    if (!table && table.error().status != 404) return tl::unexpected(table.error());
+    if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
     return tables_[id] = table ? std::optional(std::move(*table)) : std::nullopt;
   }
 
@@ -189,13 +182,11 @@ Result<nlohmann::json> kept_stops(const RouteContext& context, const Model& mode
     const std::string here = at("stops", i);
     const auto view = context.store.views().find(model.id, stop.view);
     if (!view) return at_field(view.error(), here + ".view");
-    auto layers = kept_layers(context, model, role,
-                              stop.layers.value_or(std::vector<std::string>{}), here + ".layers");
-    if (!layers) return layers;
-    auto records = kept_records(context, model, role,
-                                stop.records.value_or(std::vector<protocol::TourRecords>{}),
-                                here + ".records");
-    if (!records) return records;
+    auto layers = STRATA_TRY(kept_layers(
+        context, model, role, stop.layers.value_or(std::vector<std::string>{}), here + ".layers"));
+    auto records = STRATA_TRY(kept_records(
+        context, model, role, stop.records.value_or(std::vector<protocol::TourRecords>{}),
+        here + ".records"));
     all.push_back(
         {{"view", view->id},
          {"title", stop.title},
@@ -203,8 +194,8 @@ Result<nlohmann::json> kept_stops(const RouteContext& context, const Model& mode
          {"attract_s", stop.attract_s},
          {"transition", protocol::name(stop.transition.value_or(protocol::TourTransition::move))},
          {"transition_s", stop.transition_s},
-         {"layers", std::move(*layers)},
-         {"records", std::move(*records)}});
+         {"layers", std::move(layers)},
+         {"records", std::move(records)}});
   }
   return all;
 }
@@ -214,13 +205,14 @@ Result<void> check_languages(const nlohmann::json& content, bool stops_are_new) 
   for (std::size_t i = 0; i < languages.size(); ++i)
     if (std::find(languages.begin(), languages.begin() + static_cast<std::ptrdiff_t>(i),
                   languages[i]) != languages.begin() + static_cast<std::ptrdiff_t>(i))
-      return fail(422, "Named twice", "This language is named before already.", at("languages", i));
+      return fail(ErrorCode::invalid, "Named twice", "This language is named before already.",
+                  at("languages", i));
   const nlohmann::json& stops = content.at("stops");
   for (std::size_t i = 0; i < stops.size(); ++i)
     if (auto good = check_stop(stops[i], languages, at("stops", i)); !good) {
       if (stops_are_new) return good;
       return fail(
-          422, "Stops in other languages",
+          ErrorCode::invalid, "Stops in other languages",
           "Stop " + std::to_string(i + 1) + " does not fit these languages: " + good.error().detail,
           "languages");
     }
@@ -241,16 +233,14 @@ nlohmann::json tour_entry(const store::NamedPart& tour, const std::string& user)
 
 Result<nlohmann::json> to_json(const RouteContext& context, const store::NamedPart& tour, Role role,
                                const std::string& user) {
-  auto seen = Seen::of(context, tour.model_id, role);
-  if (!seen) return tl::unexpected(seen.error());
+  auto seen = STRATA_TRY(Seen::of(context, tour.model_id, role));
   nlohmann::json json = tour_entry(tour, user);
   json.erase("stop_count");
   json["idle_s"] = tour.content.at("idle_s");
   json["stops"] = nlohmann::json::array();
   for (const nlohmann::json& kept : tour.content.at("stops")) {
-    auto stop = seen->stop(kept);
-    if (!stop) return stop;
-    json["stops"].push_back(std::move(*stop));
+    auto stop = STRATA_TRY(seen.stop(kept));
+    json["stops"].push_back(std::move(stop));
   }
   return json;
 }

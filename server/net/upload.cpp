@@ -26,17 +26,17 @@ Result<Upload> keep_part(const FormFile& part, const fs::path& folder, const Map
   if (out) return upload;
   std::error_code ignored;
   fs::remove(upload.file, ignored);
-  return fail(507, "Disk full", "The upload could not be stored on the server's disk.");
+  return fail(ErrorCode::storage_full, "Disk full",
+              "The upload could not be stored on the server's disk.");
 }
 
 Result<std::vector<Upload>> keep_parts(std::string_view content_type, const MappedFile& form,
                                        const fs::path& folder, const char* accepted) {
-  const auto parts = files_of_form(content_type, form.view(),
-                                   [&](std::string_view passed) { form.release(passed); });
-  if (!parts) return tl::unexpected(parts.error());
-  if (parts->empty()) return fail(415, "No file in the form", accepted, "body");
+  const auto parts = STRATA_TRY(files_of_form(
+      content_type, form.view(), [&](std::string_view passed) { form.release(passed); }));
+  if (parts.empty()) return fail(ErrorCode::unsupported, "No file in the form", accepted, "body");
   std::vector<Upload> uploads;
-  for (const FormFile& part : *parts) {
+  for (const FormFile& part : parts) {
     auto upload = keep_part(part, folder, form);
     if (!upload) {
       std::error_code ignored;
@@ -53,12 +53,13 @@ Result<std::vector<Upload>> keep_parts(std::string_view content_type, const Mapp
 Result<std::vector<Upload>> take_upload(const Request& request, const fs::path& folder,
                                         const char* accepted) {
   const auto mapped = MappedFile::open(request.body_file);
-  if (!mapped || mapped->view().empty()) return fail(400, "Empty body", accepted, "body");
+  if (!mapped || mapped->view().empty())
+    return fail(ErrorCode::malformed, "Empty body", accepted, "body");
   const std::string type = to_lower(request.header("content-type"));
   if (type.starts_with("multipart/form-data"))
     return keep_parts(request.header("content-type"), *mapped, folder, accepted);
   if (type.starts_with("multipart/"))
-    return fail(415, "Form not understood", accepted, "Content-Type");
+    return fail(ErrorCode::unsupported, "Form not understood", accepted, "Content-Type");
   std::string name =
       base_filename(header_parameter(request.header("content-disposition"), "filename"));
   if (name.empty() && type.starts_with("application/zip")) name = "scan.zip";

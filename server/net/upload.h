@@ -20,7 +20,7 @@ constexpr const char* kScanUpload =
 
 // The files in a request whose body is in a file: the body itself, or those of a
 // multipart/form-data body (net/form_files; each cut out into a file of its own in `folder`; none
-// is left there after a Problem). `accepted` is what a body without a file is told to be.
+// is left there after an Error). `accepted` is what a body without a file is told to be.
 Result<std::vector<Upload>> take_upload(const Request& request, const std::filesystem::path& folder,
                                         const char* accepted = kScanUpload);
 

@@ -9,18 +9,14 @@ namespace {
 
 Result<void> add_photo(const RouteContext& context, const room::LookView& look,
                        query::VertexColors& colors) {
-  const auto encoded = context.store.look_picture(look.look_id);
-  if (!encoded) return tl::unexpected(encoded.error());
-  const auto info = inspect_picture(*encoded);
-  if (!info) return tl::unexpected(info.error());
+  const auto encoded = STRATA_TRY(context.store.look_picture(look.look_id));
+  const auto info = STRATA_TRY(inspect_picture(encoded));
   // Reading takes at most twice the memory of its pixels.
   const auto bytes =
-      static_cast<std::uint64_t>(info->width) * static_cast<std::uint64_t>(info->height) * 8;
-  const auto share = context.rooms.memory().reserve(bytes, "a photo of the surface");
-  if (!share) return tl::unexpected(share.error());
-  const auto photo = decode_picture(*encoded);
-  if (!photo) return tl::unexpected(photo.error());
-  colors.add_photo(*photo, look.opacity);
+      static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height) * 8;
+  const auto share = STRATA_TRY(context.rooms.memory().reserve(bytes, "a photo of the surface"));
+  const auto photo = STRATA_TRY(decode_picture(encoded));
+  colors.add_photo(photo, look.opacity);
   return {};
 }
 
@@ -28,10 +24,9 @@ Result<query::DrawnLayer> drawn(const RouteContext& context, Role role,
                                 const query::LayerView& view) {
   auto palette = std::make_shared<const Palette>(view.layer.palette);
   if (view.layer.table && room::RecordColors::needs_records(*palette, nullptr)) {
-    auto by_key = room::RecordColors::make(context.store,
-                                           {*view.layer.table, sight_of(role), palette, nullptr});
-    if (!by_key) return tl::unexpected(by_key.error());
-    palette = std::move(*by_key);
+    auto by_key = STRATA_TRY(room::RecordColors::make(
+        context.store, {*view.layer.table, sight_of(role), palette, nullptr}));
+    palette = std::move(by_key);
   }
   return query::DrawnLayer{view.snapshot.tiles, view.layer.resolution, view.layer.type,
                            std::move(palette), view.layer.opacity};
@@ -44,16 +39,13 @@ Result<ComposedVertices> compose_vertices(const RouteContext& context, room::Roo
   const auto looks = room::looks_shown(room.looks());
   const auto geometry = room.geometry();
   const std::uint64_t bytes = looks.empty() ? 0 : geometry->vertices.size() * 3;
-  auto memory = context.rooms.memory().reserve(bytes, "the colours of a model's vertices");
-  if (!memory) return tl::unexpected(memory.error());
-  ComposedVertices composed{query::VertexColors(geometry), std::move(*memory)};
-  for (const room::LookView& look : looks)
-    if (auto added = add_photo(context, look, composed.colors); !added)
-      return tl::unexpected(added.error());
+  auto memory =
+      STRATA_TRY(context.rooms.memory().reserve(bytes, "the colours of a model's vertices"));
+  ComposedVertices composed{query::VertexColors(geometry), std::move(memory)};
+  for (const room::LookView& look : looks) STRATA_TRY(add_photo(context, look, composed.colors));
   for (const query::LayerView& view : bottom_to_top) {
-    auto layer = drawn(context, role, view);
-    if (!layer) return tl::unexpected(layer.error());
-    composed.colors.add_layer(std::move(*layer));
+    auto layer = STRATA_TRY(drawn(context, role, view));
+    composed.colors.add_layer(std::move(layer));
   }
   return composed;
 }

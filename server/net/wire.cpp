@@ -8,6 +8,7 @@
 
 #include "core/csv.h"
 #include "mesh/parallel.h"
+#include "protocol/problem.h"
 #include "query/expression_parser.h"
 
 namespace strata::net {
@@ -17,10 +18,10 @@ Result<std::uint32_t> value_bits(const Layer& layer, double value, bool erase) {
   if (erase) return 0u;
   auto bits = encode_value(layer.type, value);
   if (!bits) {
-    Problem problem = bits.error();
+    Error problem = bits.error();
     problem.field = "value";
     if (layer.kind == LayerKind::database && value > highest_value(layer.type))
-      problem = {422, "Key too large",
+      problem = {ErrorCode::invalid, "Key too large",
                  layer.name + " holds keys up to " +
                      std::to_string(static_cast<std::int64_t>(highest_value(layer.type))) + " (" +
                      std::string(name(layer.type)) +
@@ -40,9 +41,9 @@ bool is_tool(const protocol::ToolShape& shape) {
 Result<FoundTool> tool_of(const protocol::ToolShape& shape, const FindTool& find_tool) {
   if (!is_tool(shape)) return FoundTool{};
   const std::string ref = protocol::to_ref(shape);
-  Result<FoundTool> found = find_tool ? find_tool(ref) : fail(404, {}, {});
-  if (found || found.error().status != 404) return found;
-  return fail(422, "Unknown tool",
+  Result<FoundTool> found = find_tool ? find_tool(ref) : fail(ErrorCode::not_found, {}, {});
+  if (found || found.error().code != ErrorCode::not_found) return found;
+  return fail(ErrorCode::invalid, "Unknown tool",
               "There is no tool `" + ref.substr(0, 100) +
                   "`. `shape` is disc, square, or a tool listed at /api/v1/tools.",
               "shape");
@@ -52,8 +53,7 @@ Result<FoundTool> tool_of(const protocol::ToolShape& shape, const FindTool& find
 template <class Stroke>
 Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Model& model,
                              const FoundTool& tool) {
-  auto bits = value_bits(layer, stroke.value, stroke.erase);
-  if (!bits) return tl::unexpected(bits.error());
+  auto bits = STRATA_TRY(value_bits(layer, stroke.value, stroke.erase));
   StrokeBatch batch;
   batch.camera = stroke.camera;
   batch.shape = tool.shape                                      ? ToolShape::texture
@@ -68,28 +68,28 @@ Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Mod
   batch.fixed_depth_bias = stroke.depth_bias;
   batch.max_angle_deg = stroke.max_angle_deg;
   batch.erase = stroke.erase;
-  batch.value_bits = *bits;
+  batch.value_bits = bits;
   return batch;
 }
 
 Result<room::FillEdit> fill_of(const protocol::EditFill& asked, const Layer& layer) {
   using Mode = protocol::EditFillMode;
-  auto bits = value_bits(layer, asked.value, asked.erase);
-  if (!bits) return tl::unexpected(bits.error());
+  auto bits = STRATA_TRY(value_bits(layer, asked.value, asked.erase));
   room::FillEdit fill;
   fill.erase = asked.erase;
-  fill.value_bits = *bits;
+  fill.value_bits = bits;
   if (asked.mode == Mode::where) {
     if (!asked.where)
-      return fail(422, "Member missing", "Mode `where` needs a condition, not a place.", "where");
-    auto condition = query::parse_condition(*asked.where, "where");
-    if (!condition) return tl::unexpected(condition.error());
-    if (condition->op != Expression::Op::truth || condition->number == 0)
-      fill.region = room::FillEdit::Where{std::move(*condition)};
+      return fail(ErrorCode::invalid, "Member missing",
+                  "Mode `where` needs a condition, not a place.", "where");
+    auto condition = STRATA_TRY(query::parse_condition(*asked.where, "where"));
+    if (condition.op != Expression::Op::truth || condition.number == 0)
+      fill.region = room::FillEdit::Where{std::move(condition)};
     return fill;
   }
   if (!asked.at)
-    return fail(422, "Member missing", "This mode needs a place where it begins.", "at");
+    return fail(ErrorCode::invalid, "Member missing", "This mode needs a place where it begins.",
+                "at");
   room::Place place = place_of(*asked.at);
   if (asked.mode == Mode::island)
     fill.region = room::FillEdit::Island{std::move(place)};
@@ -131,12 +131,11 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
   if (const auto* stroke = std::get_if<protocol::EditStroke>(&edit)) {
     auto tool = tool_of(stroke->shape, find_tool);
     if (!tool) return tl::unexpected(tool.error());
-    auto batch = brush_of(*stroke, layer, model, *tool);
-    if (!batch) return tl::unexpected(batch.error());
+    auto batch = STRATA_TRY(brush_of(*stroke, layer, model, *tool));
     if (tool->shape) request.record["shape"] = tool->id;
-    batch->path.assign(stroke->path.begin(), stroke->path.end());
-    if (stroke->widths) batch->widths.assign(stroke->widths->begin(), stroke->widths->end());
-    request.edit = room::StrokeEdit{std::move(*batch), id, 0};
+    batch.path.assign(stroke->path.begin(), stroke->path.end());
+    if (stroke->widths) batch.widths.assign(stroke->widths->begin(), stroke->widths->end());
+    request.edit = room::StrokeEdit{std::move(batch), id, 0};
     return request;
   }
   if (const auto* polygon = std::get_if<protocol::EditPolygon>(&edit)) {
@@ -146,24 +145,21 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
         polygon->erase, *bits, {polygon->camera, polygon->path, polygon->through}};
     return request;
   }
-  auto fill = fill_of(std::get<protocol::EditFill>(edit), layer);
-  if (!fill) return tl::unexpected(fill.error());
-  request.edit = std::move(*fill);
+  auto fill = STRATA_TRY(fill_of(std::get<protocol::EditFill>(edit), layer));
+  request.edit = std::move(fill);
   return request;
 }
 
 Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer,
                                const Model& model, const FindTool& find_tool) {
-  auto found = tool_of(begin.shape, find_tool);
-  if (!found) return tl::unexpected(found.error());
-  auto batch = brush_of(begin, layer, model, *found);
-  if (!batch) return tl::unexpected(batch.error());
+  auto found = STRATA_TRY(tool_of(begin.shape, find_tool));
+  auto batch = STRATA_TRY(brush_of(begin, layer, model, found));
   StrokeTool tool;
   tool.layer_id = layer.id;
-  tool.batch = std::move(*batch);
+  tool.batch = std::move(batch);
   tool.record = protocol::to_json(begin);
   tool.record["op"] = "stroke";
-  if (found->shape) tool.record["shape"] = found->id;
+  if (found.shape) tool.record["shape"] = found.id;
   for (const char* member : {"id", "layer", "stroke"}) tool.record.erase(member);
   return tool;
 }
@@ -187,16 +183,15 @@ Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Lay
                                      const std::string& field) {
   if (!layer.table)
     return fail(
-        422, "Layer has no records",
+        ErrorCode::invalid, "Layer has no records",
         "'" + layer.name + "' holds numbers: only records of database layers can be highlighted.",
         field);
   room::Highlight highlight;
   highlight.isolate = asked.isolate;
   if (asked.filter) {
-    auto filter = query::parse_condition(
-        *asked.filter, field.empty() ? "filter" : field + ".filter", query::Names::columns);
-    if (!filter) return tl::unexpected(filter.error());
-    highlight.records = std::move(*filter);
+    auto filter = STRATA_TRY(query::parse_condition(
+        *asked.filter, field.empty() ? "filter" : field + ".filter", query::Names::columns));
+    highlight.records = std::move(filter);
   } else {
     std::vector<std::uint32_t> keys(asked.keys->begin(), asked.keys->end());
     std::ranges::sort(keys);
@@ -213,13 +208,13 @@ Result<std::vector<room::LookView>> look_views(const room::Room& room,
     const std::string field = "looks[" + std::to_string(i) + "].look";
     auto look = room.look(protocol::to_ref(asked[i].look));
     if (!look) {
-      Problem problem = look.error();
+      Error problem = look.error();
       problem.field = field;
       return tl::unexpected(std::move(problem));
     }
     for (const room::LookView& other : views)
       if (other.look_id == look->id)
-        return fail(422, "Look given twice", "A view shows each look once.", field);
+        return fail(ErrorCode::invalid, "Look given twice", "A view shows each look once.", field);
     views.push_back({look->id, asked[i].opacity});
   }
   return views;
@@ -244,31 +239,28 @@ Result<room::ViewSettings> view_settings(
     const std::string field = "layers[" + std::to_string(i) + "]";
     const auto layer = room.layer(protocol::to_ref(asked.layer));
     if (!layer) {
-      Problem problem = layer.error();
+      Error problem = layer.error();
       problem.field = field + ".layer";
       return tl::unexpected(std::move(problem));
     }
     room::LayerView view{layer->id, asked.visible, asked.opacity, std::nullopt, std::nullopt};
     if (asked.palette) {
-      auto palette = palette_from_json(*asked.palette, field + ".palette");
-      if (!palette) return tl::unexpected(palette.error());
-      view.palette = std::move(*palette);
+      auto palette = STRATA_TRY(palette_from_json(*asked.palette, field + ".palette"));
+      view.palette = std::move(palette);
     }
     if (asked.highlight) {
-      auto highlight = highlight_of(*asked.highlight, *layer, field + ".highlight");
-      if (!highlight) return tl::unexpected(highlight.error());
-      view.highlight = std::move(*highlight);
+      auto highlight = STRATA_TRY(highlight_of(*asked.highlight, *layer, field + ".highlight"));
+      view.highlight = std::move(highlight);
     }
     if (asked.order) view.order = static_cast<int>(*asked.order);
     settings.layers.push_back(std::move(view));
   }
   if (looks) {
-    auto shown = look_views(room, *looks);
-    if (!shown) return tl::unexpected(shown.error());
-    settings.looks = std::move(*shown);
+    auto shown = STRATA_TRY(look_views(room, *looks));
+    settings.looks = std::move(shown);
   }
   if (light) settings.light = *light;
-  if (auto lit = validate(settings.light); !lit) return tl::unexpected(lit.error());
+  STRATA_TRY(validate(settings.light));
   return settings;
 }
 

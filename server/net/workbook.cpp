@@ -202,7 +202,7 @@ Result<Response> Workbook::finish(const std::string& filename) {
     book.remove_file();
     log::error(std::string("a workbook could not be written: ") + lxw_strerror(book.error));
     return fail(
-        507, "Workbook not written",
+        ErrorCode::storage_full, "Workbook not written",
         "The server could not write the file, as when its disk is full. Ask for CSV, which needs none.",
         "f");
   }

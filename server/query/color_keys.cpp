@@ -102,7 +102,7 @@ std::vector<Bin> gathered(const std::vector<Bin>& bins, std::vector<Lab> centres
 
 Result<std::vector<ColorKey>> parse_color_keys(std::string_view text, const std::string& field) {
   const auto refuse = [&](const std::string& what) {
-    return fail(422, "Colours not understood", what, field);
+    return fail(ErrorCode::invalid, "Colours not understood", what, field);
   };
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || json.empty() || json.size() > kMostColorKeys)

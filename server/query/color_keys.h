@@ -20,7 +20,7 @@ struct ColorKey {
   double value = 0;
 };
 
-// {"#c02020": 1, "#2040c0": 2}. Refused (422 at `field`): no such object, no colours, more than
+// {"#c02020": 1, "#2040c0": 2}. Refused (invalid at `field`): no such object, no colours, more than
 // kMostColorKeys.
 Result<std::vector<ColorKey>> parse_color_keys(std::string_view json, const std::string& field);
 

@@ -77,12 +77,12 @@ Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& column
                                   double metres_per_unit) {
   for (const auto& [view, field] : {std::pair{&rows, "rows"}, std::pair{&columns, "columns"}})
     if (is_float(view->layer.type))
-      return fail(422, "Not a layer of keys",
+      return fail(ErrorCode::invalid, "Not a layer of keys",
                   "'" + view->layer.slug +
                       "' holds fractions; a cross-tabulation needs whole numbers or keys.",
                   field);
   const auto too_many = [](const LayerView& view, const char* field) {
-    return fail(422, "Too many values",
+    return fail(ErrorCode::invalid, "Too many values",
                 "'" + view.layer.slug + "' has more than " + std::to_string(kMaxCrossTableSide) +
                     " different values here; select a part of the surface.",
                 field);

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "query/texel_selection.h"
 #include "query/values.h"
 
@@ -23,7 +23,7 @@ struct CrossTable {
 
 // Counts surface texels of `map`, of those in `within` (null: all), where at least one of the
 // layers has a value; a layer of another resolution counts by the texel that holds the centre of
-// the map's. Refused (422): a layer of fractions, or of more than kMaxCrossTableSide values.
+// the map's. Refused (invalid): a layer of fractions, or of more than kMaxCrossTableSide values.
 Result<CrossTable> cross_tabulate(const LayerView& rows, const LayerView& columns,
                                   const mesh::SurfaceMap& map, const TexelSelection* within,
                                   double metres_per_unit);

@@ -90,7 +90,7 @@ Result<std::map<TileAddress, TileData>> paint_dabs(const mesh::SurfaceMap& map,
     }
     reached_in_all += seen.size();
     if (reached_in_all > kMaxDabTexels)
-      return fail(422, "Too much to paint",
+      return fail(ErrorCode::invalid, "Too much to paint",
                   "So many places of this radius cover too much; take a smaller radius.",
                   "radius_mm");
   }

@@ -21,8 +21,8 @@ constexpr std::uint64_t kMaxDabTexels = 50'000'000;  // that all dabs of one edi
 // Each dab covers what lies within `radius` (model units, straight) of its place and is connected
 // with it across the surface within that distance: the other side of a thin wall is not. Where dabs
 // overlap the nearest one counts, among equals the first. The result holds what is written: each
-// tile's valid texels, gutter included. Refused (422): dabs so large and many that they reach more
-// than kMaxDabTexels.
+// tile's valid texels, gutter included. Refused (invalid): dabs so large and many that they reach
+// more than kMaxDabTexels.
 Result<std::map<TileAddress, TileData>> paint_dabs(const mesh::SurfaceMap& map,
                                                    const mesh::TexelGraph& graph,
                                                    std::span<const Dab> dabs, float radius,

@@ -134,7 +134,7 @@ Result<EvaluationPlan> plan_evaluation(const Expression& expression,
     const auto found = std::find_if(layers.begin(), layers.end(),
                                     [&](const auto& v) { return v.layer.slug == slug; });
     if (found == layers.end())
-      return fail(422, "Expression not understood",
+      return fail(ErrorCode::invalid, "Expression not understood",
                   "This model has no layer '" + slug +
                       "'. Layers are named by their slugs; a subtraction needs spaces.",
                   field);

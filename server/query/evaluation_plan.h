@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/expression.h"
-#include "core/problem.h"
 #include "query/number_set.h"
 #include "query/tile_table.h"
 #include "query/values.h"
@@ -51,7 +51,7 @@ struct EvaluationPlan {
   std::vector<PlanSource> sources;
 };
 
-// Refused (422 at `field`): a layer that is not among `layers`.
+// Refused (invalid at `field`): a layer that is not among `layers`.
 Result<EvaluationPlan> plan_evaluation(const Expression& expression,
                                        const std::vector<LayerView>& layers,
                                        const std::string& field);

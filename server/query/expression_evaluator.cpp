@@ -528,23 +528,22 @@ Result<TexelSelection> select_where(const BoundExpression& condition,
                                     const std::vector<LayerView>& layers,
                                     const mesh::SurfaceMap& map, const std::string& field,
                                     int threads, const Frame& frame, const TexelSelection* within) {
-  auto plan = plan_evaluation(condition.expression, layers, field);
-  if (!plan) return tl::unexpected(plan.error());
-  const Inputs inputs{plan->sources, condition.records, map, frame};
-  make_tables(plan->root, inputs);
+  auto plan = STRATA_TRY(plan_evaluation(condition.expression, layers, field));
+  const Inputs inputs{plan.sources, condition.records, map, frame};
+  make_tables(plan.root, inputs);
   const std::size_t slots = map.block_of_slot.size();
   const auto wanted = [&](std::size_t slot) {
     return within ? map.surface_mask[slot] & (*within)[slot] : map.surface_mask[slot];
   };
   std::size_t blocks = 0;
   for (std::size_t slot = 0; slot < slots; ++slot) blocks += wanted(slot) != 0;
-  const std::uint64_t steps = steps_of(plan->root) * kTexels;
+  const std::uint64_t steps = steps_of(plan.root) * kTexels;
   spend(steps * blocks);
   TexelSelection selection(slots, 0);
   constexpr std::size_t kSlotsAtOnce = 1024;
   mesh::parallel_for(
       threads, static_cast<int>((slots + kSlotsAtOnce - 1) / kSlotsAtOnce), [&](int part) {
-        Decoded decoded(plan->sources.size());
+        Decoded decoded(plan.sources.size());
         const std::size_t first = static_cast<std::size_t>(part) * kSlotsAtOnce;
         const QuestionTurn turn;
         std::size_t done = 0;
@@ -552,7 +551,7 @@ Result<TexelSelection> select_where(const BoundExpression& condition,
           if (wanted(slot) == 0) continue;
           if (++done % kBlocksBetweenChecks == 0) turn.check(steps * kBlocksBetweenChecks);
           const Block block(inputs, static_cast<std::uint32_t>(slot), decoded);
-          selection[slot] = block.truths(plan->root).holds & wanted(slot);
+          selection[slot] = block.truths(plan.root).holds & wanted(slot);
         }
       });
   return selection;
@@ -562,13 +561,12 @@ Result<TileMap> compute_tiles(const BoundExpression& expression,
                               const std::vector<LayerView>& layers, const mesh::SurfaceMap& map,
                               const Frame& frame, ValueType type, const std::string& field,
                               int threads) {
-  auto plan = plan_evaluation(expression.expression, layers, field);
-  if (!plan) return tl::unexpected(plan.error());
-  const Inputs inputs{plan->sources, expression.records, map, frame};
-  make_tables(plan->root, inputs);
+  auto plan = STRATA_TRY(plan_evaluation(expression.expression, layers, field));
+  const Inputs inputs{plan.sources, expression.records, map, frame};
+  make_tables(plan.root, inputs);
   std::size_t blocks = 0;
   for (const std::uint64_t mask : map.surface_mask) blocks += mask != 0;
-  spend(steps_of(plan->root) * kTexels * blocks);
+  spend(steps_of(plan.root) * kTexels * blocks);
   const int tiles_per_side = map.resolution / kTileSize;
   std::vector<std::shared_ptr<TileData>> tiles(static_cast<std::size_t>(tiles_per_side) *
                                                static_cast<std::size_t>(tiles_per_side));
@@ -577,13 +575,13 @@ Result<TileMap> compute_tiles(const BoundExpression& expression,
   double unfit = 0;
   mesh::parallel_for(threads, static_cast<int>(tiles.size()), [&](int number) {
     auto tile = std::make_shared<TileData>(type);
-    Decoded decoded(plan->sources.size());
+    Decoded decoded(plan.sources.size());
     for (int i = 0; i < kBlocksPerTile * kBlocksPerTile && fits; ++i) {
       const int bx = number % tiles_per_side * kBlocksPerTile + i % kBlocksPerTile,
                 by = number / tiles_per_side * kBlocksPerTile + i / kBlocksPerTile;
       const std::uint32_t slot = mesh::slot_at(map, bx, by);
       if (slot == mesh::kNoSlot || map.surface_mask[slot] == 0) continue;
-      const Numbers numbers = Block(inputs, slot, decoded).any(plan->root);
+      const Numbers numbers = Block(inputs, slot, decoded).any(plan.root);
       const Bits wrong = write_block(numbers, map.surface_mask[slot], type, bx, by, *tile);
       if (wrong == 0) continue;
       const std::lock_guard lock(mutex);
@@ -593,7 +591,7 @@ Result<TileMap> compute_tiles(const BoundExpression& expression,
     if (tile->valid.any()) tiles[static_cast<std::size_t>(number)] = std::move(tile);
   });
   if (!fits) {
-    Problem problem = encode_value(type, is_float(type) ? unfit : std::round(unfit)).error();
+    Error problem = encode_value(type, is_float(type) ? unfit : std::round(unfit)).error();
     problem.field = "type";
     return tl::unexpected(std::move(problem));
   }

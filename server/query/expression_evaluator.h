@@ -2,8 +2,8 @@
 
 #include <glm/glm.hpp>
 
+#include "core/error.h"
 #include "core/expression.h"
-#include "core/problem.h"
 #include "query/record_parts.h"
 #include "query/texel_selection.h"
 #include "query/values.h"
@@ -25,7 +25,7 @@ struct BoundExpression {
 
 // The surface texels of the map where the condition holds (never gutter texels, and none where it
 // is unknown). A layer of another resolution counts by the texel that holds the centre of the map's
-// texel. Refused (422 at `field`): a layer that is not among `layers`. `within`: only these are
+// texel. Refused (invalid at `field`): a layer that is not among `layers`. `within`: only these are
 // looked at; null: all. Runs on up to `threads` threads, and may cost the current question
 // (core/question.h) more than it may (QuestionEnded), which is known before it begins.
 Result<TexelSelection> select_where(const BoundExpression& condition,
@@ -37,7 +37,7 @@ Result<TexelSelection> select_where(const BoundExpression& condition,
 // The content of a layer of `type` at the map's resolution: at each surface texel what the formula
 // is there, nothing where it is unknown; a condition is 1 where it holds, and nothing elsewhere.
 // Types of whole numbers get the nearest one. Gutter texels follow their owners. Refused as above,
-// and a number that the type does not hold (422, `type`).
+// and a number that the type does not hold (invalid, `type`).
 Result<TileMap> compute_tiles(const BoundExpression& expression,
                               const std::vector<LayerView>& layers, const mesh::SurfaceMap& map,
                               const Frame& frame, ValueType type, const std::string& field,

@@ -736,14 +736,14 @@ class Parser {
   Token token_;
   int depth_ = 0;
   std::size_t repeated_ = 0;
-  std::optional<Problem> problem_;
+  std::optional<Error> problem_;
 };
 
 Result<Expression> parse(std::string_view text, const std::string& field, Names names,
                          bool wants_condition) {
   if (text.size() > kMaxExpressionLength)
     return fail(
-        422, "Expression too long",
+        ErrorCode::invalid, "Expression too long",
         "An expression has at most " + std::to_string(kMaxExpressionLength) + " characters.",
         field);
   return Parser(text, field, names).whole(wants_condition);

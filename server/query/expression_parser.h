@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/error.h"
 #include "core/expression.h"
-#include "core/problem.h"
 
 namespace strata::query {
 
@@ -36,7 +36,7 @@ enum class Names { layers, columns };
 // between two characters of a name belongs to it, so a subtraction needs spaces. Names that begin
 // with a digit or are words of this language stand in double quotes. As in PostgreSQL the sign
 // binds more tightly than the power: -2 ^ 2 is 4. Without `else` a case is unknown where no
-// condition holds. Refused (422 at `field`, with the position): what cannot be read, conditions
+// condition holds. Refused (invalid at `field`, with the position): what cannot be read, conditions
 // where numbers are wanted and the reverse, too long or too deeply nested texts. Whether layers and
 // columns exist, and what these hold, is for the caller to find out.
 Result<Expression> parse_condition(std::string_view text, const std::string& field,

@@ -91,9 +91,8 @@ Result<void> read_geo_tags(TIFF* tiff, MapTiff& info) {
     world = WorldFile{
         scale[0], 0, 0, -scale[1], tie[3] - tie[0] * scale[0], tie[4] + tie[1] * scale[1]};
   if (!world) return {};
-  auto good = checked(shifted(*world, keys.is_point ? 0 : 0.5), "body");
-  if (!good) return tl::unexpected(good.error());
-  info.world = *good;
+  auto good = STRATA_TRY(checked(shifted(*world, keys.is_point ? 0 : 0.5), "body"));
+  info.world = good;
   return {};
 }
 

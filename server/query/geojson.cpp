@@ -11,8 +11,9 @@ using nlohmann::json;
 
 constexpr int kMaxDepth = 16;
 
-tl::unexpected<Problem> refuse(const std::string& where, const std::string& what) {
-  return fail(422, "Map not understood", what, where.empty() ? "body" : "body." + where);
+tl::unexpected<Error> refuse(const std::string& where, const std::string& what) {
+  return fail(ErrorCode::invalid, "Map not understood", what,
+              where.empty() ? "body" : "body." + where);
 }
 
 std::string inside(const std::string& where, const std::string& member) {
@@ -53,7 +54,7 @@ class Reader {
     const json& list = member(node, name);
     if (!list.is_array()) return refuse(where, "It lacks the list `" + std::string(name) + "`.");
     for (std::size_t i = 0; i < list.size(); ++i)
-      if (auto done = read(list[i], element(inside(where, name), i), depth + 1); !done) return done;
+      STRATA_TRY(read(list[i], element(inside(where, name), i), depth + 1));
     return {};
   }
 
@@ -70,7 +71,7 @@ class Reader {
       return refuse(where, "A map has at most " + std::to_string(kMaxMapFeatures) +
                                " features; send it in parts.");
     map_.features.push_back({{}, {}, "body" + (where.empty() ? "" : "." + where)});
-    if (auto read = properties(member(node, "properties"), where); !read) return read;
+    STRATA_TRY(properties(member(node, "properties"), where));
     return read(node["geometry"], inside(where, "geometry"), depth + 1);
   }
 
@@ -102,8 +103,7 @@ class Reader {
     if (!list.is_array())
       return refuse(where, "A MultiPolygon has a list of polygons as `coordinates`.");
     for (std::size_t i = 0; i < list.size(); ++i)
-      if (auto read = polygon(list[i], element(inside(where, "coordinates"), i)); !read)
-        return read;
+      STRATA_TRY(polygon(list[i], element(inside(where, "coordinates"), i)));
     return {};
   }
 
@@ -149,11 +149,12 @@ Result<FeatureMap> parse_geojson(std::string_view text) {
       },
       false);
   if (too_deep)
-    return fail(422, "Map not understood", "It is nested too deeply to be GeoJSON.", "body");
+    return fail(ErrorCode::invalid, "Map not understood", "It is nested too deeply to be GeoJSON.",
+                "body");
   if (parsed.is_discarded())
-    return fail(400, "Malformed JSON", "The body is no JSON text.", "body");
+    return fail(ErrorCode::malformed, "Malformed JSON", "The body is no JSON text.", "body");
   Reader reader;
-  if (auto read = reader.read(parsed, ""); !read) return tl::unexpected(read.error());
+  STRATA_TRY(reader.read(parsed, ""));
   return reader.take();
 }
 

@@ -26,14 +26,14 @@ Result<std::size_t> column_named(const FeatureMap& map, const std::string& name,
   std::string known;
   for (const std::string& column : map.columns) known += (known.empty() ? "" : ", ") + column;
   return fail(
-      422, "No such attribute",
+      ErrorCode::invalid, "No such attribute",
       "The map has no attribute '" + name + "'" +
           (known.empty() ? "; it has none at all." : "; it has " + known.substr(0, 500) + "."),
       field);
 }
 
-tl::unexpected<Problem> refuse(const MapFeature& feature, const std::string& what) {
-  return fail(422, "Map not understood", feature.place + ": " + what, "body");
+tl::unexpected<Error> refuse(const MapFeature& feature, const std::string& what) {
+  return fail(ErrorCode::invalid, "Map not understood", feature.place + ": " + what, "body");
 }
 
 }  // namespace
@@ -77,14 +77,12 @@ std::vector<MapColumn> columns_of(const FeatureMap& map) {
 Result<FlatMap> flat_map(const FeatureMap& map, const MapChoice& choice, KeyNames* keys) {
   std::size_t value_column = 0, name_column = 0;
   if (!choice.attribute.empty()) {
-    const auto column = column_named(map, choice.attribute, "attribute");
-    if (!column) return tl::unexpected(column.error());
-    value_column = *column;
+    const auto column = STRATA_TRY(column_named(map, choice.attribute, "attribute"));
+    value_column = column;
   }
   if (!choice.names.empty()) {
-    const auto column = column_named(map, choice.names, "names");
-    if (!column) return tl::unexpected(column.error());
-    name_column = *column;
+    const auto column = STRATA_TRY(column_named(map, choice.names, "names"));
+    name_column = column;
   }
   std::vector<MapArea> areas;
   for (const MapFeature& feature : map.features) {
@@ -110,7 +108,8 @@ Result<FlatMap> flat_map(const FeatureMap& map, const MapChoice& choice, KeyName
     for (const MapFeature::Rings& rings : feature.polygons)
       areas.push_back({PolygonArea(rings), number});
   }
-  if (areas.empty()) return fail(422, "No polygons", "The map holds no polygon.", "body");
+  if (areas.empty())
+    return fail(ErrorCode::invalid, "No polygons", "The map holds no polygon.", "body");
   return FlatMap(std::move(areas));
 }
 

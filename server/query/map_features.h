@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "query/flat_map.h"
 #include "query/key_names.h"
 
@@ -60,7 +60,7 @@ struct MapChoice {
   std::string names;
 };
 // The areas with their values, later ones on top. Names become keys in `keys`; null: names are
-// refused. Refused (422): an unknown attribute, a feature without it, no area at all.
+// refused. Refused (invalid): an unknown attribute, a feature without it, no area at all.
 Result<FlatMap> flat_map(const FeatureMap& map, const MapChoice& choice, KeyNames* keys);
 
 }  // namespace strata::query

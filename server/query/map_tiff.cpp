@@ -11,11 +11,11 @@
 namespace strata::query {
 namespace {
 
-tl::unexpected<Problem> refuse(const std::string& what) {
-  return fail(422, "TIFF refused", what, "body");
+tl::unexpected<Error> refuse(const std::string& what) {
+  return fail(ErrorCode::invalid, "TIFF refused", what, "body");
 }
 
-tl::unexpected<Problem> damaged(const TiffMemory& file) {
+tl::unexpected<Error> damaged(const TiffMemory& file) {
   return refuse("The TIFF cannot be read: " +
                 (file.complaint.empty() ? std::string("damaged") : file.complaint) + ".");
 }
@@ -177,7 +177,7 @@ Result<MapTiff> describe(TIFF* tiff, int largest_side) {
                   std::to_string(bits) + "-bit samples with compression " +
                   std::to_string(compression) +
                   "; save it with 8, 16 or 32 bits a band, and deflate, LZW, zstd or none.");
-  if (auto placed = read_geo_tags(tiff, info); !placed) return tl::unexpected(placed.error());
+  STRATA_TRY(read_geo_tags(tiff, info));
   return info;
 }
 
@@ -231,19 +231,18 @@ Result<Picture> decode_tiff_picture(std::span<const std::uint8_t> bytes, const M
 Result<BandRaster> decode_tiff_band(std::span<const std::uint8_t> bytes, const MapTiff& info,
                                     int band) {
   if (band < 1 || band > info.bands)
-    return fail(422, "No such band",
+    return fail(ErrorCode::invalid, "No such band",
                 "The TIFF has the bands 1 to " + std::to_string(info.bands) + ".", "band");
   if (!info.has_numbers)
-    return fail(422, "No numbers",
+    return fail(ErrorCode::invalid, "No numbers",
                 "The TIFF's bands are no numbers of 8, 16 or 32 bits that are kept without loss.",
                 "band");
   TiffMemory file{bytes, nullptr, 0, {}};
   const Tiff tiff = open_tiff(file, "rm");
   if (!tiff) return damaged(file);
   BandReader reader(info, band, tiff.get());
-  const auto read = TIFFIsTiled(tiff.get()) ? read_tiles(tiff.get(), file, info, reader)
-                                            : read_rows(tiff.get(), file, info, reader);
-  if (!read) return tl::unexpected(read.error());
+  STRATA_TRY(TIFFIsTiled(tiff.get()) ? read_tiles(tiff.get(), file, info, reader)
+                                     : read_rows(tiff.get(), file, info, reader));
   return reader.take();
 }
 

@@ -29,8 +29,8 @@ struct MapTiff {
   bool in_degrees = false;
 };
 
-// From the header alone. Refused (422): no TIFF, damaged, a side of more than `largest_side`, tags
-// that contradict each other, neither numbers nor colours that can be read.
+// From the header alone. Refused (invalid): no TIFF, damaged, a side of more than `largest_side`,
+// tags that contradict each other, neither numbers nor colours that can be read.
 Result<MapTiff> inspect_tiff(std::span<const std::uint8_t> bytes, int largest_side);
 
 // Row 0 at the top. Pixels of which each band is the nodata number are transparent.
@@ -43,7 +43,7 @@ struct BandRaster {
   std::vector<std::uint32_t> bits;  // of `type`
   std::vector<std::uint8_t> valid;  // 0: nodata, or no finite number
 };
-// `band` counts from 1. Refused (422): there is no such band; the file ends too early.
+// `band` counts from 1. Refused (invalid): there is no such band; the file ends too early.
 Result<BandRaster> decode_tiff_band(std::span<const std::uint8_t> bytes, const MapTiff& info,
                                     int band);
 

@@ -200,7 +200,7 @@ Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry
   std::vector<TexelRegion> regions;
   if (!find_regions(map, labels.of_texel(), kMostOutlineCorners, regions))
     return fail(
-        422, "Outlines too long",
+        ErrorCode::invalid, "Outlines too long",
         "The borders of what is painted have more than " + std::to_string(kMostOutlineCorners) +
             " corners of texels. Ask for texels.tif instead, or for outlines of a layer with fewer areas.",
         "layer");
@@ -213,7 +213,7 @@ Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry
   } catch (const std::runtime_error& error) {
     log::error(std::string("outlines of a layer: ") + error.what());
     return fail(
-        500, "Outlines not made",
+        ErrorCode::internal, "Outlines not made",
         "The areas could not be laid on the plane. Ask for outlines along another axis, or for texels.tif; the "
         "server's log says more.",
         "along");

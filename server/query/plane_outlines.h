@@ -27,7 +27,7 @@ inline constexpr std::size_t kMostOutlineCorners = 4'000'000;
 // areas go on over seams without a gap. Lines are simplified by half a mean texel at most. What
 // lies behind another part of the same class is one area with it.
 //
-// `map` is of the layer's resolution. Refused (422): more than kMostOutlineCorners corners.
+// `map` is of the layer's resolution. Refused (invalid): more than kMostOutlineCorners corners.
 using PlaneOutlines = std::map<std::uint32_t, std::vector<FlatPolygon>>;
 Result<PlaneOutlines> plane_outlines(const LayerView& view, const mesh::Geometry& geometry,
                                      const mesh::SurfaceMap& map, const ValueClasses& classes,

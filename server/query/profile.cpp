@@ -10,7 +10,7 @@ namespace {
 template <class Point>
 Result<std::vector<Point>> steps_of(std::span<const Point> corners, double step,
                                     const char* field) {
-  const auto too_many = fail(422, "Too many samples",
+  const auto too_many = fail(ErrorCode::invalid, "Too many samples",
                              "A profile has at most " + std::to_string(kMaxProfileSamples) +
                                  " samples; take longer steps or a shorter line.",
                              field);
@@ -48,20 +48,17 @@ Profile sample(const std::vector<Point>& points, Find find) {
 Result<Profile> profile_near(const mesh::SearchTree& tree, const glm::dvec3& origin,
                              std::span<const glm::dvec3> places, double step,
                              const std::vector<LayerView>& layers) {
-  const auto points = steps_of(places, step, "step_mm");
-  if (!points) return tl::unexpected(points.error());
-  return sample(*points,
+  const auto points = STRATA_TRY(steps_of(places, step, "step_mm"));
+  return sample(points,
                 [&](const glm::dvec3& at) { return nearest_point(tree, origin, at, layers); });
 }
 
 Result<Profile> profile_seen(const mesh::SearchTree& tree, const glm::dvec3& origin,
                              const Camera& camera, std::span<const glm::dvec2> path,
                              const std::vector<LayerView>& layers) {
-  const auto points = steps_of(path, 1.0, "path");
-  if (!points) return tl::unexpected(points.error());
-  return sample(*points, [&](const glm::dvec2& at) {
-    return pick(tree, origin, camera, at.x, at.y, layers);
-  });
+  const auto points = STRATA_TRY(steps_of(path, 1.0, "path"));
+  return sample(
+      points, [&](const glm::dvec2& at) { return pick(tree, origin, camera, at.x, at.y, layers); });
 }
 
 }  // namespace strata::query

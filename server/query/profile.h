@@ -23,12 +23,12 @@ struct Profile {
 };
 
 // From place to place in steps of at most `step` (model units): of each the nearest surface point.
-// Refused (422, `step_mm`): more than kMaxProfileSamples.
+// Refused (invalid, `step_mm`): more than kMaxProfileSamples.
 Result<Profile> profile_near(const mesh::SearchTree& tree, const glm::dvec3& origin,
                              std::span<const glm::dvec3> places, double step,
                              const std::vector<LayerView>& layers);
 // What a camera sees under a line of its window (pixels, origin top left), at each pixel of its
-// length. Refused (422, `path`): a line of more than kMaxProfileSamples pixels.
+// length. Refused (invalid, `path`): a line of more than kMaxProfileSamples pixels.
 Result<Profile> profile_seen(const mesh::SearchTree& tree, const glm::dvec3& origin,
                              const Camera& camera, std::span<const glm::dvec2> path,
                              const std::vector<LayerView>& layers);

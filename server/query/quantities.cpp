@@ -49,7 +49,7 @@ Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map
                          map.area[std::size_t{slot} * 64 + static_cast<std::size_t>(texel)];
                    });
     if (sums.size() > kMostClasses)
-      return fail(422, "Too many classes",
+      return fail(ErrorCode::invalid, "Too many classes",
                   "The layer holds more than " + std::to_string(kMostClasses) +
                       " different values. Give it a palette with ranges (linear or step).",
                   "layer");

@@ -27,7 +27,7 @@ struct Quantities {
 };
 
 // How much there is of each class, over valid surface texels (gutter excluded). The map and its
-// graph must be of the layer's resolution. The same on every call. Refused (422): more than
+// graph must be of the layer's resolution. The same on every call. Refused (invalid): more than
 // kMostClasses classes.
 Result<Quantities> quantities(const LayerView& view, const mesh::SurfaceMap& map,
                               const mesh::TexelGraph& graph, const ValueClasses& classes,

@@ -163,28 +163,26 @@ Result<std::vector<std::uint8_t>> encode_npy(const Layer& layer, const TileMap& 
 }
 
 Result<TileMap> decode_npy(const Layer& layer, std::span<const std::uint8_t> bytes) {
-  auto header = read_header(bytes);
-  if (!header) return tl::unexpected(header.error());
-  const auto element = element_of(header->descr);
-  if (!element) return tl::unexpected(element.error());
-  if (auto shape = check_shape(layer, *header); !shape) return tl::unexpected(shape.error());
+  auto header = STRATA_TRY(read_header(bytes));
+  const auto element = STRATA_TRY(element_of(header.descr));
+  STRATA_TRY(check_shape(layer, header));
 
-  const auto side = static_cast<std::size_t>(layer.resolution), stride = element->bytes();
-  const std::span<const std::uint8_t> data = bytes.subspan(header->data_at);
+  const auto side = static_cast<std::size_t>(layer.resolution), stride = element.bytes();
+  const std::span<const std::uint8_t> data = bytes.subspan(header.data_at);
   if (data.size() != side * side * stride)
     return refuse_raster("The file holds " + std::to_string(data.size()) +
                          " bytes of texels, but its header promises " +
                          std::to_string(side * side * stride) + ". It was cut or is damaged.");
   TileMapBuilder builder(layer);
-  const SampleReader reader(layer, element->value);
+  const SampleReader reader(layer, element.value);
   // In the order of the file: memory is read from its begin to its end.
   const std::uint8_t* texel = data.data();
   for (std::size_t slow = 0; slow < side; ++slow)
     for (std::size_t fast = 0; fast < side; ++fast, texel += stride) {
-      if (element->valid ? texel[element->value.bytes] == 0 : reader.is_nodata(texel)) continue;
-      const auto row = static_cast<int>(header->fortran_order ? fast : slow),
-                 x = static_cast<int>(header->fortran_order ? slow : fast);
-      if (auto put = reader.put(builder, x, row, texel); !put) return tl::unexpected(put.error());
+      if (element.valid ? texel[element.value.bytes] == 0 : reader.is_nodata(texel)) continue;
+      const auto row = static_cast<int>(header.fortran_order ? fast : slow),
+                 x = static_cast<int>(header.fortran_order ? slow : fast);
+      STRATA_TRY(reader.put(builder, x, row, texel));
     }
   return builder.finish();
 }

@@ -46,7 +46,7 @@ std::string describe(int color_type, int bit_depth) {
 
 Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& tiles) {
   if (!fits_png(layer.type))
-    return fail(406, "Not possible as PNG",
+    return fail(ErrorCode::not_acceptable, "Not possible as PNG",
                 "PNG holds whole numbers from 0 to 65535 only, and this layer's values are " +
                     std::string(name(layer.type)) + ". Ask for texels.tif or texels.npy.");
   const int width = bytes_per_texel(layer.type);
@@ -57,7 +57,8 @@ Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& 
 
   PngWriter writer;
   auto failed = [&] {
-    return fail(500, "PNG not written", std::string("libpng: ") + writer.message.text);
+    return fail(ErrorCode::internal, "PNG not written",
+                std::string("libpng: ") + writer.message.text);
   };
   if (writer.info == nullptr) return failed();
   const png_structp png = writer.png;
@@ -87,7 +88,7 @@ Result<std::vector<std::uint8_t>> encode_png(const Layer& layer, const TileMap& 
 
 Result<TileMap> decode_png(const Layer& layer, std::span<const std::uint8_t> bytes) {
   if (!fits_png(layer.type))
-    return fail(415, "Not possible as PNG",
+    return fail(ErrorCode::unsupported, "Not possible as PNG",
                 "PNG holds whole numbers from 0 to 65535 only, and this layer's values are " +
                     std::string(name(layer.type)) + ". Send texels.tif or texels.npy.",
                 "texels");
@@ -129,7 +130,7 @@ Result<TileMap> decode_png(const Layer& layer, std::span<const std::uint8_t> byt
     for (int x = 0; x < layer.resolution; ++x, at += 2 * width) {
       if (at[width] < 0x80) continue;  // the high byte of alpha: at least half opaque is valid
       const std::uint8_t value[2] = {at[width - 1], at[0]};
-      if (auto put = builder.put(x, row, value); !put) return tl::unexpected(put.error());
+      STRATA_TRY(builder.put(x, row, value));
     }
   }
   if (!guarded(png, [&] { png_read_end(png, nullptr); })) return damaged();

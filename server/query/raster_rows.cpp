@@ -73,8 +73,8 @@ TileMap TileMapBuilder::finish() {
   return tiles;
 }
 
-tl::unexpected<Problem> refuse_raster(std::string detail) {
-  return fail(422, "Raster refused", std::move(detail), "texels");
+tl::unexpected<Error> refuse_raster(std::string detail) {
+  return fail(ErrorCode::invalid, "Raster refused", std::move(detail), "texels");
 }
 
 std::string raster_needs(const Layer& layer) {

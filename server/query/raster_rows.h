@@ -28,7 +28,7 @@ class TileRows {
 class TileMapBuilder {
  public:
   explicit TileMapBuilder(const Layer& layer);
-  // A valid texel from its little-endian storage; a float that is not finite is a Problem that
+  // A valid texel from its little-endian storage; a float that is not finite is an Error that
   // names its place.
   Result<void> put(int x, int file_row, const std::uint8_t* value);
   TileMap finish();
@@ -41,8 +41,8 @@ class TileMapBuilder {
   std::vector<std::shared_ptr<TileData>> tiles_;
 };
 
-// Every refusal of a raster: 422 "Raster refused".
-tl::unexpected<Problem> refuse_raster(std::string detail);
+// Every refusal of a raster: `invalid` "Raster refused".
+tl::unexpected<Error> refuse_raster(std::string detail);
 // "2048 × 2048 texels of u16", as the layer needs it.
 std::string raster_needs(const Layer& layer);
 // Refuses another width or height than the layer's.

@@ -28,7 +28,7 @@ class SampleReader {
   bool is_zero(const std::uint8_t* sample) const { return number(sample) == 0; }
   // NaN or the file's nodata.
   bool is_nodata(const std::uint8_t* sample) const;
-  // Refused (422): a number that does not fit, which is told with its row and column.
+  // Refused (invalid): a number that does not fit, which is told with its row and column.
   Result<void> put(TileMapBuilder& builder, int x, int file_row, const std::uint8_t* sample) const;
 
  private:

@@ -128,7 +128,9 @@ class TiffTiles {
 Result<std::vector<std::uint8_t>> encode_tiff(const Layer& layer, const TileMap& tiles) {
   std::vector<std::uint8_t> out;
   TiffMemory file{{}, &out, 0, {}};
-  auto failed = [&] { return fail(500, "TIFF not written", "libtiff: " + file.complaint); };
+  auto failed = [&] {
+    return fail(ErrorCode::internal, "TIFF not written", "libtiff: " + file.complaint);
+  };
   Tiff tiff = open_tiff(file, "wm");
   if (!tiff) return failed();
   TiffTiles written(layer, tiles);

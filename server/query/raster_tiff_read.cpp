@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostDirectories = 64;  // in which a mask is looked for
 
-tl::unexpected<Problem> damaged(const TiffMemory& file) {
+tl::unexpected<Error> damaged(const TiffMemory& file) {
   return refuse_raster("The TIFF cannot be read: " +
                        (file.complaint.empty() ? std::string("damaged") : file.complaint) + ".");
 }
@@ -61,7 +61,7 @@ Result<TiffForm> form_of(const Layer& layer, TIFF* tiff) {
     return refuse_raster(
         "The TIFF has " + std::to_string(samples) + " samples of " + describe(*sample) +
         " a pixel; a layer takes one (the value), or two (the value, then 0 where nothing is painted).");
-  if (auto good = check_compression(tiff); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_compression(tiff));
   return TiffForm{
       *sample, samples,
       samples > 1 && tiff_tag<std::uint16_t>(tiff, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE};
@@ -103,8 +103,7 @@ Result<void> visit_plane(TIFF* tiff, const TiffMemory& file, std::uint32_t side,
   if (TIFFScanlineSize64(tiff) != line.size()) return damaged(file);
   for (std::uint32_t row = 0; row < side; ++row) {
     if (TIFFReadScanline(tiff, line.data(), row, plane) != 1) return damaged(file);
-    if (auto good = visit(0, static_cast<int>(row), static_cast<int>(side), line.data()); !good)
-      return good;
+    STRATA_TRY(visit(0, static_cast<int>(row), static_cast<int>(side), line.data()));
   }
   return {};
 }
@@ -151,9 +150,8 @@ Result<bool> find_mask(TIFF* tiff, const TiffMemory& file) {
 // The internal mask of GDAL, of 1 or 8 bits. The first directory is the current one again
 // afterwards.
 Result<void> read_mask(TIFF* tiff, TiffMemory& file, const Layer& layer, Painted& painted) {
-  const auto has_mask = find_mask(tiff, file);
-  if (!has_mask) return tl::unexpected(has_mask.error());
-  if (*has_mask) {
+  const auto has_mask = STRATA_TRY(find_mask(tiff, file));
+  if (has_mask) {
     if (auto size = check_raster_size(layer, tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
                                       tiff_tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH));
         !size)
@@ -161,16 +159,15 @@ Result<void> read_mask(TIFF* tiff, TiffMemory& file, const Layer& layer, Painted
     const int bits = tiff_tag<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE);
     if (tiff_tag<std::uint16_t>(tiff, TIFFTAG_SAMPLESPERPIXEL) != 1 || (bits != 1 && bits != 8))
       return refuse_raster("The TIFF's mask is not one of 1 or 8 bits a pixel.");
-    if (auto good = check_compression(tiff); !good) return good;
-    auto read = visit_plane(
+    STRATA_TRY(check_compression(tiff));
+    STRATA_TRY(visit_plane(
         tiff, file, static_cast<std::uint32_t>(layer.resolution), bits, 0,
         [&](int x, int row, int count, const std::uint8_t* samples) -> Result<void> {
           for (int i = 0; i < count; ++i)
             painted.set(x + i, row,
                         bits == 8 ? samples[i] != 0 : (samples[i / 8] >> (7 - i % 8) & 1) != 0);
           return {};
-        });
-    if (!read) return read;
+        }));
   }
   if (!TIFFSetDirectory(tiff, 0)) return damaged(file);
   return {};
@@ -182,34 +179,30 @@ Result<TileMap> decode_tiff(const Layer& layer, std::span<const std::uint8_t> by
   TiffMemory file{bytes, nullptr, 0, {}};
   Tiff tiff = open_tiff(file, "rm");
   if (!tiff) return damaged(file);
-  const auto form = form_of(layer, tiff.get());
-  if (!form) return tl::unexpected(form.error());
+  const auto form = STRATA_TRY(form_of(layer, tiff.get()));
   Painted painted(layer.resolution);
-  const bool has_valid = form->samples == 2;
+  const bool has_valid = form.samples == 2;
   const auto nodata = has_valid ? std::nullopt : nodata_of(tiff.get());
-  if (has_valid && form->is_separate) {
-    if (auto read = read_valid_plane(tiff.get(), file, layer, *form, painted); !read)
-      return tl::unexpected(read.error());
+  if (has_valid && form.is_separate) {
+    STRATA_TRY(read_valid_plane(tiff.get(), file, layer, form, painted));
   } else if (!has_valid) {
-    if (auto read = read_mask(tiff.get(), file, layer, painted); !read)
-      return tl::unexpected(read.error());
+    STRATA_TRY(read_mask(tiff.get(), file, layer, painted));
   }
   TileMapBuilder builder(layer);
-  const SampleReader reader(layer, form->sample, nodata);
-  const int pixel_bytes = form->pixel_bits() / 8;
-  const bool is_interleaved = has_valid && !form->is_separate;
+  const SampleReader reader(layer, form.sample, nodata);
+  const int pixel_bytes = form.pixel_bits() / 8;
+  const bool is_interleaved = has_valid && !form.is_separate;
   const auto put = [&](int x, int row, int count, const std::uint8_t* samples) -> Result<void> {
     for (int i = 0; i < count; ++i, samples += pixel_bytes) {
       if (painted.is_known() && !painted.at(x + i, row)) continue;
-      if (is_interleaved && reader.is_zero(samples + form->sample.bytes)) continue;
+      if (is_interleaved && reader.is_zero(samples + form.sample.bytes)) continue;
       if (!has_valid && reader.is_nodata(samples)) continue;
-      if (auto good = reader.put(builder, x + i, row, samples); !good) return good;
+      STRATA_TRY(reader.put(builder, x + i, row, samples));
     }
     return {};
   };
-  const auto read = visit_plane(tiff.get(), file, static_cast<std::uint32_t>(layer.resolution),
-                                form->pixel_bits(), 0, put);
-  if (!read) return tl::unexpected(read.error());
+  STRATA_TRY(visit_plane(tiff.get(), file, static_cast<std::uint32_t>(layer.resolution),
+                         form.pixel_bits(), 0, put));
   return builder.finish();
 }
 

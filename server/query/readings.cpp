@@ -31,8 +31,9 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
   }
 }
 
-tl::unexpected<Problem> refuse(int line, const std::string& what) {
-  return fail(422, "Readings not understood", "Line " + std::to_string(line) + ": " + what, "body");
+tl::unexpected<Error> refuse(int line, const std::string& what) {
+  return fail(ErrorCode::invalid, "Readings not understood",
+              "Line " + std::to_string(line) + ": " + what, "body");
 }
 
 // The first of the separators that stands in the line of names.
@@ -106,7 +107,7 @@ Result<std::vector<Reading>> parse_readings(std::string_view csv) {
     readings.push_back({{numbers[0], numbers[1], numbers[2]}, numbers[3], line_number});
   }
   if (readings.empty())
-    return fail(422, "No readings",
+    return fail(ErrorCode::invalid, "No readings",
                 "Send lines of x, y, z and value below a line that names these columns.", "body");
   return readings;
 }

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::query {
 
@@ -19,9 +19,9 @@ struct Reading {
 
 // Reads a table of measurements. The first line names the columns: x, y, z and value, in any order
 // and case, others are passed over. Columns are parted by commas, semicolons or tabs, numbers have
-// a decimal point; quotes around a field are taken off; empty lines are passed over. Refused (422
-// with the line): a missing column, a field that is no finite number, lines of another count of
-// fields, no reading at all, more than kMaxReadings.
+// a decimal point; quotes around a field are taken off; empty lines are passed over. Refused
+// (invalid with the line): a missing column, a field that is no finite number, lines of another
+// count of fields, no reading at all, more than kMaxReadings.
 Result<std::vector<Reading>> parse_readings(std::string_view csv);
 
 }  // namespace strata::query

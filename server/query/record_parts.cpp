@@ -75,7 +75,7 @@ class Splitter {
 
   const std::string& field_;
   std::vector<RecordPart> parts_;
-  std::optional<Problem> problem_;
+  std::optional<Error> problem_;
 };
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/expression.h"
 #include "core/key_numbers.h"
-#include "core/problem.h"
 
 namespace strata::query {
 
@@ -22,7 +22,7 @@ struct SplitExpression {
   Expression expression;          // with Op::record_number and record_truth in place of the parts
   std::vector<RecordPart> parts;  // by their `index`
 };
-// Refused (422 at `field`): texts and times of columns that are set beside something else than
+// Refused (invalid at `field`): texts and times of columns that are set beside something else than
 // their own record.
 Result<SplitExpression> split_records(const Expression& expression, const std::string& field);
 

@@ -17,8 +17,8 @@ namespace {
 constexpr std::size_t kShpHeader = 100, kRecordHeader = 8, kShxRecord = 8, kDbfHeader = 32;
 constexpr std::size_t kMaxSkipped = 100'000;  // records without a shape
 
-tl::unexpected<Problem> refuse(const std::string& what) {
-  return fail(422, "Shapefile not understood", what, "body");
+tl::unexpected<Error> refuse(const std::string& what) {
+  return fail(ErrorCode::invalid, "Shapefile not understood", what, "body");
 }
 
 std::uint32_t big_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
@@ -134,12 +134,10 @@ class Reader {
   explicit Reader(const ShapefileParts& parts) : parts_(parts) {}
 
   Result<FeatureMap> read() {
-    auto shx = index_of(parts_.shp);
-    if (!shx) return tl::unexpected(shx.error());
-    const std::size_t records = (shx->size() - kShpHeader) / kShxRecord;
-    if (!parts_.dbf.empty())
-      if (auto good = check_dbf(parts_.dbf, records); !good) return tl::unexpected(good.error());
-    ShapelibMemory memory{{{"map.shp", parts_.shp}, {"map.shx", *shx}, {"map.dbf", parts_.dbf}}};
+    auto shx = STRATA_TRY(index_of(parts_.shp));
+    const std::size_t records = (shx.size() - kShpHeader) / kShxRecord;
+    if (!parts_.dbf.empty()) STRATA_TRY(check_dbf(parts_.dbf, records));
+    ShapelibMemory memory{{{"map.shp", parts_.shp}, {"map.shx", shx}, {"map.dbf", parts_.dbf}}};
     const std::unique_ptr<SHPInfo, CloseShapes> shapes(SHPOpenLL("map.shp", "rb", memory.hooks()));
     if (!shapes) return refuse(memory.complaint("The .shp cannot be read"));
     std::unique_ptr<DBFInfo, CloseTable> table;
@@ -160,7 +158,7 @@ class Reader {
         if (++skipped_ > kMaxSkipped) return refuse("Most of its records have no shape.");
         continue;
       }
-      if (auto kept = keep(*shape, table.get(), i); !kept) return tl::unexpected(kept.error());
+      STRATA_TRY(keep(*shape, table.get(), i));
     }
     return std::move(map_);
   }

@@ -20,7 +20,7 @@ bool is_shapefile(std::span<const std::uint8_t> bytes);  // by the first bytes o
 
 // The polygons (also with Z and M) of a shapefile with their attributes; shapes without a geometry
 // and deleted records are passed over. Read by shapelib from memory, after lengths and counts are
-// checked against the bytes that are there. Refused (422): other shapes, damaged or truncated
+// checked against the bytes that are there. Refused (invalid): other shapes, damaged or truncated
 // files, files that do not belong together, as much as parse_geojson refuses. Thread-safe.
 Result<FeatureMap> parse_shapefile(const ShapefileParts& parts);
 

@@ -77,7 +77,7 @@ Result<std::vector<TexelSample>> samples_by_cell(const SurfaceTexels& texels, do
     return cells.size() <= kMostCells;
   });
   if (!countable || cells.size() > kMostCells)
-    return fail(422, "Cells too small",
+    return fail(ErrorCode::invalid, "Cells too small",
                 "The surface has more than " + std::to_string(kMostCells) +
                     " cells of this size. Ask for larger ones.",
                 "cell");

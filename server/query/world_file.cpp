@@ -10,10 +10,11 @@ Result<WorldFile> checked(const WorldFile& world, const std::string& field) {
   for (const double number :
        {world.x_per_column, world.y_per_column, world.x_per_row, world.y_per_row, world.x, world.y})
     if (!std::isfinite(number))
-      return fail(422, "World file not understood", "Its numbers are not finite.", field);
+      return fail(ErrorCode::invalid, "World file not understood", "Its numbers are not finite.",
+                  field);
   const double area = world.x_per_column * world.y_per_row - world.x_per_row * world.y_per_column;
   if (!std::isnormal(area))
-    return fail(422, "World file not understood", "Its pixels have no area.", field);
+    return fail(ErrorCode::invalid, "World file not understood", "Its pixels have no area.", field);
   return world;
 }
 
@@ -22,7 +23,7 @@ Result<WorldFile> parse_world_file(std::string_view text, const std::string& fie
   std::size_t count = 0;
   const auto wrong = [&] {
     return fail(
-        422, "World file not understood",
+        ErrorCode::invalid, "World file not understood",
         "Give its six numbers: width and turn of a pixel in x and y, then the centre of the first pixel.",
         field);
   };

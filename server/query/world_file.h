@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::query {
 
@@ -14,7 +14,7 @@ struct WorldFile {
   double x_per_column = 1, y_per_column = 0, x_per_row = 0, y_per_row = -1, x = 0, y = 0;
 };
 // "1,0,0,-1,0,0" in the order of a world file's lines, parted by commas, blanks or line ends.
-// Refused (422 at `field`): another count, no finite numbers, a picture without area.
+// Refused (invalid at `field`): another count, no finite numbers, a picture without area.
 Result<WorldFile> parse_world_file(std::string_view text, const std::string& field);
 // The same check, for what came from elsewhere.
 Result<WorldFile> checked(const WorldFile& world, const std::string& field);

@@ -11,20 +11,18 @@ static_assert(sizeof(mesh::ClusterBox) == 6 * sizeof(float));
 static_assert(sizeof(shader::DrawCommand) == 20);
 
 Result<ClusterCuller> ClusterCuller::create(const std::filesystem::path& shader_dir) {
-  auto grid = DepthGridPass::create(shader_dir);
-  if (!grid) return tl::unexpected(grid.error());
-  auto program = gl::Program::load(shader_dir, {"cluster_cull_pass.comp"});
-  if (!program) return tl::unexpected(program.error());
+  auto grid = STRATA_TRY(DepthGridPass::create(shader_dir));
+  auto program = STRATA_TRY(gl::Program::load(shader_dir, {"cluster_cull_pass.comp"}));
   ClusterCuller culler;
-  culler.grid_ = std::move(*grid);
-  culler.program_ = std::move(*program);
+  culler.grid_ = std::move(grid);
+  culler.program_ = std::move(program);
   return culler;
 }
 
 Result<void> ClusterCuller::hide(const gl::Texture& depth, const MeshBuffers& mesh,
                                  const glm::mat4& clip_from_model, const gl::Buffer& commands,
                                  std::size_t first, std::size_t count) {
-  if (auto made = grid_.run(depth, cells_); !made) return made;
+  STRATA_TRY(grid_.run(depth, cells_));
   program_.use();
   glProgramUniformMatrix4fv(program_.id(), 0, 1, GL_FALSE, glm::value_ptr(clip_from_model));
   program_.set(1, depth.width(), depth.height());

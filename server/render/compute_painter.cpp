@@ -37,9 +37,8 @@ Result<Step> ComputePainter::step(GpuScene& scene, const PaintTarget& target) {
 Result<void> ComputePainter::begin_radii(GpuScene& scene) {
   path_pixels_ = path_pixels();
   if (path_pixels_.pixels.empty()) return {};
-  auto depths = scene.depths().begin_gather(*depth_, path_pixels_.pixels);
-  if (!depths) return tl::unexpected(depths.error());
-  path_depths_ = std::move(*depths);
+  auto depths = STRATA_TRY(scene.depths().begin_gather(*depth_, path_pixels_.pixels));
+  path_depths_ = std::move(depths);
   return {};
 }
 
@@ -53,7 +52,7 @@ void ComputePainter::collect_radii(const mesh::Geometry& geometry) {
 Result<void> ComputePainter::cull(GpuScene& scene, const PaintTarget& target) {
   begin_ = std::chrono::steady_clock::now();
   if (!stroke_.through) {
-    if (auto made = scene.depths().make_grid(*depth_); !made) return made;
+    STRATA_TRY(scene.depths().make_grid(*depth_));
   }
   const mesh::Geometry& geometry = target.mesh.geometry();
   auto touched = scene.edit_culler().dispatch(stroke_, geometry.origin, path_, depth_bias(geometry),
@@ -70,9 +69,9 @@ Result<void> ComputePainter::dispatch(GpuScene& scene, const PaintTarget& target
   outcome_.bytes_down = touched_.size();
   touched_ = {};
   if (!touched.tiles.empty()) {
-    auto room = scene.tile_reader().make_room(target.layer.pool(), touched.tiles.size());
-    if (!room) return tl::unexpected(room.error());
-    tiles_ = std::move(*room);
+    auto room =
+        STRATA_TRY(scene.tile_reader().make_room(target.layer.pool(), touched.tiles.size()));
+    tiles_ = std::move(room);
   }
   auto edit =
       scene.edit_pass().dispatch(stroke_, std::move(touched), scene.edit_culler(), target.map,

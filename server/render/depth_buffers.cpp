@@ -26,22 +26,18 @@ void DepthBuffer::start(const DepthKey& new_key) {
 Result<DepthBuffers> DepthBuffers::create(const std::filesystem::path& shader_dir,
                                           std::size_t triangles_per_slice, GpuMemory& memory,
                                           gl::ReadbackPool& readback) {
-  auto pass = MeshPass::create(MeshPass::Kind::depth, shader_dir, triangles_per_slice);
-  if (!pass) return tl::unexpected(pass.error());
-  auto grid = DepthGridPass::create(shader_dir);
-  if (!grid) return tl::unexpected(grid.error());
-  auto gather = gl::Program::load(shader_dir, {"depth_gather_pass.comp"});
-  if (!gather) return tl::unexpected(gather.error());
-  auto pixels = gl::Buffer::create(kMaxPathPoints * sizeof(glm::ivec2), gl::Buffer::Use::fixed,
-                                   "depth gather pixels");
-  if (!pixels) return tl::unexpected(pixels.error());
+  auto pass = STRATA_TRY(MeshPass::create(MeshPass::Kind::depth, shader_dir, triangles_per_slice));
+  auto grid = STRATA_TRY(DepthGridPass::create(shader_dir));
+  auto gather = STRATA_TRY(gl::Program::load(shader_dir, {"depth_gather_pass.comp"}));
+  auto pixels = STRATA_TRY(gl::Buffer::create(kMaxPathPoints * sizeof(glm::ivec2),
+                                              gl::Buffer::Use::fixed, "depth gather pixels"));
   DepthBuffers buffers;
   buffers.memory_ = &memory;
   buffers.readback_ = &readback;
-  buffers.pass_ = std::move(*pass);
-  buffers.grid_pass_ = std::move(*grid);
-  buffers.gather_program_ = std::move(*gather);
-  buffers.pixels_ = std::move(*pixels);
+  buffers.pass_ = std::move(pass);
+  buffers.grid_pass_ = std::move(grid);
+  buffers.gather_program_ = std::move(gather);
+  buffers.pixels_ = std::move(pixels);
   return buffers;
 }
 
@@ -50,14 +46,13 @@ Result<std::shared_ptr<DepthBuffer>> DepthBuffers::make(const DepthKey& key) {
       std::uint64_t{4} * static_cast<unsigned>(key.width) * static_cast<unsigned>(key.height),
       "a depth buffer");
   if (!share) return tl::unexpected(share.error());
-  auto texture = gl::Texture::create_2d(GL_DEPTH_COMPONENT32F, key.width, key.height, "depth");
-  if (!texture) return tl::unexpected(texture.error());
-  auto framebuffer = gl::Framebuffer::create({}, &*texture, "depth only");
-  if (!framebuffer) return tl::unexpected(framebuffer.error());
+  auto texture =
+      STRATA_TRY(gl::Texture::create_2d(GL_DEPTH_COMPONENT32F, key.width, key.height, "depth"));
+  auto framebuffer = STRATA_TRY(gl::Framebuffer::create({}, &texture, "depth only"));
   auto buffer = std::make_shared<DepthBuffer>();
   buffer->share = std::move(*share);
-  buffer->texture = std::move(*texture);
-  buffer->framebuffer = std::move(*framebuffer);
+  buffer->texture = std::move(texture);
+  buffer->framebuffer = std::move(framebuffer);
   buffer->start(key);
   return buffer;
 }
@@ -127,23 +122,22 @@ void DepthBuffers::copy_to_memory(DepthBuffer& buffer, int threads) {
 
 Result<void> DepthBuffers::make_grid(DepthBuffer& buffer) const {
   if (buffer.has_grid) return {};
-  if (auto made = grid_pass_.run(buffer.texture, buffer.grid); !made) return made;
+  STRATA_TRY(grid_pass_.run(buffer.texture, buffer.grid));
   buffer.has_grid = true;
   return {};
 }
 
 Result<gl::Readback> DepthBuffers::begin_gather(const DepthBuffer& buffer,
                                                 std::span<const glm::ivec2> pixels) {
-  auto depths = readback_->begin(pixels.size() * sizeof(float));
-  if (!depths) return depths;
+  auto depths = STRATA_TRY(readback_->begin(pixels.size() * sizeof(float)));
   pixels_.upload_values(0, pixels);
   gather_program_.use();
   gather_program_.set(0, static_cast<GLuint>(pixels.size()));
   buffer.texture.bind(0);
   pixels_.bind_storage(0);
-  depths->buffer().bind_storage(1);
+  depths.buffer().bind_storage(1);
   glDispatchCompute(static_cast<GLuint>(pixels.size() + 63) / 64, 1, 1);
-  depths->submit();
+  depths.submit();
   return depths;
 }
 

@@ -5,10 +5,9 @@
 namespace strata::render {
 
 Result<DepthGridPass> DepthGridPass::create(const std::filesystem::path& shader_dir) {
-  auto program = gl::Program::load(shader_dir, {"depth_grid_pass.comp"});
-  if (!program) return tl::unexpected(program.error());
+  auto program = STRATA_TRY(gl::Program::load(shader_dir, {"depth_grid_pass.comp"}));
   DepthGridPass pass;
-  pass.program_ = std::move(*program);
+  pass.program_ = std::move(program);
   return pass;
 }
 
@@ -19,9 +18,8 @@ std::size_t DepthGridPass::bytes(const gl::Texture& depth) {
 
 Result<void> DepthGridPass::run(const gl::Texture& depth, gl::Buffer& grid) const {
   if (grid.size() < bytes(depth)) {
-    auto made = gl::Buffer::create(bytes(depth), gl::Buffer::Use::fixed, "depth grid");
-    if (!made) return tl::unexpected(made.error());
-    grid = std::move(*made);
+    auto made = STRATA_TRY(gl::Buffer::create(bytes(depth), gl::Buffer::Use::fixed, "depth grid"));
+    grid = std::move(made);
   }
   const int width = depth_cells(depth.width()), height = depth_cells(depth.height());
   program_.use();

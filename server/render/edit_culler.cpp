@@ -56,14 +56,13 @@ std::size_t used_bytes(const shader::EditUniforms& uniforms) {
 
 Result<EditCuller> EditCuller::create(const std::filesystem::path& shader_dir,
                                       gl::ReadbackPool& readback) {
-  auto program = gl::Program::load(shader_dir, {"edit_cull_pass.comp"});
-  if (!program) return tl::unexpected(program.error());
-  auto tiles = gl::Buffer::create(sizeof(shader::EditTiles), gl::Buffer::Use::fixed, "edit tiles");
-  if (!tiles) return tl::unexpected(tiles.error());
+  auto program = STRATA_TRY(gl::Program::load(shader_dir, {"edit_cull_pass.comp"}));
+  auto tiles = STRATA_TRY(
+      gl::Buffer::create(sizeof(shader::EditTiles), gl::Buffer::Use::fixed, "edit tiles"));
   EditCuller culler;
   culler.readback_ = &readback;
-  culler.program_ = std::move(*program);
-  culler.tiles_ = std::move(*tiles);
+  culler.program_ = std::move(program);
+  culler.tiles_ = std::move(tiles);
   culler.timer_ = gl::TimerQuery::create("edit culling");
   return culler;
 }
@@ -79,13 +78,11 @@ Result<gl::Readback> EditCuller::dispatch(const StrokeBatch& stroke, const glm::
   const auto sent = std::as_bytes(std::span(&uniforms, 1)).first(used_bytes(uniforms));
   const std::span<const shader::EditSegment> segments(path.segments);
   bytes_up_ = sent.size_bytes() + segments.size_bytes();
-  if (auto replaced = uniforms_.replace(sent); !replaced) return tl::unexpected(replaced.error());
-  if (auto replaced = segments_.replace(segments); !replaced)
-    return tl::unexpected(replaced.error());
+  STRATA_TRY(uniforms_.replace(sent));
+  STRATA_TRY(segments_.replace(segments));
   const auto per_side = static_cast<std::size_t>(map.map().resolution / kTileSize);
   const std::size_t list_bytes = per_side * per_side * sizeof(std::uint32_t);
-  auto read = readback_->begin(kCountBytes + list_bytes);
-  if (!read) return read;
+  auto read = STRATA_TRY(readback_->begin(kCountBytes + list_bytes));
 
   tiles_.clear(0, kCountBytes);
   tiles_.clear(kMarksBegin, list_bytes);
@@ -102,8 +99,8 @@ Result<gl::Readback> EditCuller::dispatch(const StrokeBatch& stroke, const glm::
   }
   timer_.end();
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-  tiles_.copy_to(read->buffer(), 0, kCountBytes + list_bytes);
-  read->submit();
+  tiles_.copy_to(read.buffer(), 0, kCountBytes + list_bytes);
+  read.submit();
   return read;
 }
 

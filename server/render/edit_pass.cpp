@@ -25,9 +25,8 @@ Result<EditPass> EditPass::create(const std::filesystem::path& shader_dir,
   const auto format = [](int texel_bytes) {
     return "TEXEL_FORMAT r" + std::to_string(8 * texel_bytes) + "ui";
   };
-  auto programs = ProgramPerWidth::load(shader_dir, "edit_pass.comp", format);
-  if (!programs) return tl::unexpected(programs.error());
-  pass.programs_ = std::move(*programs);
+  auto programs = STRATA_TRY(ProgramPerWidth::load(shader_dir, "edit_pass.comp", format));
+  pass.programs_ = std::move(programs);
   // Of their own, so that strokes of discs and squares do not carry what only a shape needs.
   auto shape_programs =
       ProgramPerWidth::load(shader_dir, "edit_pass.comp", format, {"TOOL_TEXTURE"});
@@ -41,9 +40,8 @@ Result<void> EditPass::send_shape(const StrokeBatch& stroke) {
   if (stroke.shape != ToolShape::texture || stroke.texture == shape_) return {};
   static_assert(shader::kShapeCells == kShapeSide);
   if (!shape_distances_) {
-    auto made = gl::Texture::create_2d(GL_R8UI, kShapeSide, kShapeSide, "tool shape");
-    if (!made) return tl::unexpected(made.error());
-    shape_distances_ = std::move(*made);
+    auto made = STRATA_TRY(gl::Texture::create_2d(GL_R8UI, kShapeSide, kShapeSide, "tool shape"));
+    shape_distances_ = std::move(made);
   }
   glTextureSubImage2D(shape_distances_.id(), 0, 0, 0, kShapeSide, kShapeSide, GL_RED_INTEGER,
                       GL_UNSIGNED_BYTE, stroke.texture->distances().data());
@@ -73,11 +71,10 @@ Result<DispatchedEdit> EditPass::dispatch(const StrokeBatch& stroke, TouchedTile
   edit.tiles = std::move(touched.tiles);
   if (edit.tiles.empty()) return edit;
   if (!stroke.erase) {
-    auto fresh = make_pages(edit.tiles, layer);
-    if (!fresh) return tl::unexpected(fresh.error());
-    edit.fresh_tiles = std::move(*fresh);
+    auto fresh = STRATA_TRY(make_pages(edit.tiles, layer));
+    edit.fresh_tiles = std::move(fresh);
   }
-  const auto give_up = [&](const Problem& problem) {
+  const auto give_up = [&](const Error& problem) {
     for (const TileAddress tile : edit.fresh_tiles) layer.free_page(tile);
     return tl::unexpected(problem);
   };

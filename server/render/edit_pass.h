@@ -36,7 +36,7 @@ class EditPass {
                                  gl::ReadbackPool& readback);
 
   // Makes pages for the touched tiles (unless erasing) and dispatches what `culler` listed for the
-  // stroke. On a Problem nothing was changed. `depth` may be null when the stroke goes through.
+  // stroke. On an Error nothing was changed. `depth` may be null when the stroke goes through.
   Result<DispatchedEdit> dispatch(const StrokeBatch& stroke, TouchedTiles touched,
                                   const EditCuller& culler, const SurfaceMapTextures& map,
                                   const gl::Texture* depth, LayerTextures& layer,

@@ -50,7 +50,7 @@ ShadeInput::Patterns patterns_of(const FrameRequest& request, const mesh::Geomet
 Step FrameJob::step(GpuScene& scene) {
   const auto begin = std::chrono::steady_clock::now();
   auto view = scene.view(task_.request.view);
-  const auto refuse = [&](const Problem& problem) {
+  const auto refuse = [&](const Error& problem) {
     // A picture that was not finished is not to be added to.
     if (view) {
       (*view)->drawing = false;
@@ -63,31 +63,26 @@ Step FrameJob::step(GpuScene& scene) {
   const auto advance = [&]() -> Result<Step> {
     switch (stage_) {
       case Stage::prepare:
-        if (auto prepared = prepare(scene, **view); !prepared)
-          return tl::unexpected(prepared.error());
+        STRATA_TRY(prepare(scene, **view));
         stage_ = Stage::layers;
         return Step::more;
       case Stage::layers: {
-        auto here = bring_layers(scene);
-        if (!here) return tl::unexpected(here.error());
-        if (*here) stage_ = (*view)->gbuffer_complete ? Stage::area : Stage::gbuffer;
+        auto here = STRATA_TRY(bring_layers(scene));
+        if (here) stage_ = (*view)->gbuffer_complete ? Stage::area : Stage::gbuffer;
         return Step::more;
       }
       case Stage::gbuffer: {
-        auto complete = draw_slice(scene, **view);
-        if (!complete) return tl::unexpected(complete.error());
-        if (*complete) stage_ = Stage::area;
+        auto complete = STRATA_TRY(draw_slice(scene, **view));
+        if (complete) stage_ = Stage::area;
         return Step::more;
       }
       case Stage::area:
-        if (auto chosen = choose_area(scene, **view); !chosen)
-          return tl::unexpected(chosen.error());
+        STRATA_TRY(choose_area(scene, **view));
         stage_ = frame_.rects.empty() ? Stage::readback : Stage::shade;
         return Step::more;
       case Stage::shade: {
-        auto complete = shade_band(scene, **view);
-        if (!complete) return tl::unexpected(complete.error());
-        if (*complete) stage_ = Stage::readback;
+        auto complete = STRATA_TRY(shade_band(scene, **view));
+        if (complete) stage_ = Stage::readback;
         return Step::more;
       }
       case Stage::readback: break;
@@ -101,7 +96,7 @@ Step FrameJob::step(GpuScene& scene) {
   if (*step == Step::done) {
     (*view)->drawing = false;
     if (scene.lost())
-      return refuse({503,
+      return refuse({ErrorCode::gpu_lost,
                      "GPU lost",
                      "The GPU context was lost and is being rebuilt. Ask for the frame again.",
                      {}});
@@ -119,38 +114,38 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
   view.last_used = scene.next_use();
   if (request.model != 0 && request.model != view.model)
-    return fail(422, "View of another model", "A request names its view's model, or none.",
-                "model");
-  if (auto valid = validate(request.camera); !valid) return valid;
+    return fail(ErrorCode::invalid, "View of another model",
+                "A request names its view's model, or none.", "model");
+  STRATA_TRY(validate(request.camera));
   if (request.width < 1 || request.height < 1 || request.width > kMaxViewSize ||
       request.height > kMaxViewSize) {
-    return fail(422, "Size out of range",
+    return fail(ErrorCode::invalid, "Size out of range",
                 "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", "width");
   }
   for (const LayerStyle& style : request.layers) {
-    auto layer = scene.layer(style.layer);
-    if (!layer) return tl::unexpected(layer.error());
-    if ((*layer)->model() != view.model)
-      return fail(422, "Layer of another model", "A view shows layers of its own model.", "layers");
+    auto layer = STRATA_TRY(scene.layer(style.layer));
+    if (layer->model() != view.model)
+      return fail(ErrorCode::invalid, "Layer of another model",
+                  "A view shows layers of its own model.", "layers");
     const bool has_colors = style.palette && (style.palette->mode == PaletteMode::categorical ||
                                               !style.palette->points.empty());
     if (!has_colors || !std::isfinite(style.opacity)) {
-      return fail(422, "Palette not usable",
+      return fail(ErrorCode::invalid, "Palette not usable",
                   "A layer in a view needs a palette with points, and a finite opacity.", "layers");
     }
-    layer_uses_.push_back((*layer)->use(view.last_used));
+    layer_uses_.push_back(layer->use(view.last_used));
   }
-  if (auto valid = validate(request.light); !valid) return valid;
+  STRATA_TRY(validate(request.light));
   if (request.looks.size() > kMaxLooksShown)
-    return fail(422, "Too many looks",
+    return fail(ErrorCode::invalid, "Too many looks",
                 "A view shows at most " + std::to_string(kMaxLooksShown) + " looks.", "looks");
   for (const LookStyle& style : request.looks) {
-    auto look = scene.look(style.look);
-    if (!look) return tl::unexpected(look.error());
-    if ((*look)->model != view.model)
-      return fail(422, "Look of another model", "A view shows looks of its own model.", "looks");
+    auto look = STRATA_TRY(scene.look(style.look));
+    if (look->model != view.model)
+      return fail(ErrorCode::invalid, "Look of another model",
+                  "A view shows looks of its own model.", "looks");
     if (!std::isfinite(style.opacity))
-      return fail(422, "Opacity not finite", "An opacity is 0 to 1.", "looks");
+      return fail(ErrorCode::invalid, "Opacity not finite", "An opacity is 0 to 1.", "looks");
   }
   auto key = depth_key(view.model, request.camera, request.width, request.height);
   view.drawing = true;
@@ -161,9 +156,8 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
   if (request.moving) {
     key.level = view.key.level;  // what there is of this camera serves
     if (has_gbuffer(key)) return {};
-    auto level = choose_level(scene, view);
-    if (!level) return tl::unexpected(level.error());
-    key.level = *level;
+    auto level = STRATA_TRY(choose_level(scene, view));
+    key.level = level;
   }
   if (has_gbuffer(key)) return {};
   view.looks = request.looks;
@@ -173,35 +167,31 @@ Result<void> FrameJob::prepare(GpuScene& scene, View& view) {
 
 Result<bool> FrameJob::bring_layers(GpuScene& scene) {
   for (const LayerStyle& style : task_.request.layers) {
-    auto layer = scene.layer(style.layer);
-    if (!layer) return tl::unexpected(layer.error());
-    const auto here = (*layer)->bring();
+    auto layer = STRATA_TRY(scene.layer(style.layer));
+    const auto here = layer->bring();
     if (!here || !*here) return here;
   }
   return true;
 }
 
 Result<int> FrameJob::choose_level(GpuScene& scene, const View& view) const {
-  auto model = scene.model(view.model);
-  if (!model) return tl::unexpected(model.error());
-  if ((*model)->levels.size() == 1) return 0;
+  auto model = STRATA_TRY(scene.model(view.model));
+  if (model->levels.size() == 1) return 0;
   // All levels have the origin of the full mesh.
-  const glm::mat4 clip = clip_from_model(task_.request.camera, (*model)->mesh().geometry().origin);
+  const glm::mat4 clip = clip_from_model(task_.request.camera, model->mesh().geometry().origin);
   std::vector<std::size_t> triangles;
-  for (const auto& mesh : (*model)->levels) triangles.push_back(mesh->visible_triangles(clip));
+  for (const auto& mesh : model->levels) triangles.push_back(mesh->visible_triangles(clip));
   return scene.detail_budget().choose(triangles);
 }
 
 Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
-  auto model = scene.model(view.model);
-  if (!model) return tl::unexpected(model.error());
-  const MeshBuffers& mesh = *(*model)->levels[static_cast<std::size_t>(view.key.level)];
+  auto model = STRATA_TRY(scene.model(view.model));
+  const MeshBuffers& mesh = *model->levels[static_cast<std::size_t>(view.key.level)];
   if (!progress_.cleared) mesh_begin_ = std::chrono::steady_clock::now();
   auto mesh_look = mesh_view(task_.request.camera, mesh.geometry().origin, view.lighting);
   for (std::size_t i = 0; i < view.looks.size(); ++i) {
-    auto look = scene.look(view.looks[i].look);
-    if (!look) return tl::unexpected(look.error());
-    mesh_look.looks.push_back(&(*look)->texture->texture());
+    auto look = STRATA_TRY(scene.look(view.looks[i].look));
+    mesh_look.looks.push_back(&look->texture->texture());
     mesh_look.uniforms.look_opacity[static_cast<glm::length_t>(i)] =
         std::clamp(view.looks[i].opacity, 0.0f, 1.0f);
   }
@@ -217,9 +207,8 @@ Result<bool> FrameJob::draw_slice(GpuScene& scene, View& view) {
 
 Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
-  auto model = scene.model(view.model);
-  if (!model) return tl::unexpected(model.error());
-  const mesh::Geometry& geometry = (*model)->mesh().geometry();
+  auto model = STRATA_TRY(scene.model(view.model));
+  const mesh::Geometry& geometry = model->mesh().geometry();
   const glm::dmat4 clip = request.camera.projection * request.camera.view *
                           glm::translate(glm::dmat4(1.0), geometry.origin);
   frame_.width = request.width;
@@ -245,16 +234,14 @@ Result<void> FrameJob::choose_area(GpuScene& scene, View& view) {
       screen_rect({geometry.box_min, geometry.box_max}, clip, request.width, request.height, false);
   std::size_t bytes = 0;
   for (const PixelRect& rect : frame_.rects) bytes += rgba_bytes(rect);
-  auto pixels = scene.readback().begin(bytes);
-  if (!pixels) return tl::unexpected(pixels.error());
-  pixels_ = std::move(*pixels);
+  auto pixels = STRATA_TRY(scene.readback().begin(bytes));
+  pixels_ = std::move(pixels);
   return {};
 }
 
 Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
   const FrameRequest& request = task_.request;
-  auto model = scene.model(view.model);
-  if (!model) return tl::unexpected(model.error());
+  auto model = STRATA_TRY(scene.model(view.model));
   const PixelRect& rect = frame_.rects[shaded_.rect];
   const int rows = std::max(
       1, scene.pixels_per_band() / (rect.width * (1 + static_cast<int>(request.layers.size()))));
@@ -268,15 +255,13 @@ Result<bool> FrameJob::shade_band(GpuScene& scene, View& view) {
                    request.background,
                    request.background_rows,
                    {},
-                   patterns_of(request, (*model)->mesh().geometry())};
+                   patterns_of(request, model->mesh().geometry())};
   for (const LayerStyle& style : request.layers) {
-    auto layer = scene.layer(style.layer);
-    if (!layer) return tl::unexpected(layer.error());
-    input.layers.push_back({&(*layer)->textures(), style.palette, style.opacity, style.bare});
+    auto layer = STRATA_TRY(scene.layer(style.layer));
+    input.layers.push_back({&layer->textures(), style.palette, style.opacity, style.bare});
   }
-  if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
-  if (auto shaded = scene.shade_pass().shade(input, scene.tables()); !shaded)
-    return tl::unexpected(shaded.error());
+  STRATA_TRY(scene.tables().flush());
+  STRATA_TRY(scene.shade_pass().shade(input, scene.tables()));
   auto marked =
       scene.mark_pass().draw(view.seen_marks, view.shading, request.width, request.height, band);
   if (!marked) return tl::unexpected(marked.error());

@@ -22,7 +22,7 @@ class FrameJob {
             task_.turn.large};
   }
   Step step(GpuScene& scene);
-  void abort(const Problem& problem) { answer(tl::unexpected(problem)); }
+  void abort(const Error& problem) { answer(tl::unexpected(problem)); }
 
  private:
   void answer(const Result<SharedFrame>& frame) {

@@ -26,10 +26,9 @@ Result<bool> GpuLayer::bring() {
 Result<void> GpuLayer::bring_some() {
   for (int i = 0; i < kTilesPerStep && !coming_->empty(); ++i) {
     const auto& [address, data] = coming_->back();
-    auto page = textures_->pool().allocate();
-    if (!page) return tl::unexpected(page.error());
-    textures_->pool().upload(*page, *data);
-    textures_->put_page(address, *page);
+    auto page = STRATA_TRY(textures_->pool().allocate());
+    textures_->pool().upload(page, *data);
+    textures_->put_page(address, page);
     coming_->pop_back();
   }
   return {};

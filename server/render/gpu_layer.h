@@ -34,7 +34,7 @@ class GpuLayer {
     return users_;
   }
   // Brings the next of what the mirror holds, a millisecond or two; true when all of it is here. A
-  // Problem brings nothing.
+  // Error brings nothing.
   Result<bool> bring();
   // Not one whose pages know of edits that the mirror does not.
   bool can_leave() const;

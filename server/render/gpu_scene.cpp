@@ -68,12 +68,11 @@ GpuScene::~GpuScene() { memory_.set_evictor(nullptr); }
 Result<std::unique_ptr<GpuScene>> GpuScene::create(const RendererOptions& options,
                                                    std::uint64_t generation, GpuMemory& memory,
                                                    gl::DebugMessages& messages) {
-  auto context = gl::EglContext::create({options.debug});
-  if (!context) return tl::unexpected(context.error());
+  auto context = STRATA_TRY(gl::EglContext::create({options.debug}));
   std::unique_ptr<GpuScene> scene(new GpuScene(options, generation, memory));
-  scene->context_ = std::move(*context);
+  scene->context_ = std::move(context);
   if (options.debug) messages.install();
-  if (auto loaded = scene->load(); !loaded) return tl::unexpected(loaded.error());
+  STRATA_TRY(scene->load());
   return scene;
 }
 
@@ -92,14 +91,12 @@ Result<void> GpuScene::load() {
   const auto slice = info_.software ? kTrianglesPerSliceSoftware : kTrianglesPerSliceHardware;
   const std::string& dir = options_.shader_dir;
   detail_budget_ = DetailBudget(info_.software);
-  if (auto made = keep(depths_, DepthBuffers::create(dir, slice, memory_, readback_)); !made)
-    return made;
-  if (auto made = keep(edit_culler_, EditCuller::create(dir, readback_)); !made) return made;
-  if (auto made = keep(edit_pass_, EditPass::create(dir, readback_)); !made) return made;
-  if (auto made = keep(tile_reader_, TileReader::create(dir, readback_)); !made) return made;
-  if (auto made = keep(gbuffer_pass_, MeshPass::create(MeshPass::Kind::gbuffer, dir, slice)); !made)
-    return made;
-  if (auto made = keep(mark_pass_, MarkPass::create(dir)); !made) return made;
+  STRATA_TRY(keep(depths_, DepthBuffers::create(dir, slice, memory_, readback_)));
+  STRATA_TRY(keep(edit_culler_, EditCuller::create(dir, readback_)));
+  STRATA_TRY(keep(edit_pass_, EditPass::create(dir, readback_)));
+  STRATA_TRY(keep(tile_reader_, TileReader::create(dir, readback_)));
+  STRATA_TRY(keep(gbuffer_pass_, MeshPass::create(MeshPass::Kind::gbuffer, dir, slice)));
+  STRATA_TRY(keep(mark_pass_, MarkPass::create(dir)));
   return keep(shade_pass_, ShadePass::create(dir, info_.software));
 }
 
@@ -132,10 +129,10 @@ bool GpuScene::let_a_layer_leave(const PagePool* pool) {
   return true;
 }
 
-Problem GpuScene::unknown(const char* what, std::uint64_t handle) const {
+Error GpuScene::unknown(const char* what, std::uint64_t handle) const {
   const bool old = handle != 0 && handle >> 40 != generation_;
   return {
-      404, std::string("Unknown ") + what,
+      ErrorCode::not_found, std::string("Unknown ") + what,
       old ? std::string("The handle is of a GPU context that was lost. Add the ") + what + " again."
           : std::string("There is no such ") + what + " on the GPU; it may have been removed.",
       what};
@@ -155,25 +152,24 @@ LookHandle GpuScene::add(Look look) {
 
 Result<LayerHandle> GpuScene::add_layer(ModelHandle model_handle, ValueType type, int resolution,
                                         std::shared_ptr<const TileMirror> mirror) {
-  if (auto found = model(model_handle); !found) return tl::unexpected(found.error());
+  STRATA_TRY(model(model_handle));
   if (resolution < kLowestResolution || resolution > kHighestResolution ||
       !std::has_single_bit(static_cast<unsigned>(resolution))) {
-    return fail(422, "Resolution out of range",
+    return fail(ErrorCode::invalid, "Resolution out of range",
                 "A layer's resolution is a power of two from 128 to 16384.", "resolution");
   }
   const int bytes = strata::bytes_per_texel(type);
-  auto textures = LayerTextures::create(type, resolution, tables_,
-                                        bytes == 1   ? pool_1_
-                                        : bytes == 2 ? pool_2_
-                                                     : pool_4_);
-  if (!textures) return tl::unexpected(textures.error());
+  auto textures = STRATA_TRY(LayerTextures::create(type, resolution, tables_,
+                                                   bytes == 1   ? pool_1_
+                                                   : bytes == 2 ? pool_2_
+                                                                : pool_4_));
   const LayerHandle handle = next_handle();
-  layers_.try_emplace(handle, model_handle, std::move(*textures), std::move(mirror));
+  layers_.try_emplace(handle, model_handle, std::move(textures), std::move(mirror));
   return handle;
 }
 
 Result<ViewHandle> GpuScene::add_view(ModelHandle model_handle) {
-  if (auto found = model(model_handle); !found) return tl::unexpected(found.error());
+  STRATA_TRY(model(model_handle));
   const ViewHandle handle = next_handle();
   views_[handle].model = model_handle;
   return handle;

@@ -67,7 +67,7 @@ class GpuScene {
   Result<LayerHandle> add_layer(ModelHandle model, ValueType type, int resolution,
                                 std::shared_ptr<const TileMirror> mirror = nullptr);
   Result<ViewHandle> add_view(ModelHandle model);
-  // A Problem 404 for a handle that is unknown, removed, or of another generation.
+  // An Error `not_found` for a handle that is unknown, removed, or of another generation.
   Result<Model*> model(ModelHandle handle);
   Result<GpuLayer*> layer(LayerHandle handle);
   Result<View*> view(ViewHandle handle);
@@ -87,7 +87,7 @@ class GpuScene {
   // The layer that was not used for the longest time; of `pool`, if one is given.
   bool let_a_layer_leave(const PagePool* pool = nullptr);
   std::uint64_t next_handle() { return generation_ << 40 | ++handles_; }
-  Problem unknown(const char* what, std::uint64_t handle) const;
+  Error unknown(const char* what, std::uint64_t handle) const;
 
   gl::EglContext context_;  // first: destroyed after all that lives in it
   const RendererOptions options_;

@@ -20,8 +20,8 @@ constexpr std::size_t kMaxActiveFrames = 4;
 // long.
 constexpr std::chrono::milliseconds kMostAhead{30};
 
-Problem lost_problem() {
-  return {503,
+Error lost_problem() {
+  return {ErrorCode::gpu_lost,
           "GPU lost",
           "The GPU context was lost and is being rebuilt. The work was not done; send it again.",
           {}};
@@ -115,13 +115,13 @@ void GpuThread::run() {
     }
     frame_queued_ = false;
   }
-  abort_all({503, "Renderer stopped", "The server is shutting down.", {}});
+  abort_all({ErrorCode::unavailable, "Renderer stopped", "The server is shutting down.", {}});
   hooks_.stop();
   {
     std::lock_guard lock(mutex_);
     stopped_ = true;
   }
-  abort_all({503, "Renderer stopped", "The server is shutting down.", {}});
+  abort_all({ErrorCode::unavailable, "Renderer stopped", "The server is shutting down.", {}});
   run_replies();
 }
 
@@ -198,7 +198,7 @@ void GpuThread::recover() {
   }
 }
 
-void GpuThread::abort_all(const Problem& problem) {
+void GpuThread::abort_all(const Error& problem) {
   std::deque<Job> jobs;
   for (auto& current : current_) {
     if (current) jobs.push_back(std::move(*current));

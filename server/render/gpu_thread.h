@@ -10,7 +10,7 @@
 #include <optional>
 #include <thread>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::render {
 
@@ -26,7 +26,7 @@ enum class Step {
 // Work for the GPU thread. Exactly one of these ends it: a step that returns `done`, or `abort`.
 struct Job {
   std::function<Step()> step;
-  std::function<void(const Problem&)> abort;
+  std::function<void(const Error&)> abort;
 };
 
 enum class Lane {
@@ -49,7 +49,7 @@ class GpuThread {
     std::function<std::optional<Job>()> next_frame;  // takes a waiting frame, if any may start
     // the same, if it should go before those under way
     std::function<std::optional<Job>()> next_part;
-    std::function<void(const Problem&)> abort_frames;  // answers those still waiting
+    std::function<void(const Error&)> abort_frames;  // answers those still waiting
   };
 
   explicit GpuThread(std::size_t capacity) : capacity_(capacity) {}
@@ -83,7 +83,7 @@ class GpuThread {
   bool step_behind_edits();
   void run_replies();
   void recover();
-  void abort_all(const Problem& problem);
+  void abort_all(const Error& problem);
   std::deque<Job>& queue(Lane lane) { return lane == Lane::ordered ? ordered_ : background_; }
 
   const std::size_t capacity_;

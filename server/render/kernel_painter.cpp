@@ -36,9 +36,8 @@ Result<Step> KernelPainter::step(GpuScene& scene, const PaintTarget& target) {
   };
   const KernelResult written = find_written(target);
   const double found_ms = elapsed_ms();
-  const auto pages = find_pages(written, target.layer);
-  if (!pages) return tl::unexpected(pages.error());
-  write(written, *pages, target.layer);
+  const auto pages = STRATA_TRY(find_pages(written, target.layer));
+  write(written, pages, target.layer);
   [[maybe_unused]] const auto flushed = scene.tables().flush();
   assert(flushed);  // only a layer that is added makes the tables larger
   outcome_.edit_ms = elapsed_ms();

@@ -9,9 +9,8 @@ namespace strata::render {
 Result<std::unique_ptr<LayerTextures>> LayerTextures::create(ValueType type, int resolution,
                                                              PageTables& tables, PagePool& pool) {
   const int tiles = resolution / kTileSize;
-  auto offset = tables.allocate(static_cast<std::uint32_t>(tiles * tiles));
-  if (!offset) return tl::unexpected(offset.error());
-  return std::unique_ptr<LayerTextures>(new LayerTextures(type, resolution, tables, pool, *offset));
+  auto offset = STRATA_TRY(tables.allocate(static_cast<std::uint32_t>(tiles * tiles)));
+  return std::unique_ptr<LayerTextures>(new LayerTextures(type, resolution, tables, pool, offset));
 }
 
 LayerTextures::LayerTextures(ValueType type, int resolution, PageTables& tables, PagePool& pool,
@@ -33,10 +32,9 @@ LayerTextures::~LayerTextures() {
 
 Result<PageId> LayerTextures::ensure_page(TileAddress tile) {
   if (const PageId present = page(tile); present != shader::kNoPage) return present;
-  auto added = pool_.allocate();
-  if (!added) return added;
-  pool_.clear(*added);
-  put_page(tile, *added);
+  auto added = STRATA_TRY(pool_.allocate());
+  pool_.clear(added);
+  put_page(tile, added);
   return added;
 }
 

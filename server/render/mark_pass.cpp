@@ -4,14 +4,13 @@ namespace strata::render {
 
 Result<MarkPass> MarkPass::create(const std::filesystem::path& shader_dir) {
   MarkPass pass;
-  auto program = gl::Program::load(shader_dir, {"mark_pass.vert", "mark_pass.frag"}, {});
-  if (!program) return tl::unexpected(program.error());
-  pass.program_ = std::move(*program);
+  auto program =
+      STRATA_TRY(gl::Program::load(shader_dir, {"mark_pass.vert", "mark_pass.frag"}, {}));
+  pass.program_ = std::move(program);
   for (auto [phase, made] :
        {std::pair{"CLOSE_GAPS 0", &pass.sight_}, {"CLOSE_GAPS 1", &pass.gaps_}}) {
-    auto built = gl::Program::load(shader_dir, {"mark_sight_pass.comp"}, {phase});
-    if (!built) return tl::unexpected(built.error());
-    *made = std::move(*built);
+    auto built = STRATA_TRY(gl::Program::load(shader_dir, {"mark_sight_pass.comp"}, {phase}));
+    *made = std::move(built);
   }
   return pass;
 }
@@ -20,7 +19,7 @@ Result<void> MarkPass::look(std::span<const shader::MarkSegment> segments, const
                             bool cut_open, MarkBuffer& marks) const {
   marks.count = 0;
   if (segments.empty()) return {};
-  if (auto sent = marks.segments.replace(segments); !sent) return sent;
+  STRATA_TRY(marks.segments.replace(segments));
   marks.count = segments.size();
   marks.segments.bind_storage(0);
   depth.bind(0);

@@ -76,10 +76,10 @@ Result<std::unique_ptr<MeshBuffers>> MeshBuffers::create(
   auto indices = gl::Buffer::create(mesh->index_bytes(), gl::Buffer::Use::fixed, "mesh indices");
   if (!indices) return tl::unexpected(indices.error());
   const auto boxes = std::as_bytes(std::span(mesh->geometry_->clusters));
-  auto cluster_boxes = gl::Buffer::create(boxes.size(), gl::Buffer::Use::fixed, "mesh clusters");
-  if (!cluster_boxes) return tl::unexpected(cluster_boxes.error());
-  cluster_boxes->upload(0, boxes);
-  mesh->cluster_boxes_ = std::move(*cluster_boxes);
+  auto cluster_boxes =
+      STRATA_TRY(gl::Buffer::create(boxes.size(), gl::Buffer::Use::fixed, "mesh clusters"));
+  cluster_boxes.upload(0, boxes);
+  mesh->cluster_boxes_ = std::move(cluster_boxes);
   mesh->vertices_ = std::move(*vertices);
   mesh->indices_ = std::move(*indices);
   mesh->vertex_array_ =

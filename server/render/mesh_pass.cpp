@@ -42,16 +42,15 @@ Result<MeshPass> MeshPass::create(Kind kind, const std::filesystem::path& shader
   auto uniforms =
       gl::Buffer::create(sizeof(shader::MeshUniforms), gl::Buffer::Use::fixed, "mesh uniforms");
   if (!uniforms) return tl::unexpected(uniforms.error());
-  auto culler = ClusterCuller::create(shader_dir);
-  if (!culler) return tl::unexpected(culler.error());
+  auto culler = STRATA_TRY(ClusterCuller::create(shader_dir));
   MeshPass pass;
-  pass.culler_ = std::move(*culler);
+  pass.culler_ = std::move(culler);
   pass.kind_ = kind;
   pass.shader_dir_ = shader_dir;
   pass.uniforms_ = std::move(*uniforms);
   pass.clusters_per_slice_ =
       std::max<std::size_t>(1, triangles_per_slice / mesh::Geometry::kTrianglesPerCluster);
-  if (auto built = pass.program({}, false); !built) return tl::unexpected(built.error());
+  STRATA_TRY(pass.program({}, false));
   return pass;
 }
 
@@ -64,11 +63,10 @@ Result<const gl::Program*> MeshPass::program(const MeshView& view, bool lit_at_v
     defines.push_back("LOOKS " + std::to_string(view.looks.size()));
   }
   if (const auto built = programs_.find(defines); built != programs_.end()) return &built->second;
-  auto program = gl::Program::load(
+  auto program = STRATA_TRY(gl::Program::load(
       shader_dir_, {"mesh.vert", kind_ == Kind::depth ? "depth_pass.frag" : "gbuffer_pass.frag"},
-      defines);
-  if (!program) return tl::unexpected(program.error());
-  return &programs_.emplace(std::move(defines), std::move(*program)).first->second;
+      defines));
+  return &programs_.emplace(std::move(defines), std::move(program)).first->second;
 }
 
 Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view,
@@ -96,10 +94,10 @@ Result<void> MeshPass::begin(const MeshBuffers& mesh, const MeshView& view,
   progress.cleared = true;
   if (commands.empty()) return {};
   const auto bytes = std::as_bytes(std::span(commands));
-  auto buffer = gl::Buffer::create(bytes.size(), gl::Buffer::Use::fixed, "draws of clusters");
-  if (!buffer) return tl::unexpected(buffer.error());
-  buffer->upload(0, bytes);
-  progress.commands = std::move(*buffer);
+  auto buffer =
+      STRATA_TRY(gl::Buffer::create(bytes.size(), gl::Buffer::Use::fixed, "draws of clusters"));
+  buffer.upload(0, bytes);
+  progress.commands = std::move(buffer);
   return {};
 }
 
@@ -108,23 +106,20 @@ Result<bool> MeshPass::draw_slice(const MeshBuffers& mesh, const MeshView& view,
   const bool lit_at_vertices = kind_ == Kind::gbuffer && view.light == LightMode::museum &&
                                mesh.triangle_pixels(view.uniforms.clip_from_model,
                                                     target.depth.height()) <= kPixelsLitAtVertices;
-  auto built = program(view, lit_at_vertices);
-  if (!built) return tl::unexpected(built.error());
+  auto built = STRATA_TRY(program(view, lit_at_vertices));
   if (!progress.cleared) {
-    if (auto begun = begin(mesh, view, target, progress); !begun)
-      return tl::unexpected(begun.error());
+    STRATA_TRY(begin(mesh, view, target, progress));
   }
   if (progress.clusters == 0) return true;
   const std::size_t rest = progress.clusters - progress.next_cluster;
   if (progress.next_cluster == progress.next_culling) {
-    auto hidden = culler_.hide(target.depth, mesh, view.uniforms.clip_from_model, progress.commands,
-                               progress.next_cluster, rest);
-    if (!hidden) return tl::unexpected(hidden.error());
+    STRATA_TRY(culler_.hide(target.depth, mesh, view.uniforms.clip_from_model, progress.commands,
+                            progress.next_cluster, rest));
     progress.next_culling = next_culling(progress);
   }
   uniforms_.upload_values(0, std::span(&view.uniforms, 1));
   uniforms_.bind_uniform(0);
-  (*built)->use();
+  built->use();
   for (std::size_t i = 0; i < view.looks.size(); ++i) view.looks[i]->bind(static_cast<GLuint>(i));
   mesh.vertex_array().bind();
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer.id());

@@ -36,7 +36,7 @@ Result<PageId> PagePool::allocate() {
   while (free_.empty() && !memory_.fits(chunk_bytes(1)) && free_some_ && free_some_()) {
   }
   if (free_.empty()) {
-    if (auto added = add_chunk(); !added) return tl::unexpected(added.error());
+    STRATA_TRY(add_chunk());
   }
   const PageId page = free_.back();
   free_.pop_back();
@@ -103,7 +103,7 @@ Result<void> PagePool::add_chunk() {
                                    [](const Chunk& chunk) { return !chunk.values; });
   const auto number = static_cast<std::size_t>(unused - chunks_.begin());
   if (number >= kMaxChunks) {
-    return fail(503, "GPU memory used up",
+    return fail(ErrorCode::out_of_memory, "GPU memory used up",
                 "No more than 16 texture chunks of one value width can be used.");
   }
   const int present =
@@ -126,16 +126,15 @@ Result<void> PagePool::add_chunk() {
 }
 
 Result<PagePool::Chunk> PagePool::make_chunk(std::size_t number, int slices) {
-  auto share = memory_.reserve(chunk_bytes(slices), "layer tiles");
-  if (!share) return tl::unexpected(share.error());
+  auto share = STRATA_TRY(memory_.reserve(chunk_bytes(slices), "layer tiles"));
   const std::string name =
       "pages of " + std::to_string(texel_bytes_) + " bytes, chunk " + std::to_string(number);
   auto values =
       gl::Texture::create_array(texel_format(texel_bytes_), kSliceSize, kSliceSize, slices, name);
   if (!values) return tl::unexpected(values.error());
-  auto valid = gl::Texture::create_array(GL_R8UI, kSliceSize, kSliceSize, slices, name + ", valid");
-  if (!valid) return tl::unexpected(valid.error());
-  return Chunk{std::move(*values), std::move(*valid), std::move(*share), 0};
+  auto valid = STRATA_TRY(
+      gl::Texture::create_array(GL_R8UI, kSliceSize, kSliceSize, slices, name + ", valid"));
+  return Chunk{std::move(*values), std::move(valid), std::move(share), 0};
 }
 
 }  // namespace strata::render

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/tile.h"
 #include "gl/texture.h"
 #include "render/gpu_memory.h"
@@ -37,7 +37,7 @@ class PagePool {
   // before others must give way.
   void set_evictor(std::function<bool()> free_some) { free_some_ = std::move(free_some); }
 
-  // A page whose content is undefined. A Problem 503 when no chunk can be added.
+  // A page whose content is undefined. An Error `out_of_memory` when no chunk can be added.
   Result<PageId> allocate();
   void free(PageId page);
   // `data` is of this texel width.

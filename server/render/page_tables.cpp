@@ -44,12 +44,10 @@ Result<void> PageTables::flush() {
   const std::size_t needed =
       std::bit_ceil(std::max(entries_.size(), kSmallestTable)) * sizeof(PageId);
   if (buffer_.size() < needed) {
-    auto share = memory_.reserve(needed, "page tables");
-    if (!share) return tl::unexpected(share.error());
-    auto buffer = gl::Buffer::create(needed, gl::Buffer::Use::fixed, "page tables");
-    if (!buffer) return tl::unexpected(buffer.error());
-    buffer_ = std::move(*buffer);
-    share_ = std::move(*share);
+    auto share = STRATA_TRY(memory_.reserve(needed, "page tables"));
+    auto buffer = STRATA_TRY(gl::Buffer::create(needed, gl::Buffer::Use::fixed, "page tables"));
+    buffer_ = std::move(buffer);
+    share_ = std::move(share);
     buffer_.upload_values(0, std::span<const PageId>(entries_));
     changed_.clear();
     return {};

@@ -21,7 +21,7 @@ class PageTables {
   void free(std::uint32_t offset, std::uint32_t count);
   PageId at(std::uint32_t index) const { return entries_[index]; }
   void set(std::uint32_t index, PageId page);
-  // Brings the buffer up to date; a Problem 503 when it cannot grow.
+  // Brings the buffer up to date; an Error `out_of_memory` when it cannot grow.
   Result<void> flush();
   void bind(GLuint binding) const { buffer_.bind_storage(binding); }
 

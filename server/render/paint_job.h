@@ -12,7 +12,7 @@ class PaintJob {
       : layer_(layer), stroke_(std::move(stroke)), done_(std::move(done)) {}
 
   Step step(GpuScene& scene);
-  void abort(const Problem& problem) { done_(tl::unexpected(problem)); }
+  void abort(const Error& problem) { done_(tl::unexpected(problem)); }
 
  private:
   enum class Stage { layer, begin, depth, painting };

@@ -46,12 +46,11 @@ Result<PaletteTextures> PaletteTextures::create() {
   auto rows =
       gl::Texture::create_2d(GL_RGBA8, static_cast<int>(shader::kPaletteWidth), kRows, "palettes");
   if (!rows) return tl::unexpected(rows.error());
-  auto points = gl::Buffer::create(kFirstPoints * sizeof(shader::PalettePoint),
-                                   gl::Buffer::Use::fixed, "palette points");
-  if (!points) return tl::unexpected(points.error());
+  auto points = STRATA_TRY(gl::Buffer::create(kFirstPoints * sizeof(shader::PalettePoint),
+                                              gl::Buffer::Use::fixed, "palette points"));
   PaletteTextures textures;
   textures.rows_ = std::move(*rows);
-  textures.points_ = std::move(*points);
+  textures.points_ = std::move(points);
   return textures;
 }
 
@@ -63,10 +62,9 @@ Result<void> PaletteTextures::make_room(std::span<const std::shared_ptr<const Pa
   entries_.clear();
   next_row_ = next_point_ = 0;
   if (points <= capacity) return {};
-  auto larger = gl::Buffer::create(std::bit_ceil(points) * sizeof(shader::PalettePoint),
-                                   gl::Buffer::Use::fixed, "palette points");
-  if (!larger) return tl::unexpected(larger.error());
-  points_ = std::move(*larger);
+  auto larger = STRATA_TRY(gl::Buffer::create(std::bit_ceil(points) * sizeof(shader::PalettePoint),
+                                              gl::Buffer::Use::fixed, "palette points"));
+  points_ = std::move(larger);
   return {};
 }
 

@@ -27,7 +27,7 @@ class PaletteTextures {
     bool patterned = false;  // some point is not solid
   };
   // Forgets old entries when these might not fit beside them; entries found after it stay until the
-  // next call. A Problem 503 when the driver has no memory.
+  // next call. An Error `out_of_memory` when the driver has no memory.
   Result<void> make_room(std::span<const std::shared_ptr<const Palette>> palettes);
   Entry find(const std::shared_ptr<const Palette>& palette, ValueType type);
 

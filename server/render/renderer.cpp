@@ -42,9 +42,8 @@ struct Renderer::Impl {
   std::unordered_map<LayerHandle, std::shared_ptr<std::atomic<std::uint64_t>>> layer_bytes;
 
   Result<void> make_scene() {
-    auto made = GpuScene::create(options, ++generation, memory, messages);
-    if (!made) return tl::unexpected(made.error());
-    scene = std::move(*made);
+    auto made = STRATA_TRY(GpuScene::create(options, ++generation, memory, messages));
+    scene = std::move(made);
     std::lock_guard lock(mutex);
     info = scene->info();
     return {};
@@ -57,7 +56,7 @@ struct Renderer::Impl {
       std::lock_guard lock(mutex);
       layer_bytes.clear();
     }
-    if (auto made = make_scene(); !made) return made;
+    STRATA_TRY(make_scene());
     log::warning("The GPU context was lost and made anew; models are uploaded again.");
     std::lock_guard lock(lost_callback_mutex);
     if (lost_callback) lost_callback();
@@ -82,17 +81,17 @@ struct Renderer::Impl {
                  if (step == Step::done) frames.finished(frame->task(), frame->busy_ms());
                  return step;
                },
-               [frame](const Problem& problem) { frame->abort(problem); }};
+               [frame](const Error& problem) { frame->abort(problem); }};
   }
 
   // Posts a job object with `step(GpuScene&)` and `abort`; answers it when the queue is full.
   template <class JobType>
   void post(Lane lane, std::shared_ptr<JobType> job) {
     Job posted{[this, job] { return job->step(*scene); },
-               [job](const Problem& problem) { job->abort(problem); }};
+               [job](const Error& problem) { job->abort(problem); }};
     if (thread.post(lane, std::move(posted))) return;
     thread.post_reply([job] {
-      job->abort({503,
+      job->abort({ErrorCode::busy,
                   "GPU queue full",
                   "More work waits for the GPU than its queue holds. Try again in a moment.",
                   {}});
@@ -109,7 +108,7 @@ struct Renderer::Impl {
         done(work(scene));
         return Step::done;
       }
-      void abort(const Problem& problem) { done(tl::unexpected(problem)); }
+      void abort(const Error& problem) { done(tl::unexpected(problem)); }
     };
     post(Lane::ordered, std::make_shared<Simple>(Simple{std::move(done), std::move(work)}));
   }
@@ -135,7 +134,7 @@ struct Renderer::Impl {
               work(*scene);
               return Step::done;
             },
-            [](const Problem&) {}};
+            [](const Error&) {}};
     thread.post(Lane::ordered, std::move(job), true);
   }
 };
@@ -157,11 +156,10 @@ Result<std::unique_ptr<Renderer>> Renderer::start(RendererOptions options) {
   hooks.recover = [impl] { return impl->recover(); };
   hooks.next_frame = [impl] { return impl->start(impl->frames.take()); };
   hooks.next_part = [impl] { return impl->next_part(); };
-  hooks.abort_frames = [impl](const Problem& problem) {
+  hooks.abort_frames = [impl](const Error& problem) {
     for (FrameTask& task : impl->frames.take_all()) FrameJob(std::move(task)).abort(problem);
   };
-  if (auto started = impl->thread.start(std::move(hooks)); !started)
-    return tl::unexpected(started.error());
+  STRATA_TRY(impl->thread.start(std::move(hooks)));
   return renderer;
 }
 
@@ -255,13 +253,15 @@ void Renderer::remove_view(ViewHandle view) {
 void Renderer::draw(FrameRequest request, Done<SharedFrame> done) {
   auto pushed = impl_->frames.push(std::move(request), std::move(done));
   if (pushed.displaced) {
-    const Problem problem =
-        pushed.accepted
-            ? Problem{409, "Superseded", "A newer request of the same view took its place.", {}}
-            : Problem{503,
-                      "GPU queue full",
-                      "Too many views wait for a frame. Try again in a moment.",
-                      {}};
+    const Error problem = pushed.accepted
+                              ? Error{ErrorCode::superseded,
+                                      "Superseded",
+                                      "A newer request of the same view took its place.",
+                                      {}}
+                              : Error{ErrorCode::busy,
+                                      "GPU queue full",
+                                      "Too many views wait for a frame. Try again in a moment.",
+                                      {}};
     impl_->thread.post_reply([displaced = std::move(*pushed.displaced), problem] {
       displaced(tl::unexpected(problem));
     });
@@ -286,7 +286,7 @@ void Renderer::finish() {
               reached.set_value();
               return Step::done;
             },
-            [&](const Problem&) { reached.set_value(); }};
+            [&](const Error&) { reached.set_value(); }};
     if (impl_->thread.post(lane, std::move(job), true)) reached.get_future().wait();
   }
 }

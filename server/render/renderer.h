@@ -10,9 +10,9 @@
 
 #include "core/background.h"
 #include "core/camera.h"
+#include "core/error.h"
 #include "core/light.h"
 #include "core/palette.h"
-#include "core/problem.h"
 #include "core/stroke.h"
 #include "core/tile.h"
 #include "core/tile_mirror.h"
@@ -100,7 +100,7 @@ struct ViewStyle {  // what a view shows of its model
   std::vector<LookStyle> looks;  // kMaxLooksShown at most
   MarksShown marks;              // over the layers, the last ones on top
   Light light;
-  Background background;
+  Background background{};
   double unit_mm = 1000;  // length of the model's unit, for patterns of palettes
   bool operator==(const ViewStyle&) const = default;
 };
@@ -160,9 +160,9 @@ struct ModelGeometry {
 // ARCHITECTURE.md). All functions are thread-safe and return at once; callbacks run on the GPU
 // thread and must be quick. Order: edits and layer changes in the order given, before frames,
 // before background work (uploads of models and surface maps, in slices). A full queue or a stopped
-// renderer answers with a Problem 503; a lost context answers pending work with a Problem 503
-// titled "GPU lost". (Only a stopped renderer calls back on the caller's thread: there is no other
-// left.)
+// renderer answers with an Error unavailable; a lost context answers pending work with an Error
+// unavailable titled "GPU lost". (Only a stopped renderer calls back on the caller's thread: there
+// is no other left.)
 class Renderer {
  public:
   // Starts the thread and waits for the context. The error says what was tried and how to mend it.
@@ -188,7 +188,7 @@ class Renderer {
   void add_surface_map(ModelHandle model, std::shared_ptr<const mesh::SurfaceMap> map,
                        Done<void> done);
 
-  // strokes at it are refused (409) from then on
+  // strokes at it are refused (conflict) from then on
   void remove_surface_map(ModelHandle model, int resolution);
 
   // A layer that holds what `mirror` does, now and later: it is brought to the GPU when it is first
@@ -205,7 +205,7 @@ class Renderer {
   void paint(LayerHandle layer, StrokeBatch stroke, Done<StrokeOutcome> done);
 
   // Views keep a g-buffer and the last picture. Requests of one view replace each other while they
-  // wait ("latest wins"): the replaced request's callback gets a Problem 409 titled "Superseded".
+  // wait ("latest wins"): the replaced request's callback gets the Error `superseded`.
   // Views take turns by what drawing for them has taken (render/frame_queue).
   void add_view(ModelHandle model, Done<ViewHandle> done);
   void remove_view(ViewHandle view);

@@ -38,13 +38,12 @@ Result<ShadePass> ShadePass::create(const std::filesystem::path& shader_dir,
   ShadePass pass;
   pass.shader_dir_ = shader_dir;
   pass.program_per_kinds_ = program_per_kinds;
-  auto palettes = PaletteTextures::create();
-  if (!palettes) return tl::unexpected(palettes.error());
-  pass.palettes_ = std::move(*palettes);
-  auto background = gl::Program::load(shader_dir, {"picture.vert", "background_pass.frag"});
-  if (!background) return tl::unexpected(background.error());
-  pass.background_ = std::move(*background);
-  if (auto built = pass.program({}); !built) return tl::unexpected(built.error());
+  auto palettes = STRATA_TRY(PaletteTextures::create());
+  pass.palettes_ = std::move(palettes);
+  auto background =
+      STRATA_TRY(gl::Program::load(shader_dir, {"picture.vert", "background_pass.frag"}));
+  pass.background_ = std::move(background);
+  STRATA_TRY(pass.program({}));
   return pass;
 }
 
@@ -61,10 +60,10 @@ Result<const gl::Program*> ShadePass::program(const Batch& batch) {
   if (built != programs_.end()) return &built->second;
   std::vector<std::string> defines{"CHUNK_COUNT " + std::to_string(batch.chunks.size())};
   if (!kinds.empty()) defines.push_back("LAYERS " + kinds);
-  auto program = gl::Program::load(shader_dir_, {"picture.vert", "shade_pass.frag"}, defines);
-  if (!program) return tl::unexpected(program.error());
+  auto program =
+      STRATA_TRY(gl::Program::load(shader_dir_, {"picture.vert", "shade_pass.frag"}, defines));
   if (programs_.size() >= kMaxPrograms) programs_.clear();
-  return &programs_.insert_or_assign(key, std::move(*program)).first->second;
+  return &programs_.insert_or_assign(key, std::move(program)).first->second;
 }
 
 bool ShadePass::can_take(const Batch& batch, const Chunk& chunk, bool listed) const {
@@ -141,7 +140,7 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
   glDepthMask(GL_FALSE);
   glEnable(GL_SCISSOR_TEST);
   const auto draw_all = [&]() -> Result<void> {
-    if (auto drawn = draw_background(input); !drawn) return drawn;
+    STRATA_TRY(draw_background(input));
     glDepthFunc(GL_GREATER);
     glEnable(GL_DEPTH_TEST);
     bool first = true;
@@ -151,9 +150,9 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
       left = left.subspan(group.size());
       std::vector<std::shared_ptr<const Palette>> palettes;
       for (const ShadeInput::Layer& layer : group) palettes.push_back(layer.palette);
-      if (auto room = palettes_.make_room(palettes); !room) return room;
+      STRATA_TRY(palettes_.make_room(palettes));
       for (const Batch& batch : plan(group)) {
-        if (auto drawn = draw_surface(input, batch, first, tables); !drawn) return drawn;
+        STRATA_TRY(draw_surface(input, batch, first, tables));
         first = false;
         // What the next draws is `colour + alpha * what is there`; the picture stays opaque.
         glBlendFuncSeparate(GL_ONE, GL_SRC_ALPHA, GL_ZERO, GL_ONE);
@@ -171,8 +170,7 @@ Result<void> ShadePass::shade(const ShadeInput& input, const PageTables& tables)
 
 Result<void> ShadePass::draw(const ShadeInput& input, const gl::Program& program,
                              const PixelRect& rect, const shader::ShadeUniforms& uniforms) {
-  if (auto sent = uniforms_.replace(std::span<const shader::ShadeUniforms>(&uniforms, 1)); !sent)
-    return sent;
+  STRATA_TRY(uniforms_.replace(std::span<const shader::ShadeUniforms>(&uniforms, 1)));
   uniforms_.bind_uniform(0);
   program.use();
   glScissor(rect.x, input.uv.height() - rect.y - rect.height, rect.width, rect.height);
@@ -192,10 +190,8 @@ Result<void> ShadePass::draw_background(const ShadeInput& input) {
 Result<void> ShadePass::draw_surface(const ShadeInput& input, const Batch& batch, bool first,
                                      const PageTables& tables) {
   if (input.surface_rect.width == 0) return {};
-  auto built = program(batch);
-  if (!built) return tl::unexpected(built.error());
-  if (auto sent = layers_.replace(std::span<const shader::ShadeLayer>(batch.layers)); !sent)
-    return sent;
+  auto built = STRATA_TRY(program(batch));
+  STRATA_TRY(layers_.replace(std::span<const shader::ShadeLayer>(batch.layers)));
   layers_.bind_uniform(1);
   tables.bind(0);
   palettes_.bind(kPaletteUnit, 1);
@@ -211,7 +207,7 @@ Result<void> ShadePass::draw_surface(const ShadeInput& input, const Batch& batch
   uniforms.first_pass = first ? 1 : 0;
   uniforms.patterns = {input.patterns.origin, input.patterns.mm_per_pixel,
                        input.patterns.pixel_scale};
-  return draw(input, **built, input.surface_rect, uniforms);
+  return draw(input, *built, input.surface_rect, uniforms);
 }
 
 }  // namespace strata::render

@@ -16,7 +16,7 @@ class StreamBuffer {
 
   template <class T>
   Result<void> replace(std::span<const T> values) {
-    if (auto room = make_room(values.size_bytes()); !room) return room;
+    STRATA_TRY(make_room(values.size_bytes()));
     buffer_.upload_values(0, values);
     return {};
   }
@@ -24,9 +24,9 @@ class StreamBuffer {
   Result<void> make_room(std::size_t bytes) {
     const std::size_t needed = std::max<std::size_t>(bytes, 4096);
     if (buffer_.size() < needed) {
-      auto buffer = gl::Buffer::create(std::bit_ceil(needed), gl::Buffer::Use::fixed, label_);
-      if (!buffer) return tl::unexpected(buffer.error());
-      buffer_ = std::move(*buffer);
+      auto buffer =
+          STRATA_TRY(gl::Buffer::create(std::bit_ceil(needed), gl::Buffer::Use::fixed, label_));
+      buffer_ = std::move(buffer);
     } else {
       // the driver need not wait for those who read the old content
       glInvalidateBufferData(buffer_.id());

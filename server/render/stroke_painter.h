@@ -25,7 +25,7 @@ class StrokePainter {
   StrokePainter& operator=(const StrokePainter&) = delete;
   virtual ~StrokePainter() = default;
 
-  // The next few milliseconds. A Problem has painted nothing.
+  // The next few milliseconds. An Error has painted nothing.
   virtual Result<Step> step(GpuScene& scene, const PaintTarget& target) = 0;
   StrokeOutcome take_outcome() { return std::move(outcome_); }  // once done
 

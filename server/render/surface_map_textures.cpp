@@ -51,8 +51,7 @@ Result<std::unique_ptr<SurfaceMapTextures>> SurfaceMapTextures::create(
       room(textures->map_->tree.parts.size() * sizeof(shader::TouchedPart));
   std::size_t bytes = kRow * height * layers * sizeof(std::uint64_t) + touched_bytes;
   for (const auto& content : contents) bytes += room(content.size());
-  auto share = memory.reserve(bytes, "a surface map");
-  if (!share) return tl::unexpected(share.error());
+  auto share = STRATA_TRY(memory.reserve(bytes, "a surface map"));
   auto positions =
       gl::Texture::create_array(GL_RG32UI, static_cast<int>(kRow), static_cast<int>(height),
                                 static_cast<int>(layers), "surface positions");
@@ -60,14 +59,14 @@ Result<std::unique_ptr<SurfaceMapTextures>> SurfaceMapTextures::create(
   constexpr std::array kLabels = {"surface position boxes", "block tree nodes",
                                   "block tree spheres", "block tree parts"};
   for (std::size_t i = 0; i < contents.size(); ++i) {
-    auto buffer = gl::Buffer::create(room(contents[i].size()), gl::Buffer::Use::fixed, kLabels[i]);
-    if (!buffer) return tl::unexpected(buffer.error());
-    textures->buffers_[i] = {std::move(*buffer), contents[i]};
+    auto buffer = STRATA_TRY(
+        gl::Buffer::create(room(contents[i].size()), gl::Buffer::Use::fixed, kLabels[i]));
+    textures->buffers_[i] = {std::move(buffer), contents[i]};
   }
-  auto touched = gl::Buffer::create(touched_bytes, gl::Buffer::Use::fixed, "touched parts");
-  if (!touched) return tl::unexpected(touched.error());
-  textures->touched_parts_ = std::move(*touched);
-  textures->share_ = std::move(*share);
+  auto touched =
+      STRATA_TRY(gl::Buffer::create(touched_bytes, gl::Buffer::Use::fixed, "touched parts"));
+  textures->touched_parts_ = std::move(touched);
+  textures->share_ = std::move(share);
   textures->positions_ = std::move(*positions);
   return textures;
 }

@@ -28,9 +28,8 @@ class ProgramPerWidth {
     for (const int texel_bytes : {1, 2, 4}) {
       std::vector<std::string> defines = others;
       defines.push_back(define_of(texel_bytes));
-      auto program = gl::Program::load(shader_dir, {file}, defines);
-      if (!program) return tl::unexpected(program.error());
-      programs.programs_[index(texel_bytes)] = std::move(*program);
+      auto program = STRATA_TRY(gl::Program::load(shader_dir, {file}, defines));
+      programs.programs_[index(texel_bytes)] = std::move(program);
     }
     return programs;
   }

@@ -22,11 +22,11 @@ Result<TileReader> TileReader::create(const std::filesystem::path& shader_dir,
                                       gl::ReadbackPool& readback) {
   TileReader reader;
   reader.readback_ = &readback;
-  auto programs = ProgramPerWidth::load(shader_dir, "tile_read_pass.comp", [](int texel_bytes) {
-    return "TEXEL_BYTES " + std::to_string(texel_bytes);
-  });
-  if (!programs) return tl::unexpected(programs.error());
-  reader.programs_ = std::move(*programs);
+  auto programs =
+      STRATA_TRY(ProgramPerWidth::load(shader_dir, "tile_read_pass.comp", [](int texel_bytes) {
+        return "TEXEL_BYTES " + std::to_string(texel_bytes);
+      }));
+  reader.programs_ = std::move(programs);
   auto pages =
       gl::Buffer::create(kMaxPages * sizeof(PageId), gl::Buffer::Use::fixed, "tile read pages");
   if (!pages) return tl::unexpected(pages.error());

@@ -32,10 +32,10 @@ Result<bool> ModelUpload::advance(GpuScene& scene) {
   if (level > geometry_.coarser.size()) return true;
   const auto& geometry = level == 0 ? geometry_.full : geometry_.coarser[level - 1];
   if (!geometry || geometry->indices.empty() || geometry->vertices.empty())
-    return fail(422, "Model is empty", "A model needs at least one triangle.", "geometry");
-  auto mesh = MeshBuffers::create(geometry, scene.memory());
-  if (!mesh) return tl::unexpected(mesh.error());
-  model_.levels.push_back(std::move(*mesh));
+    return fail(ErrorCode::invalid, "Model is empty", "A model needs at least one triangle.",
+                "geometry");
+  auto mesh = STRATA_TRY(MeshBuffers::create(geometry, scene.memory()));
+  model_.levels.push_back(std::move(mesh));
   return false;
 }
 
@@ -51,14 +51,14 @@ Step LookUpload::step(GpuScene& scene) {
 }
 
 Result<bool> LookUpload::advance(GpuScene& scene) {
-  if (auto model = scene.model(model_); !model) return tl::unexpected(model.error());
+  STRATA_TRY(scene.model(model_));
   if (!texture_) {
     if (!image_ || image_->levels.empty())
-      return fail(422, "Look is empty",
+      return fail(ErrorCode::invalid, "Look is empty",
                   "A look needs a picture that is no larger than the GPU takes.", "look");
-    auto texture = LookTexture::create(std::move(image_), scene.info().software, scene.memory());
-    if (!texture) return tl::unexpected(texture.error());
-    texture_ = std::move(*texture);
+    auto texture =
+        STRATA_TRY(LookTexture::create(std::move(image_), scene.info().software, scene.memory()));
+    texture_ = std::move(texture);
     return false;
   }
   return texture_->upload_slice();
@@ -97,7 +97,7 @@ Step TilesUpload::step(GpuScene& scene) {
   return Step::done;
 }
 
-void TilesUpload::abort(const Problem& problem) {
+void TilesUpload::abort(const Error& problem) {
   give_back_pages();
   done_(tl::unexpected(problem));
 }
@@ -108,43 +108,40 @@ void TilesUpload::give_back_pages() {
 }
 
 Result<bool> TilesUpload::advance(GpuScene& scene) {
-  auto layer = scene.layer(layer_);
-  if (!layer) return tl::unexpected(layer.error());
-  LayerTextures& textures = (*layer)->textures();
-  if (!layer_use_) layer_use_ = (*layer)->use(scene.next_use());
-  if (const auto here = (*layer)->bring(); !here || !*here) return here;
+  auto layer = STRATA_TRY(scene.layer(layer_));
+  LayerTextures& textures = layer->textures();
+  if (!layer_use_) layer_use_ = layer->use(scene.next_use());
+  if (const auto here = layer->bring(); !here || !*here) return here;
   pool_ = &textures.pool();
   if (prepared_ < tiles_.size()) {
     const std::size_t end = std::min(prepared_ + kTilesPreparedPerStep, tiles_.size());
     for (; prepared_ < end; ++prepared_) {
-      if (auto prepared = prepare(textures, tiles_[prepared_]); !prepared)
-        return tl::unexpected(prepared.error());
+      STRATA_TRY(prepare(textures, tiles_[prepared_]));
     }
     return false;
   }
   const std::size_t end = std::min(written_ + kTilesWrittenPerStep, tiles_.size());
   for (; written_ < end; ++written_) {
-    if (auto written = write(textures, tiles_[written_]); !written)
-      return tl::unexpected(written.error());
+    STRATA_TRY(write(textures, tiles_[written_]));
   }
   if (written_ < tiles_.size()) return false;
-  if (auto flushed = scene.tables().flush(); !flushed) return tl::unexpected(flushed.error());
+  STRATA_TRY(scene.tables().flush());
   return true;
 }
 
 Result<void> TilesUpload::prepare(LayerTextures& layer, const TileUpload& tile) {
   if (!layer.contains(tile.address)) {
-    return fail(422, "Tile out of range", "A tile's address must lie inside the layer.", "tiles");
+    return fail(ErrorCode::invalid, "Tile out of range",
+                "A tile's address must lie inside the layer.", "tiles");
   }
   if (is_empty(tile)) return {};
   if (tile.data->values.size() != static_cast<std::size_t>(kTexelsPerTile * pool_->texel_bytes())) {
-    return fail(422, "Tile of another type",
+    return fail(ErrorCode::invalid, "Tile of another type",
                 "A tile must hold 128 x 128 values of the layer's type.", "tiles");
   }
   if (layer.page(tile.address) != shader::kNoPage) return {};
-  auto page = pool_->allocate();
-  if (!page) return tl::unexpected(page.error());
-  pages_.push_back(*page);
+  auto page = STRATA_TRY(pool_->allocate());
+  pages_.push_back(page);
   return {};
 }
 
@@ -158,9 +155,8 @@ Result<void> TilesUpload::write(LayerTextures& layer, const TileUpload& tile) {
     return {};
   }
   if (pages_.empty()) {  // it had one when it was prepared
-    auto page = pool_->allocate();
-    if (!page) return tl::unexpected(page.error());
-    pages_.push_back(*page);
+    auto page = STRATA_TRY(pool_->allocate());
+    pages_.push_back(page);
   }
   pool_->upload(pages_.back(), *tile.data);
   layer.put_page(tile.address, pages_.back());

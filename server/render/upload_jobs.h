@@ -12,7 +12,7 @@ class ModelUpload {
   ModelUpload(ModelGeometry geometry, Renderer::Done<ModelHandle> done)
       : geometry_(std::move(geometry)), done_(std::move(done)) {}
   Step step(GpuScene& scene);
-  void abort(const Problem& problem) { done_(tl::unexpected(problem)); }
+  void abort(const Error& problem) { done_(tl::unexpected(problem)); }
 
  private:
   Result<bool> advance(GpuScene& scene);  // true when complete
@@ -28,7 +28,7 @@ class LookUpload {
              Renderer::Done<LookHandle> done)
       : model_(model), image_(std::move(image)), done_(std::move(done)) {}
   Step step(GpuScene& scene);
-  void abort(const Problem& problem) { done_(tl::unexpected(problem)); }
+  void abort(const Error& problem) { done_(tl::unexpected(problem)); }
 
  private:
   Result<bool> advance(GpuScene& scene);  // true when complete
@@ -45,7 +45,7 @@ class SurfaceMapUpload {
                    Renderer::Done<void> done)
       : model_(model), map_(std::move(map)), done_(std::move(done)) {}
   Step step(GpuScene& scene);
-  void abort(const Problem& problem) { done_(tl::unexpected(problem)); }
+  void abort(const Error& problem) { done_(tl::unexpected(problem)); }
 
  private:
   const ModelHandle model_;
@@ -54,14 +54,14 @@ class SurfaceMapUpload {
   std::unique_ptr<SurfaceMapTextures> textures_;
 };
 
-// All pages are had before the first tile is written: a Problem leaves the layer as it was. A page
+// All pages are had before the first tile is written: an Error leaves the layer as it was. A page
 // is seen only once it holds its tile, so that frames may be drawn between the steps.
 class TilesUpload {
  public:
   TilesUpload(LayerHandle layer, std::vector<TileUpload> tiles, Renderer::Done<void> done)
       : layer_(layer), tiles_(std::move(tiles)), done_(std::move(done)) {}
   Step step(GpuScene& scene);
-  void abort(const Problem& problem);
+  void abort(const Error& problem);
 
  private:
   Result<bool> advance(GpuScene& scene);  // true when complete

@@ -30,28 +30,24 @@ Result<void> prepare_gbuffer(View& view, const DepthKey& key, DepthBuffers& dept
     view.drop_buffers();
   if (!view.has_buffers()) {
     const auto pixels = static_cast<std::uint64_t>(key.width) * static_cast<unsigned>(key.height);
-    auto share = memory.reserve(pixels * 12, "a view");
-    if (!share) return tl::unexpected(share.error());
-    auto uv = gl::Texture::create_2d(GL_R32UI, key.width, key.height, "view uv");
-    if (!uv) return tl::unexpected(uv.error());
-    auto light = gl::Texture::create_2d(GL_RGBA8, key.width, key.height, "view light");
-    if (!light) return tl::unexpected(light.error());
-    auto picture = gl::Texture::create_2d(GL_RGBA8, key.width, key.height, "view picture");
-    if (!picture) return tl::unexpected(picture.error());
-    view.uv = std::move(*uv);
-    view.light = std::move(*light);
-    view.picture = std::move(*picture);
-    view.share = std::move(*share);
+    auto share = STRATA_TRY(memory.reserve(pixels * 12, "a view"));
+    auto uv = STRATA_TRY(gl::Texture::create_2d(GL_R32UI, key.width, key.height, "view uv"));
+    auto light = STRATA_TRY(gl::Texture::create_2d(GL_RGBA8, key.width, key.height, "view light"));
+    auto picture =
+        STRATA_TRY(gl::Texture::create_2d(GL_RGBA8, key.width, key.height, "view picture"));
+    view.uv = std::move(uv);
+    view.light = std::move(light);
+    view.picture = std::move(picture);
+    view.share = std::move(share);
   }
   if (!view.depth || view.depth.use_count() > 1) {
-    auto depth = depths.make(key);
-    if (!depth) return tl::unexpected(depth.error());
+    auto depth = STRATA_TRY(depths.make(key));
     auto gbuffer =
-        gl::Framebuffer::create({&view.uv, &view.light}, &(*depth)->texture, "view g-buffer");
+        gl::Framebuffer::create({&view.uv, &view.light}, &depth->texture, "view g-buffer");
     if (!gbuffer) return tl::unexpected(gbuffer.error());
-    auto shading = gl::Framebuffer::create({&view.picture}, &(*depth)->texture, "view shading");
+    auto shading = gl::Framebuffer::create({&view.picture}, &depth->texture, "view shading");
     if (!shading) return tl::unexpected(shading.error());
-    view.depth = std::move(*depth);
+    view.depth = std::move(depth);
     view.gbuffer = std::move(*gbuffer);
     view.shading = std::move(*shading);
   }

@@ -4,7 +4,7 @@
 #include <future>
 #include <memory>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/question.h"
 
 namespace strata::room {

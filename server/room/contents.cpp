@@ -20,13 +20,11 @@ LayerState new_state(Layer layer) {
 }
 
 Result<LayerState> read_layer_state(store::Store& store, Layer layer) {
-  auto tiles = store.load_tiles(layer);
-  if (!tiles) return tl::unexpected(tiles.error());
-  auto provisional = read_provisional(store, layer);
-  if (!provisional) return tl::unexpected(provisional.error());
+  auto tiles = STRATA_TRY(store.load_tiles(layer));
+  auto provisional = STRATA_TRY(read_provisional(store, layer));
   LayerState state = new_state(std::move(layer));
-  state.mirror->put(tiles->tiles, tiles->sequence);
-  state.provisional->put(*provisional, tiles->sequence);
+  state.mirror->put(tiles.tiles, tiles.sequence);
+  state.provisional->put(provisional, tiles.sequence);
   return state;
 }
 
@@ -35,24 +33,21 @@ Result<JournalContents> read_journal(store::Store& store, std::int64_t model_id,
   JournalContents contents;
   // Before the tiles: were they to hold more, the next commit would find out and have everything
   // read again.
-  auto last = store.last_sequence(model_id);
-  if (!last) return tl::unexpected(last.error());
-  contents.last_sequence = *last;
-  auto layers = store.layers(model_id, Role::owner);
-  if (!layers) return tl::unexpected(layers.error());
-  for (Layer& layer : *layers) {
-    auto state = read_layer_state(store, std::move(layer));
-    if (!state) return tl::unexpected(state.error());
+  auto last = STRATA_TRY(store.last_sequence(model_id));
+  contents.last_sequence = last;
+  auto layers = STRATA_TRY(store.layers(model_id, Role::owner));
+  for (Layer& layer : layers) {
+    auto state = STRATA_TRY(read_layer_state(store, std::move(layer)));
     for (const LayerState& old : held) {
-      if (old.layer.id != state->layer.id) continue;
+      if (old.layer.id != state.layer.id) continue;
       auto differing =
-          differing_tiles(old.mirror->snapshot().tiles, state->mirror->snapshot().tiles);
+          differing_tiles(old.mirror->snapshot().tiles, state.mirror->snapshot().tiles);
       std::ranges::move(
-          differing_tiles(old.provisional->snapshot().tiles, state->provisional->snapshot().tiles),
+          differing_tiles(old.provisional->snapshot().tiles, state.provisional->snapshot().tiles),
           std::back_inserter(differing));
       if (!differing.empty()) contents.differing[old.layer.id] = std::move(differing);
     }
-    contents.layers.push_back(std::move(*state));
+    contents.layers.push_back(std::move(state));
   }
   return contents;
 }
@@ -62,19 +57,16 @@ namespace {
 using Level = std::shared_ptr<const mesh::Geometry>;
 
 Result<Level> decode(std::span<const std::uint8_t> bytes) {
-  auto geometry = mesh::decode_geometry(bytes);
-  if (!geometry) return tl::unexpected(geometry.error());
-  return std::make_shared<const mesh::Geometry>(std::move(*geometry));
+  auto geometry = STRATA_TRY(mesh::decode_geometry(bytes));
+  return std::make_shared<const mesh::Geometry>(std::move(geometry));
 }
 
 Result<std::vector<Level>> read_coarser_levels(store::Store& store, std::int64_t model_id) {
-  auto stored = store.detail_levels(model_id);
-  if (!stored) return tl::unexpected(stored.error());
+  auto stored = STRATA_TRY(store.detail_levels(model_id));
   std::vector<Level> levels;
-  for (auto& bytes : *stored) {
-    auto level = decode(bytes);
-    if (!level) return tl::unexpected(level.error());
-    levels.push_back(std::move(*level));
+  for (auto& bytes : stored) {
+    auto level = STRATA_TRY(decode(bytes));
+    levels.push_back(std::move(level));
     bytes = {};
   }
   return levels;
@@ -86,13 +78,10 @@ Result<render::ModelGeometry> read_geometry(store::Store& store, std::int64_t mo
   // Together the coarser levels are about as much work as the full one.
   auto coarser_later =
       std::async(std::launch::async, [&] { return read_coarser_levels(store, model_id); });
-  auto bytes = store.geometry(model_id);
-  if (!bytes) return tl::unexpected(bytes.error());
-  auto full = decode(*bytes);
-  if (!full) return tl::unexpected(full.error());
-  auto coarser = coarser_later.get();
-  if (!coarser) return tl::unexpected(coarser.error());
-  return render::ModelGeometry{std::move(*full), std::move(*coarser)};
+  auto bytes = STRATA_TRY(store.geometry(model_id));
+  auto full = STRATA_TRY(decode(bytes));
+  auto coarser = STRATA_TRY(coarser_later.get());
+  return render::ModelGeometry{std::move(full), std::move(coarser)};
 }
 
 Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelHandle model,
@@ -103,14 +92,13 @@ Result<render::LayerHandle> add_layer(render::Renderer& renderer, render::ModelH
 
 Result<LayerHandles> add_layer(render::Renderer& renderer, render::ModelHandle model,
                                const LayerState& layer) {
-  auto content = add_layer(renderer, model, layer.mirror);
-  if (!content) return tl::unexpected(content.error());
+  auto content = STRATA_TRY(add_layer(renderer, model, layer.mirror));
   auto provisional = add_layer(renderer, model, layer.provisional);
   if (!provisional) {
-    renderer.remove_layer(*content);
+    renderer.remove_layer(content);
     return tl::unexpected(provisional.error());
   }
-  return LayerHandles{*content, *provisional};
+  return LayerHandles{content, *provisional};
 }
 
 void remove_layer(render::Renderer& renderer, const LayerHandles& handles) {

@@ -60,12 +60,12 @@ bool computes(const EditRequest& edit) {
 Result<void> check_not_locked(const Layer& layer, Role role, bool computing) {
   if (is_as_computed(layer) && !computing)
     return fail(
-        403, "Layer locked",
+        ErrorCode::forbidden, "Layer locked",
         "The layer " + layer.name +
             " is locked: its values were computed. A curator can unlock it to edit it by hand.",
         "layer");
   if (!layer.locked || role >= Role::curator) return {};
-  return fail(403, "Layer locked",
+  return fail(ErrorCode::forbidden, "Layer locked",
               "The layer " + layer.name + " is locked: a curator can unlock it.", "layer");
 }
 

@@ -6,9 +6,9 @@
 #include <variant>
 #include <vector>
 
+#include "core/error.h"
 #include "core/expression.h"
 #include "core/layer.h"
-#include "core/problem.h"
 #include "core/question.h"
 #include "core/review.h"
 #include "core/role.h"
@@ -106,9 +106,9 @@ bool waits_for_review(const Layer& layer, const EditRequest& edit);
 
 // Whether the edit writes what a layer's values are computed to be, and is no change by hand.
 bool computes(const EditRequest& edit);
-// Refused (403, `layer`): a locked layer, to who is no curator; one that is as it was computed, to
-// everybody who is not `computing` it. The pipeline asks before it begins an edit; others only
-// where they would change something else before that.
+// Refused (forbidden, `layer`): a locked layer, to who is no curator; one that is as it was
+// computed, to everybody who is not `computing` it. The pipeline asks before it begins an edit;
+// others only where they would change something else before that.
 Result<void> check_not_locked(const Layer& layer, Role role, bool computing = false);
 
 struct EditAnswer {

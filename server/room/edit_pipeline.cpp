@@ -66,8 +66,8 @@ std::optional<render::FrameRequest::Box> box_of(const std::vector<TileChange>& c
 }
 
 // Who repeats an edit is told what became of it; nobody else is.
-Problem taken_id() {
-  return {422, "Id used for another edit",
+Error taken_id() {
+  return {ErrorCode::invalid, "Id used for another edit",
           "Another edit of this model has this id; every edit has an id of its own.", "id"};
 }
 
@@ -76,17 +76,17 @@ Problem taken_id() {
 Result<void> check_formula(const Layer& layer, const EditRequest& request) {
   const auto* compute = std::get_if<ComputeEdit>(&request.edit);
   if (compute && !layer.formula)
-    return fail(409, "No expression",
+    return fail(ErrorCode::conflict, "No expression",
                 "This layer has no expression that it could be computed from.", "layer");
   if (compute && layer.edited_by_hand && !compute->overwrites)
     return fail(
-        409, "Edited by hand",
+        ErrorCode::conflict, "Edited by hand",
         "This layer was unlocked and edited by hand. Computing it again would overwrite that; "
         "ask for it with overwrite=true.",
         "layer");
   if (!compute && layer.formula && !layer.edited_by_hand)
     return fail(
-        409, "Computed layer",
+        ErrorCode::conflict, "Computed layer",
         "The values of this layer follow from its expression. Unlock it to edit them by hand.",
         "layer");
   return {};
@@ -120,7 +120,7 @@ void EditPipeline::edit(EditRequest request, Room::Applied applied, Room::Saved 
   }
   if (!parts_.writer.accepting())
     return saved(fail(
-        503, "Not saved",
+        ErrorCode::unavailable, "Not saved",
         "The database does not take edits at the moment. Viewing goes on; try again shortly."));
   if (parts_.memory.exceeded())
     return saved(tl::unexpected(parts_.memory.used_up(0, "what an edit may add")));
@@ -164,7 +164,7 @@ void EditPipeline::ask_journal() {
     // once that it is away.
     if (was_away && !store.ready())
       return done(State(fail(
-          503, "Database unavailable",
+          ErrorCode::unavailable, "Database unavailable",
           "The database does not answer, so nothing can be saved. Viewing goes on; try again shortly.")));
     done(store.journal_state(model_id, ids));
   });
@@ -254,7 +254,7 @@ bool EditPipeline::start_front() {
   // Who does not see the layer any more hears what is heard when it was deleted.
   if (!layer || !sees(front.request.author.role, layer->layer.visibility)) {
     Waiting item = take();
-    refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
+    refuse(item, {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
     return true;
   }
   if (auto may = check_not_locked(layer->layer, front.request.author.role, computes(front.request));
@@ -316,7 +316,8 @@ void EditPipeline::stroke_done(Waiting& item, Result<render::StrokeOutcome> outc
   if (!outcome) return refuse(item, gpu_problem(outcome.error()));
   if (closed_) return refuse(item, *closed_);
   LayerState* layer = host_->find_layer(item.request.layer_id);
-  if (!layer) return refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
+  if (!layer)
+    return refuse(item, {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
   ComputedEdit computed;
   for (const auto& tile : outcome->tiles) {
     auto before = layer->mirror->tile(tile.address);
@@ -344,8 +345,9 @@ void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
                        done = std::move(done)]() mutable {
         const auto map = parts_.maps->get(meta.resolution);
         if (!map)
-          return done(Result<ComputedEdit>(fail(
-              503, "GPU lost", "The graphics context is being restored; send the edit again.")));
+          return done(Result<ComputedEdit>(
+              fail(ErrorCode::gpu_lost, "GPU lost",
+                   "The graphics context is being restored; send the edit again.")));
         auto question = item->request.question;
         const Author& author = item->request.author;
         if (!question)
@@ -361,7 +363,7 @@ void EditPipeline::start_computed(Waiting taken, const LayerState& layer) {
           done(Result<ComputedEdit>(tl::unexpected(ended.problem())));
         } catch (const std::bad_alloc&) {
           done(Result<ComputedEdit>(
-              fail(503, "Out of memory",
+              fail(ErrorCode::out_of_memory, "Out of memory",
                    "The server lacks the memory for this edit at the moment; try again later.")));
         }
       });
@@ -374,7 +376,9 @@ void EditPipeline::upload_computed(const std::shared_ptr<Waiting>& item,
   if (!computed) return refuse(*item, computed.error());
   if (closed_) return refuse(*item, *closed_);
   LayerState* layer = host_->find_layer(item->request.layer_id);
-  if (!layer) return refuse(*item, {404, "No such layer", "The layer was deleted.", "layer"});
+  if (!layer)
+    return refuse(*item,
+                  {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
   std::vector<render::TileUpload> uploads;
   for (const auto& change : computed->changes)
     if (change.after != change.before) uploads.push_back({change.address, change.after});
@@ -392,7 +396,8 @@ void EditPipeline::computed_uploaded(Waiting& item, ComputedEdit computed,
                                      const Result<void>& uploaded) {
   if (closed_) return refuse(item, *closed_);
   LayerState* layer = host_->find_layer(item.request.layer_id);
-  if (!layer) return refuse(item, {404, "No such layer", "The layer was deleted.", "layer"});
+  if (!layer)
+    return refuse(item, {ErrorCode::not_found, "No such layer", "The layer was deleted.", "layer"});
   if (!uploaded) {
     for (const auto& change : computed.changes) stale_[layer->layer.id].insert(change.address);
     return refuse(item, gpu_problem(uploaded.error()));
@@ -492,10 +497,10 @@ void EditPipeline::commit(Waiting& item, LayerState& layer, ComputedEdit compute
       std::move(entry),
       then([this, sequence](const Result<void>& result) { on_saved(sequence, result); }));
   if (!taken) {
-    failure_ = Problem{503,
-                       "Not saved",
-                       "The database does not keep up with the edits; they were taken back.",
-                       {}};
+    failure_ = Error{ErrorCode::unavailable,
+                     "Not saved",
+                     "The database does not keep up with the edits; they were taken back.",
+                     {}};
     pending_.back().answered = true;
   }
 }
@@ -550,7 +555,7 @@ void EditPipeline::roll_back_when_answered() {
   for (const Pending& pending : pending_)
     if (!pending.answered) return;
 
-  const Problem why = *failure_;
+  const Error why = *failure_;
   failure_.reset();
   verify_ = true;
   sequence_ = durable_;
@@ -592,7 +597,7 @@ bool EditPipeline::repair() {
   if (repair_waits_ || in_flight_ > 0) return true;
   busy_ = true;
   auto left = std::make_shared<std::size_t>(4 * stale_.size());
-  auto failure = std::make_shared<std::optional<Problem>>();
+  auto failure = std::make_shared<std::optional<Error>>();
   const auto write = [&](render::LayerHandle handle, const TileMirror& mirror,
                          const std::set<TileAddress>& tiles, bool empty_ones) {
     std::vector<render::TileUpload> uploads;
@@ -614,7 +619,7 @@ bool EditPipeline::repair() {
   return true;
 }
 
-void EditPipeline::repaired(const std::optional<Problem>& failure) {
+void EditPipeline::repaired(const std::optional<Error>& failure) {
   busy_ = false;
   if (closed_) return;
   if (!failure) {
@@ -634,14 +639,14 @@ void EditPipeline::repaired(const std::optional<Problem>& failure) {
   });
 }
 
-void EditPipeline::refuse(Waiting& item, const Problem& why) {
+void EditPipeline::refuse(Waiting& item, const Error& why) {
   if (item.work)
     item.work(tl::unexpected(why));
   else
     answer(item.request.id, item.saved, tl::unexpected(why));
 }
 
-void EditPipeline::refuse_waiting(const Problem& why) {
+void EditPipeline::refuse_waiting(const Error& why) {
   std::deque<Waiting> all = std::exchange(waiting_, {});
   for (Waiting& item : all) refuse(item, why);
 }
@@ -684,7 +689,7 @@ void EditPipeline::resume() {
   step();
 }
 
-void EditPipeline::close(const Problem& why) {
+void EditPipeline::close(const Error& why) {
   if (closed_) return;
   closed_ = why;
   host_ = nullptr;

@@ -41,7 +41,7 @@ class PipelineHost {
                                std::int64_t sequence) = 0;  // no box: everywhere
   virtual void edit_applied(const Listener::Edit& edit) = 0;
   virtual void edit_saved(const Listener::Edit& edit) = 0;
-  virtual void edits_unsaved(const std::vector<Listener::Edit>& edits, const Problem& why) = 0;
+  virtual void edits_unsaved(const std::vector<Listener::Edit>& edits, const Error& why) = 0;
   // from what the room holds: read it anew. The host pauses the pipeline
   virtual void journal_differs() = 0;
   // the pipeline was asked to pause, and nothing is under way any more
@@ -107,8 +107,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void gpu_lacks(std::int64_t layer_id, const std::vector<TileAddress>& tiles);
   void resume();
 
-  void refuse_waiting(const Problem& why);
-  void close(const Problem& why);  // the host goes away: waiting edits are refused, and later ones
+  void refuse_waiting(const Error& why);
+  void close(const Error& why);  // the host goes away: waiting edits are refused, and later ones
 
  private:
   struct Waiting {
@@ -154,8 +154,8 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   void on_saved(std::int64_t sequence, const Result<void>& result);
   void roll_back_when_answered();
   bool repair();  // false: the GPU has all
-  void repaired(const std::optional<Problem>& failure);
-  void refuse(Waiting& item, const Problem& why);
+  void repaired(const std::optional<Error>& failure);
+  void refuse(Waiting& item, const Error& why);
   void answer(const Uuid& id, const Room::Saved& saved, const Result<EditAnswer>& result);
 
   // A callback that, on the strand, gives its argument to `handler` and then steps.
@@ -174,12 +174,12 @@ class EditPipeline : public std::enable_shared_from_this<EditPipeline> {
   bool busy_ = false;  // a computed edit, `when_idle` work or a repair is under way
   bool waits_for_map_ = false;
   bool paused_ = false;
-  bool tell_paused_ = false;       // the host waits for `paused`
-  std::optional<Problem> closed_;  // the answer to later edits
+  bool tell_paused_ = false;     // the host waits for `paused`
+  std::optional<Error> closed_;  // the answer to later edits
   // nothing starts before the room was compared with the journal, which may hold more
   bool verify_ = false;
   // commits failed: everything pending is taken back once it is answered
-  std::optional<Problem> failure_;
+  std::optional<Error> failure_;
   std::deque<Pending> pending_;  // sequence order
   std::map<std::int64_t, std::set<TileAddress>>
       stale_;  // by layer: where the GPU may hold something else than the mirror

@@ -21,8 +21,7 @@ bool has_layer(const std::vector<query::LayerView>& layers, const std::string& s
 // Names of the surface in place of layers that are not there.
 Result<void> name_surface(Expression& e, const std::vector<query::LayerView>& layers,
                           const std::string& field) {
-  for (Expression& part : e.parts)
-    if (auto done = name_surface(part, layers, field); !done) return done;
+  for (Expression& part : e.parts) STRATA_TRY(name_surface(part, layers, field));
   if ((e.op != Expression::Op::layer && e.op != Expression::Op::valid) || has_layer(layers, e.name))
     return {};
   using Place = std::pair<std::string_view, Expression::Op>;
@@ -74,12 +73,10 @@ Result<query::BoundExpression> bind_expression(const Expression& expression,
                                                store::Store& store, Role seen_by,
                                                std::optional<std::int64_t> at,
                                                const std::string& field) {
-  auto split = query::split_records(expression, field);
-  if (!split) return tl::unexpected(split.error());
-  query::BoundExpression bound{std::move(split->expression), {}};
-  if (auto named = name_surface(bound.expression, layers, field); !named)
-    return tl::unexpected(named.error());
-  for (const query::RecordPart& part : split->parts) {
+  auto split = STRATA_TRY(query::split_records(expression, field));
+  query::BoundExpression bound{std::move(split.expression), {}};
+  STRATA_TRY(name_surface(bound.expression, layers, field));
+  for (const query::RecordPart& part : split.parts) {
     const auto view =
         std::ranges::find(layers, part.layer, [](const auto& each) { return each.layer.slug; });
     const std::size_t character = first_character(part.expression);
@@ -93,13 +90,12 @@ Result<query::BoundExpression> bind_expression(const Expression& expression,
           character, field));
     std::optional<std::int64_t> then;
     if (at) {
-      auto sequence = store.table_sequence_when(*layer.table, layer.model_id, *at);
-      if (!sequence) return tl::unexpected(sequence.error());
-      then = *sequence;
+      auto sequence = STRATA_TRY(store.table_sequence_when(*layer.table, layer.model_id, *at));
+      then = sequence;
     }
-    auto numbers = store.record_numbers(*layer.table, seen_by, part.expression, then, field);
-    if (!numbers) return tl::unexpected(numbers.error());
-    bound.records.emplace_back(*numbers);
+    auto numbers =
+        STRATA_TRY(store.record_numbers(*layer.table, seen_by, part.expression, then, field));
+    bound.records.emplace_back(numbers);
   }
   return bound;
 }
@@ -113,11 +109,10 @@ Result<BoundForLayer> bind_for_layer(const Expression& expression,
   auto bound = bind_expression(expression, readable, store, reader, std::nullopt, field);
   if (bound) return BoundForLayer{std::move(*bound), std::move(readable)};
   if (sight_of(author) == layer) return tl::unexpected(bound.error());
-  const auto by_author = bind_expression(expression, layers_seen_by(layers, author), store, author,
-                                         std::nullopt, field);
-  if (!by_author) return tl::unexpected(by_author.error());
+  STRATA_TRY(bind_expression(expression, layers_seen_by(layers, author), store, author,
+                             std::nullopt, field));
   return fail(
-      422, "Would show through",
+      ErrorCode::invalid, "Would show through",
       "This reads layers or columns that fewer people see than the layer it is for, which is " +
           std::string(name(layer)) +
           ". Let fewer see that layer, or leave out what they do not see.",

@@ -27,8 +27,8 @@ std::vector<query::LayerView> layers_seen_by(const std::vector<query::LayerView>
 
 // A formula over layers with what it needs of the records behind their keys, read from the
 // database: as they are, or as they were when the model's edit `at` was made; of columns that
-// `seen_by` sees. Blocks. Refused (422 at `field`, with the character): a layer without records, a
-// column that is not there or holds something else.
+// `seen_by` sees. Blocks. Refused (invalid at `field`, with the character): a layer without
+// records, a column that is not there or holds something else.
 Result<query::BoundExpression> bind_expression(const Expression& expression,
                                                const std::vector<query::LayerView>& layers,
                                                store::Store& store, Role seen_by,
@@ -37,8 +37,8 @@ Result<query::BoundExpression> bind_expression(const Expression& expression,
 
 // The same for what is written into a layer that is seen so: it may read only what everybody sees
 // who sees that layer, so that nothing shows through. `layers` are all of the model's, those of the
-// answer the ones that it may read. Refused besides (422 at `field`): what only `author` and others
-// like them see.
+// answer the ones that it may read. Refused besides (invalid at `field`): what only `author` and
+// others like them see.
 struct BoundForLayer {
   query::BoundExpression expression;
   std::vector<query::LayerView> layers;

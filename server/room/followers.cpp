@@ -9,7 +9,7 @@ Result<bool> Followers::follow(const Uuid& follower, const Uuid& leader) {
   for (std::optional<Uuid> ahead = leader; ahead; ahead = leader_of(*ahead))
     if (*ahead == follower)
       return fail(
-          409, "Follows you already",
+          ErrorCode::conflict, "Follows you already",
           "Who is to be followed follows this session, directly or through others, or is this session.",
           "follow");
   auto [known, added] = leaders_.try_emplace(follower, leader);

@@ -3,7 +3,7 @@
 #include <map>
 #include <optional>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/uuid.h"
 
 namespace strata::room {
@@ -13,8 +13,8 @@ namespace strata::room {
 // farther and farther away. Not thread-safe.
 class Followers {
  public:
-  // Instead of whom they followed before. Refused (409), and nothing changed, where `leader` is the
-  // follower or follows them, directly or through others. Returns whether it is another than
+  // Instead of whom they followed before. Refused (conflict), and nothing changed, where `leader`
+  // is the follower or follows them, directly or through others. Returns whether it is another than
   // before.
   Result<bool> follow(const Uuid& follower, const Uuid& leader);
   bool stop(const Uuid& follower);  // whether they followed somebody

@@ -1,14 +1,17 @@
 #pragma once
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::room {
 
 // A room knows which layers it has, so a handle that the renderer does not know is one of a context
 // that was lost.
-inline Problem gpu_problem(const Problem& why) {
-  if (why.status != 404) return why;
-  return {503, "GPU lost", "The graphics context is being restored; try again in a moment.", {}};
+inline Error gpu_problem(const Error& why) {
+  if (why.code != ErrorCode::not_found) return why;
+  return {ErrorCode::gpu_lost,
+          "GPU lost",
+          "The graphics context is being restored; try again in a moment.",
+          {}};
 }
 
 }  // namespace strata::room

@@ -4,6 +4,7 @@
 #include <boost/asio/post.hpp>
 
 #include "core/log.h"
+#include "core/no_such.h"
 #include "core/picture.h"
 #include "core/slug.h"
 #include "room/await.h"
@@ -13,8 +14,6 @@ namespace {
 
 constexpr int kLargestSide = 16384, kSmallestSide = 512;  // texels of a look on the GPU
 constexpr int kMostDivided = 8;                           // as libjpeg-turbo divides the sides
-
-bool is_memory_used_up(const Problem& problem) { return problem.title == "GPU memory used up"; }
 
 }  // namespace
 
@@ -52,7 +51,7 @@ void LookShelf::drop(std::int64_t id) {
   }
   if (gone.handle) renderer_.remove_look(gone.handle);
   for (const Loaded& loaded : gone.waiting)
-    loaded(fail(404, "No such look", "The look was deleted."));
+    loaded(fail(ErrorCode::not_found, "No such look", "The look was deleted."));
 }
 
 std::vector<Look> LookShelf::all() const {
@@ -133,7 +132,7 @@ void LookShelf::request(std::int64_t id, Loaded loaded) {
     std::lock_guard lock(mutex_);
     const auto found = slots_.find(id);
     if (stopped_ || found == slots_.end()) {
-      known = fail(404, "No such look", "This model has no such look.", "looks");
+      known = no_such("look", std::to_string(id), "looks");
     } else if (Slot& slot = found->second; slot.handle) {
       known = slot.handle;
     } else if (slot.damage) {
@@ -163,9 +162,8 @@ Result<LookShelf::Bytes> LookShelf::encoded_bytes(std::int64_t id) {
     if (const auto found = slots_.find(id); found != slots_.end() && found->second.encoded)
       return found->second.encoded;
   }
-  auto bytes = store_.look_picture(id);
-  if (!bytes) return tl::unexpected(bytes.error());
-  auto encoded = std::make_shared<const std::vector<std::uint8_t>>(std::move(*bytes));
+  auto bytes = STRATA_TRY(store_.look_picture(id));
+  auto encoded = std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes));
   std::lock_guard lock(mutex_);
   if (const auto found = slots_.find(id); found != slots_.end()) found->second.encoded = encoded;
   return encoded;
@@ -190,19 +188,15 @@ Result<int> LookShelf::reserve_pixels(std::int64_t id, const PictureInfo& info) 
 
 Result<std::shared_ptr<const render::LookImage>> LookShelf::read(std::int64_t id,
                                                                  int largest_side) {
-  const auto bytes = encoded_bytes(id);
-  if (!bytes) return tl::unexpected(bytes.error());
-  const std::vector<std::uint8_t>& encoded = **bytes;
-  const auto info = inspect_picture(encoded);
-  if (!info) return tl::unexpected(info.error());
-  const auto divisor = reserve_pixels(id, *info);
-  if (!divisor) return tl::unexpected(divisor.error());
-  auto picture = *divisor == 1
-                     ? decode_picture(encoded)
-                     : decode_coarse(encoded, std::max(info->width, info->height) / *divisor);
-  if (!picture) return tl::unexpected(picture.error());
+  const auto bytes = STRATA_TRY(encoded_bytes(id));
+  const std::vector<std::uint8_t>& encoded = *bytes;
+  const auto info = STRATA_TRY(inspect_picture(encoded));
+  const auto divisor = STRATA_TRY(reserve_pixels(id, info));
+  auto picture = STRATA_TRY(
+      divisor == 1 ? decode_picture(encoded)
+                   : decode_coarse(encoded, std::max(info.width, info.height) / divisor));
   return std::make_shared<const render::LookImage>(render::make_look_image(
-      std::move(picture->rgba), picture->width, picture->height, largest_side));
+      std::move(picture.rgba), picture.width, picture.height, largest_side));
 }
 
 void LookShelf::add(std::int64_t id, int largest_side,
@@ -229,7 +223,7 @@ void LookShelf::on_added(std::int64_t id, render::ModelHandle model, int largest
     // made for a context that is lost
     if (model != model_ && slots_.contains(id)) return load(id, largest_side);
   }
-  if (!handle && is_memory_used_up(handle.error()) && largest_side > kSmallestSide)
+  if (!handle && handle.error().code == ErrorCode::out_of_memory && largest_side > kSmallestSide)
     return load(id, largest_side / 2);
   finish(id, handle);
 }
@@ -246,7 +240,7 @@ void LookShelf::finish(std::int64_t id, const Result<render::LookHandle>& handle
       waiting = std::exchange(slot.waiting, {});
       if (handle)
         slot.handle = *handle, kept = true;
-      else if (handle.error().status < 500)
+      else if (!is_server_failure(handle.error().code))
         slot.damage = handle.error();
     }
   }

@@ -56,8 +56,8 @@ class LookShelf : public std::enable_shared_from_this<LookShelf> {
     Bytes encoded;
     render::LookHandle handle = 0;
     bool loading = false;
-    MemoryLedger::Share memory;     // of its pixels while it loads
-    std::optional<Problem> damage;  // the picture cannot be shown, ever
+    MemoryLedger::Share memory;   // of its pixels while it loads
+    std::optional<Error> damage;  // the picture cannot be shown, ever
     std::vector<Loaded> waiting;
   };
   // under the mutex

@@ -41,8 +41,7 @@ Result<TileMap> OpenRoom::dabs(const Layer& layer, const std::vector<PlacedValue
   touch();
   const auto map = maps_->wait(layer.resolution);
   if (!map) return tl::unexpected(gpu_problem(map.error()));
-  const auto graph = surface_->graph(**map);
-  if (!graph) return tl::unexpected(graph.error());
+  const auto graph = STRATA_TRY(surface_->graph(**map));
   const auto tree = surface_->tree();
   std::vector<query::Dab> dabs;
   for (const PlacedValue& value : values) {
@@ -50,16 +49,16 @@ Result<TileMap> OpenRoom::dabs(const Layer& layer, const std::vector<PlacedValue
         tree->nearest(glm::vec3(value.world - geometry_->origin), static_cast<float>(tolerance));
     const auto texel = hit ? mesh::surface_texel_at(**map, hit->uv) : std::nullopt;
     if (!texel)
-      return fail(422, "Not on the model",
+      return fail(ErrorCode::invalid, "Not on the model",
                   "Line " + std::to_string(value.line) +
                       ": no surface is as near as the tolerance allows. Check unit and " +
                       "coordinates, or allow more.",
                   "body");
     dabs.push_back({*texel, hit->position, value.bits});
   }
-  auto painted = query::paint_dabs(**map, **graph, dabs, static_cast<float>(radius), layer.type);
-  if (!painted) return tl::unexpected(painted.error());
-  return as_tile_map(std::move(*painted));
+  auto painted =
+      STRATA_TRY(query::paint_dabs(**map, *graph, dabs, static_cast<float>(radius), layer.type));
+  return as_tile_map(std::move(painted));
 }
 
 Result<TileMap> OpenRoom::project(const Layer& layer, const glm::dvec3& direction,

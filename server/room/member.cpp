@@ -27,7 +27,7 @@ RoomMember::View* RoomMember::view(std::uint32_t view_id, bool make) {
   options.view_id = view_id;
   options.sequence = room_->sequence();
   made.viewer = stream::Viewer::create(room_->stream_context(), room_->model_handle(), options,
-                                       send_, [listener = listener_, view_id](const Problem& why) {
+                                       send_, [listener = listener_, view_id](const Error& why) {
                                          if (listener) listener->view_refused(view_id, why);
                                        });
   made.viewer->set_style(style(view_id, made));
@@ -105,7 +105,7 @@ Result<void> RoomMember::show(std::uint32_t view_id, ViewSettings settings) {
   std::lock_guard lock(mutex_);
   View* v = view(view_id, true);
   if (!v)
-    return fail(422, "Too many views",
+    return fail(ErrorCode::invalid, "Too many views",
                 "One connection has at most " + std::to_string(kMaxViews) + " views.", "view_id");
   v->overrides.clear();
   v->palettes.clear();
@@ -149,7 +149,7 @@ void RoomMember::pointer(std::optional<Pointing> at) {
 }
 
 Result<void> RoomMember::look_together(bool leading, const std::optional<Uuid>& follow) {
-  if (auto done = room_->follow(session_, follow); !done) return done;
+  STRATA_TRY(room_->follow(session_, follow));
   {
     std::lock_guard lock(mutex_);
     if (std::exchange(leading_, leading) == leading) return {};

@@ -50,7 +50,7 @@ class RoomMember final : public Member {
         by_record;                   // last made from records, drawn until the next is there
     std::vector<LayerMarks> marked;  // what `marks` was made of
     render::MarksShown marks;
-    std::set<std::shared_ptr<const Problem>> told;  // why one cannot be made
+    std::set<std::shared_ptr<const Error>> told;  // why one cannot be made
     std::optional<std::vector<LookView>> looks;
     Light light;
     Background background;

@@ -6,6 +6,7 @@
 #include <future>
 
 #include "core/log.h"
+#include "core/no_such.h"
 #include "core/slug.h"
 #include "room/expression_binding.h"
 #include "room/gpu_problem.h"
@@ -19,15 +20,16 @@ Result<void> check_layer(const Layer& layer, const Model& model) {
   const int lowest = model.atlas.lowest_resolution;
   if (layer.resolution < lowest || layer.resolution > 16384 ||
       (layer.resolution & (layer.resolution - 1)) != 0)
-    return fail(422, "Resolution out of range",
+    return fail(ErrorCode::invalid, "Resolution out of range",
                 "A layer of this model has a power of two from " + std::to_string(lowest) +
                     " to 16384 texels a side.",
                 "resolution");
   if (layer.name.empty() || layer.name.size() > 200)
-    return fail(422, "Name missing", "A layer has a name of 1 to 200 bytes.", "name");
+    return fail(ErrorCode::invalid, "Name missing", "A layer has a name of 1 to 200 bytes.",
+                "name");
   if (!(layer.opacity >= 0 && layer.opacity <= 1))
-    return fail(422, "Opacity out of range", "Opacity goes from 0 (clear) to 1 (opaque).",
-                "opacity");
+    return fail(ErrorCode::invalid, "Opacity out of range",
+                "Opacity goes from 0 (clear) to 1 (opaque).", "opacity");
   return {};
 }
 
@@ -65,20 +67,16 @@ OpenRoom::~OpenRoom() = default;
 
 Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts,
                                                  const std::string& model_ref) {
-  auto model = parts.store.model(model_ref);
-  if (!model) return tl::unexpected(model.error());
-  auto geometry = read_geometry(parts.store, model->id);
-  if (!geometry) return tl::unexpected(geometry.error());
-  std::uint64_t bytes = geometry->full->bytes();
-  for (const auto& level : geometry->coarser) bytes += level->bytes();
-  auto share = parts.memory.reserve(bytes, "the model's triangles");
-  if (!share) return tl::unexpected(share.error());
-  auto room = std::make_shared<OpenRoom>(parts, std::move(*model), std::move(*geometry));
-  room->geometry_share_ = std::move(*share);
+  auto model = STRATA_TRY(parts.store.model(model_ref));
+  auto geometry = STRATA_TRY(read_geometry(parts.store, model.id));
+  std::uint64_t bytes = geometry.full->bytes();
+  for (const auto& level : geometry.coarser) bytes += level->bytes();
+  auto share = STRATA_TRY(parts.memory.reserve(bytes, "the model's triangles"));
+  auto room = std::make_shared<OpenRoom>(parts, std::move(model), std::move(geometry));
+  room->geometry_share_ = std::move(share);
   auto journal = read_journal(parts.store, room->model_id_, {});
   if (!journal) return tl::unexpected(journal.error());
-  auto looks = parts.store.looks(room->model_id_);
-  if (!looks) return tl::unexpected(looks.error());
+  auto looks = STRATA_TRY(parts.store.looks(room->model_id_));
   for (LayerState& state : journal->layers) {
     const std::int64_t id = state.layer.id;
     room->layers_.emplace(id, std::move(state));
@@ -103,7 +101,7 @@ Result<std::shared_ptr<OpenRoom>> OpenRoom::open(const RoomParts& parts,
   room->record_marks_ =
       std::make_shared<RecordMarks>(parts.store, parts.workers, room->id(), restyle);
   room->look_shelf_->set_model(gpu->model);
-  for (const Look& look : *looks) room->look_shelf_->put(look);
+  for (const Look& look : looks) room->look_shelf_->put(look);
   room->sequence_ = room->durable_ = journal->last_sequence;
   room->pipeline_ = std::make_shared<EditPipeline>(
       EditPipeline::Parts{parts.store, parts.writer, parts.renderer, parts.workers, parts.readers,
@@ -198,7 +196,7 @@ Result<T> OpenRoom::exclusively(std::function<Result<T>()> work) {
 Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer>& answer,
                                      std::vector<Column> columns) {
   layer.model_id = model_id_;
-  if (auto ok = check_layer(layer, model()); !ok) return tl::unexpected(ok.error());
+  STRATA_TRY(check_layer(layer, model()));
   auto created = exclusively<Layer>([this, layer, answer, columns]() -> Result<Layer> {
     // The GPU first: of what it refuses nothing is in the database.
     LayerState state = new_state(layer);
@@ -227,14 +225,13 @@ Result<Layer> OpenRoom::create_layer(Layer layer, const store::FirstAnswer<Layer
 }
 
 Result<Layer> OpenRoom::update_layer(Layer layer, const store::FirstAnswer<Layer>& answer) {
-  if (auto ok = check_layer(layer, model()); !ok) return tl::unexpected(ok.error());
-  auto updated = parts_.store.update_layer(std::move(layer), answer);
-  if (!updated) return updated;
+  STRATA_TRY(check_layer(layer, model()));
+  auto updated = STRATA_TRY(parts_.store.update_layer(std::move(layer), answer));
   bool lock_falls = false;
   const Layer now = on_strand([&] {
-    const LayerState* before = find_layer(updated->id);
-    lock_falls = updated->locked && before && !before->layer.locked;
-    return replace_layer(*updated);
+    const LayerState* before = find_layer(updated.id);
+    lock_falls = updated.locked && before && !before->layer.locked;
+    return replace_layer(updated);
   });
   // Who locks a layer hears so when what was being painted on it is there: from then on nothing
   // comes. A database that is away keeps the edits under way from being saved, which does not take
@@ -267,9 +264,8 @@ Layer OpenRoom::replace_layer(const Layer& stored) {
 Result<Layer> OpenRoom::layer_computed(std::int64_t id, const std::string& expression,
                                        std::int64_t sequence,
                                        const std::map<std::int64_t, std::int64_t>& tables) {
-  auto stored = parts_.store.layer_computed(id, expression, sequence, tables);
-  if (!stored) return stored;
-  return on_strand([&] { return replace_layer(*stored); });
+  auto stored = STRATA_TRY(parts_.store.layer_computed(id, expression, sequence, tables));
+  return on_strand([&] { return replace_layer(stored); });
 }
 
 void OpenRoom::outdate(const std::function<bool(const LayerFormula&)>& reads) {
@@ -320,16 +316,15 @@ Result<Layer> OpenRoom::widen_layer(const Layer& layer, ValueType type,
                                     const store::FirstAnswer<Layer>& answer) {
   if (layer.formula || !widens_to(layer.type, type))
     return fail(
-        422, "Type not usable",
+        ErrorCode::invalid, "Type not usable",
         "A layer of whole numbers without a sign becomes a wider one of them (u8 to u16 or u32, u16 to u32); "
         "computed layers have the type that they were made with.",
         "type");
   return exclusively<Layer>([this, layer, type, answer]() -> Result<Layer> {
-    const auto held = state(std::to_string(layer.id));
-    if (!held) return tl::unexpected(held.error());
+    const auto held = STRATA_TRY(state(std::to_string(layer.id)));
     // The GPU first, as for a new layer. Nothing is on its way to the journal: the mirror is what
     // it holds.
-    TileMirror::Snapshot content = held->mirror->snapshot();
+    TileMirror::Snapshot content = held.mirror->snapshot();
     for (auto& [address, tile] : content.tiles)
       tile = std::make_shared<const TileData>(widened(*tile, type));
     auto mirror = std::make_shared<TileMirror>(type, layer.resolution);
@@ -373,7 +368,7 @@ Result<void> OpenRoom::let_go_of_layer(std::int64_t id,
   // In the order of edits: none of the layer's may be on its way to a journal that no longer knows
   // it.
   return exclusively<void>([this, id, in_store]() -> Result<void> {
-    if (auto gone = in_store(); !gone) return gone;
+    STRATA_TRY(in_store());
     on_strand([&] {
       LayerState gone;
       {
@@ -402,8 +397,7 @@ Result<store::BinRestored> OpenRoom::restore_layer(
   // In the order of edits: the journal's numbers stay as they are.
   auto restored =
       exclusively<store::BinRestored>([this, entry, answer]() -> Result<store::BinRestored> {
-        auto back = parts_.store.bin().restore(entry, answer);
-        if (!back) return back;
+        auto back = STRATA_TRY(parts_.store.bin().restore(entry, answer));
         if (auto known = take_up_layer(entry.id); !known) {
           // It is there, as the database says: the room reads everything again until it has it.
           log::warning("layer " + std::to_string(entry.id) +
@@ -416,21 +410,19 @@ Result<store::BinRestored> OpenRoom::restore_layer(
 }
 
 Result<void> OpenRoom::take_up_layer(std::int64_t id) {
-  auto layer = parts_.store.layer(model_id_, std::to_string(id), Role::owner);
-  if (!layer) return tl::unexpected(layer.error());
-  auto state = read_layer_state(parts_.store, std::move(*layer));
-  if (!state) return tl::unexpected(state.error());
-  auto handles = add_layer(parts_.renderer, model_handle(), *state);
+  auto layer = STRATA_TRY(parts_.store.layer(model_id_, std::to_string(id), Role::owner));
+  auto state = STRATA_TRY(read_layer_state(parts_.store, std::move(layer)));
+  auto handles = add_layer(parts_.renderer, model_handle(), state);
   if (!handles) return tl::unexpected(gpu_problem(handles.error()));
-  state->handles = *handles;
-  maps_->request(state->layer.resolution, [](auto) {});
+  state.handles = *handles;
+  maps_->request(state.layer.resolution, [](auto) {});
   on_strand([&] {
     {
       std::lock_guard lock(mutex_);
-      layers_.emplace(id, *state);
+      layers_.emplace(id, state);
       mirrors_share_.recount(mirror_bytes());
     }
-    tell_layer(std::nullopt, state->layer);
+    tell_layer(std::nullopt, state.layer);
     sort_layers_changed();
   });
   // Layers that are computed from it may be up to date again.
@@ -446,14 +438,13 @@ Result<void> OpenRoom::take_up_layer(std::int64_t id) {
 }
 
 Result<Model> OpenRoom::update_model(Model model, const store::FirstAnswer<Model>& answer) {
-  auto updated = parts_.store.update_model(std::move(model), answer);
-  if (!updated) return updated;
+  auto updated = STRATA_TRY(parts_.store.update_model(std::move(model), answer));
   on_strand([&] {
     {
       std::lock_guard lock(mutex_);
-      model_ = *updated;
+      model_ = updated;
     }
-    tell([&](Listener& l) { l.model_changed(*updated); });
+    tell([&](Listener& l) { l.model_changed(updated); });
     sort_layers_changed();  // patterns are spaced in millimetres
   });
   return updated;
@@ -461,30 +452,28 @@ Result<Model> OpenRoom::update_model(Model model, const store::FirstAnswer<Model
 
 Result<Look> OpenRoom::look(const std::string& ref) const {
   if (auto look = look_shelf_->find(ref)) return *look;
-  return fail(404, "No such look", "This model has no look \"" + ref + "\".", "look");
+  return no_such("look", ref, "look");
 }
 
 Result<Look> OpenRoom::create_look(Look look, std::span<const std::uint8_t> picture,
                                    const store::FirstAnswer<Look>& answer) {
   look.model_id = model_id_;
-  auto created = parts_.store.create_look(look, picture, answer);
-  if (!created) return created;
-  look_shelf_->put(*created);
-  tell_look(Listener::LayerChange::created, *created);
+  auto created = STRATA_TRY(parts_.store.create_look(look, picture, answer));
+  look_shelf_->put(created);
+  tell_look(Listener::LayerChange::created, created);
   return created;
 }
 
 Result<Look> OpenRoom::update_look(const Look& look, const store::FirstAnswer<Look>& answer) {
-  auto updated = parts_.store.update_look(look, answer);
-  if (!updated) return updated;
-  look_shelf_->put(*updated);
-  tell_look(Listener::LayerChange::changed, *updated);
+  auto updated = STRATA_TRY(parts_.store.update_look(look, answer));
+  look_shelf_->put(updated);
+  tell_look(Listener::LayerChange::changed, updated);
   return updated;
 }
 
 Result<void> OpenRoom::delete_look(std::int64_t id, const store::FirstAnswer<>& answer) {
   const auto known = look_shelf_->find(std::to_string(id));
-  if (auto deleted = parts_.store.delete_look(id, answer); !deleted) return deleted;
+  STRATA_TRY(parts_.store.delete_look(id, answer));
   look_shelf_->drop(id);
   if (known) tell_look(Listener::LayerChange::deleted, *known);
   return {};
@@ -507,12 +496,12 @@ void OpenRoom::edit(EditRequest request, Applied applied, Saved saved) {
   touch();
   if (!takes_edits_)
     return saved(
-        fail(503, "Server is stopping",
+        fail(ErrorCode::unavailable, "Server is stopping",
              "The server saves what is under way and stops; send the edit again when it is back."));
   // Counted before it is posted: the strand's own queue has no bound.
   if (++unanswered_ > parts_.options.max_waiting_edits) {
     --unanswered_;
-    return saved(fail(429, "Too many edits",
+    return saved(fail(ErrorCode::too_many_requests, "Too many edits",
                       "This model has as many waiting edits as it may; send more slowly."));
   }
   boost::asio::post(strand_, [self = shared_from_this(), request = std::move(request),
@@ -542,7 +531,7 @@ Result<void> OpenRoom::check_not_retired(const EditRequest& request) {
     return {};
   for (const auto key : painted_by(state->layer, request))
     if (parts_.retired_keys.holds(*state->layer.table, key))
-      return fail(409, "Record was deleted",
+      return fail(ErrorCode::conflict, "Record was deleted",
                   "Record " + std::to_string(key) + " was deleted meanwhile.", "value");
   return {};
 }
@@ -593,7 +582,7 @@ void OpenRoom::edit_saved(const Listener::Edit& edit) {
   });
 }
 
-void OpenRoom::edits_unsaved(const std::vector<Listener::Edit>& edits, const Problem& why) {
+void OpenRoom::edits_unsaved(const std::vector<Listener::Edit>& edits, const Error& why) {
   sequence_ = pipeline_->sequence();
   std::lock_guard lock(members_mutex_);
   for (const RoomMember* member : members_) {
@@ -678,12 +667,11 @@ Result<void> OpenRoom::follow(const Uuid& follower, const std::optional<Uuid>& l
       });
       if (!here)
         return fail(
-            404, "Not here",
+            ErrorCode::not_found, "Not here",
             "Who is to be followed has left, or was never at this model. `presence` lists who is here.",
             "follow");
-      auto followed = followers_.follow(follower, *leader);
-      if (!followed) return tl::unexpected(followed.error());
-      other = *followed;
+      auto followed = STRATA_TRY(followers_.follow(follower, *leader));
+      other = followed;
     }
   }
   if (other) announce_presence();
@@ -753,7 +741,7 @@ bool OpenRoom::deserted(std::chrono::steady_clock::time_point now) const {
   return now - last_used_ > parts_.options.close_after;
 }
 
-void OpenRoom::shut(const Problem& why) {
+void OpenRoom::shut(const Error& why) {
   {
     std::lock_guard lock(mutex_);
     shut_ = why;
@@ -771,14 +759,17 @@ void OpenRoom::shut(const Problem& why) {
   parts_.renderer.remove_model(model_handle());
 }
 
-Problem OpenRoom::gpu_problem(const Problem& why) const {
+Error OpenRoom::gpu_problem(const Error& why) const {
   std::lock_guard lock(mutex_);
-  return why.status == 404 && shut_ ? *shut_ : room::gpu_problem(why);
+  return why.code == ErrorCode::not_found && shut_ ? *shut_ : room::gpu_problem(why);
 }
 
 void OpenRoom::shut_deleted() {
   on_strand([&] { tell([](Listener& l) { l.model_deleted(); }); });
-  shut({410, "Model deleted", "The model was deleted; nothing can be painted on it any more.", {}});
+  shut({ErrorCode::gone,
+        "Model deleted",
+        "The model was deleted; nothing can be painted on it any more.",
+        {}});
 }
 
 // -----------------------------------------------------------------------------------------------------
@@ -793,22 +784,19 @@ Result<std::shared_ptr<const mesh::SurfaceMap>> OpenRoom::surface_map(int resolu
 
 Result<std::map<std::int64_t, query::KeyArea>> OpenRoom::key_areas(const std::string& layer) {
   touch();
-  const auto found = state(layer);
-  if (!found) return tl::unexpected(found.error());
-  const auto map = surface_map(found->layer.resolution);
-  if (!map) return tl::unexpected(map.error());
-  return query::key_areas({found->layer, found->mirror->snapshot()}, **map, geometry_->origin,
-                          model().metres(), found->sums.get());
+  const auto found = STRATA_TRY(state(layer));
+  const auto map = STRATA_TRY(surface_map(found.layer.resolution));
+  return query::key_areas({found.layer, found.mirror->snapshot()}, *map, geometry_->origin,
+                          model().metres(), found.sums.get());
 }
 
 Result<void> OpenRoom::sum_layer(std::int64_t layer_id) {
   touch();
-  const auto found = state(std::to_string(layer_id));
-  if (!found) return tl::unexpected(found.error());
-  const auto map = surface_map(found->layer.resolution);
+  const auto found = STRATA_TRY(state(std::to_string(layer_id)));
+  const auto map = surface_map(found.layer.resolution);
   if (!map) return tl::unexpected(map.error());
   return exclusively<void>(
-      [this, layer = found->layer, mirror = found->mirror, map = *map]() -> Result<void> {
+      [this, layer = found.layer, mirror = found.mirror, map = *map]() -> Result<void> {
         const auto snapshot = mirror->snapshot();
         return parts_.store.keep_sums(
             layer.id, sum_tiles(layer, *map, {snapshot.tiles.begin(), snapshot.tiles.end()}));

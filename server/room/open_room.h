@@ -128,7 +128,7 @@ class OpenRoom final : public Room,
                        std::int64_t sequence) override;
   void edit_applied(const Listener::Edit& edit) override;
   void edit_saved(const Listener::Edit& edit) override;
-  void edits_unsaved(const std::vector<Listener::Edit>& edits, const Problem& why) override;
+  void edits_unsaved(const std::vector<Listener::Edit>& edits, const Error& why) override;
   void journal_differs() override;
   void paused() override;
 
@@ -141,8 +141,8 @@ class OpenRoom final : public Room,
   std::optional<LayerState> layer_state(std::int64_t id) const;
   void leave(RoomMember* member);
   void announce_presence();
-  // Instead of whom they followed before; nothing: they follow nobody. Refused (404): nobody here
-  // has that session; else as by Followers.
+  // Instead of whom they followed before; nothing: they follow nobody. Refused (not_found): nobody
+  // here has that session; else as by Followers.
   Result<void> follow(const Uuid& follower, const std::optional<Uuid>& leader);
   void camera_moved(const Uuid& session);  // tells those who follow it
 
@@ -160,7 +160,7 @@ class OpenRoom final : public Room,
   void take_no_edits() { takes_edits_ = false; }  // new ones are refused
   bool idle() const { return unanswered_ == 0; }  // every edit is durable or refused
   // refuses what waits and what comes, lets go of the GPU; blocks
-  void shut(const Problem& why);
+  void shut(const Error& why);
   void shut_deleted();  // as the model was deleted: people are told first
   std::int64_t id() const { return model_id_; }
 
@@ -181,13 +181,13 @@ class OpenRoom final : public Room,
   void recover();
   void on_gpu_filled(int losses_before, const Result<GpuContents>& contents);
   void on_journal_read(Result<JournalContents> contents);
-  void retry_recovery(const Problem& why);
+  void retry_recovery(const Error& why);
   Result<void> let_go_of_layer(std::int64_t id, const std::function<Result<void>()>& in_store);
   // that the store has again; alone, as `exclusively` runs it
   Result<void> take_up_layer(std::int64_t id);
   Result<void> check_not_retired(const EditRequest& request);
   // as gpu_problem.h has it, unless the room is shut
-  Problem gpu_problem(const Problem& why) const;
+  Error gpu_problem(const Error& why) const;
   void sort_layers_changed();
   // On the strand: computed layers that `reads` tells become stale, and people are told.
   void outdate(const std::function<bool(const LayerFormula&)>& reads);
@@ -240,7 +240,7 @@ class OpenRoom final : public Room,
   MemoryLedger::Share geometry_share_, mirrors_share_;
   render::ModelHandle model_handle_ = 0;
   std::chrono::steady_clock::time_point last_used_;  // under `mutex_` everywhere
-  std::optional<Problem> shut_;                      // why, once it is; under `mutex_` everywhere
+  std::optional<Error> shut_;                        // why, once it is; under `mutex_` everywhere
 
   std::atomic<std::int64_t> sequence_{0}, durable_{0};
   std::atomic<std::size_t> unanswered_{0};  // edits, and changes of layers that wait for them

@@ -78,9 +78,8 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
   std::vector<LayerState> shown;
   if (asked.layers) {
     for (const auto& ref : *asked.layers) {
-      auto found = state(ref);
-      if (!found) return tl::unexpected(found.error());
-      shown.push_back(std::move(*found));
+      auto found = STRATA_TRY(state(ref));
+      shown.push_back(std::move(found));
     }
   } else {
     for (auto& candidate : layer_states())
@@ -89,7 +88,7 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
     sort_as_shown(shown, asked.shown);
   }
   if (asked.at && *asked.at > durable_)
-    return fail(422, "Sequence not reached",
+    return fail(ErrorCode::invalid, "Sequence not reached",
                 "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
 
   Borrowed borrowed{parts_.renderer, 0, {}};
@@ -110,17 +109,15 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
                              static_cast<float>(item.layer.opacity)};
     std::optional<render::LayerHandle> waiting = item.waiting();
     if (asked.at) {
-      auto past = parts_.store.load_tiles(item.layer, asked.at);
-      if (!past) return tl::unexpected(past.error());
-      auto content = borrow(item.layer.type, item.layer.resolution, std::move(past->tiles));
-      if (!content) return tl::unexpected(content.error());
-      style.layer = *content;
+      auto past = STRATA_TRY(parts_.store.load_tiles(item.layer, asked.at));
+      auto content =
+          STRATA_TRY(borrow(item.layer.type, item.layer.resolution, std::move(past.tiles)));
+      style.layer = content;
       waiting.reset();
       if (const auto then = asked.provisional.find(item.layer.id);
           then != asked.provisional.end()) {
-        auto marks = borrow(ValueType::u8, item.layer.resolution, then->second);
-        if (!marks) return tl::unexpected(marks.error());
-        waiting = *marks;
+        auto marks = STRATA_TRY(borrow(ValueType::u8, item.layer.resolution, then->second));
+        waiting = marks;
       }
     }
     const LayerView& mine = asked.shown.of(item.layer.id);
@@ -128,9 +125,9 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
     const auto highlight =
         mine.highlight ? std::make_shared<const Highlight>(*mine.highlight) : nullptr;
     if (item.layer.table && RecordColors::needs_records(*style.palette, highlight)) {
-      auto made = record_colors_->make({*item.layer.table, sight, style.palette, highlight});
-      if (!made) return tl::unexpected(made.error());
-      style.palette = std::move(*made);
+      auto made =
+          STRATA_TRY(record_colors_->make({*item.layer.table, sight, style.palette, highlight}));
+      style.palette = std::move(made);
     }
     if (mine.opacity) style.opacity = static_cast<float>(*mine.opacity);
     add_styles(style, waiting, request.layers);
@@ -154,20 +151,20 @@ Result<void> OpenRoom::pictures(const PictureRequest& asked, std::span<const Pic
   request.marks = show_marks(marked);
   request.unit_mm = this->model().metres() * 1000;
   for (std::size_t i = 0; i < parts.size(); ++i)
-    if (auto drawn = draw_in_bands(request, parts[i], i, see); !drawn) return drawn;
+    STRATA_TRY(draw_in_bands(request, parts[i], i, see));
   return {};
 }
 
 Result<void> OpenRoom::draw_in_bands(render::FrameRequest request, const PicturePart& part,
                                      std::size_t number, const SeePicture& see) {
   const Camera& camera = part.camera;
-  if (auto valid = validate(camera); !valid) return valid;
+  STRATA_TRY(validate(camera));
   const auto pixels = [&](int window) {
     return static_cast<int>(std::lround(window * part.pixels));
   };
   const int width = pixels(camera.width), height = pixels(camera.height);
   if (width < 1 || height < 1 || width > kMaxViewSize || height > kMaxViewSize)
-    return fail(422, "Size out of range",
+    return fail(ErrorCode::invalid, "Size out of range",
                 "A picture is 1 to " + std::to_string(kMaxViewSize) + " pixels a side.", "width");
   // Bands are whole rows of the camera's window, so that their own windows are.
   const bool is_large = static_cast<std::int64_t>(width) * height > kPixelsOfBand;
@@ -193,7 +190,7 @@ Result<void> OpenRoom::draw_in_bands(render::FrameRequest request, const Picture
     const auto band = all.subspan(row * static_cast<std::size_t>(pixels(top) - pixels(first)),
                                   row * static_cast<std::size_t>(rows));
     if (rows == 0) continue;
-    if (auto seen = see(number, {width, height, pixels(top), rows, band}); !seen) return seen;
+    STRATA_TRY(see(number, {width, height, pixels(top), rows, band}));
   }
   return {};
 }

@@ -6,19 +6,16 @@
 namespace strata::room {
 
 Result<TileMap> read_provisional(store::Store& store, const Layer& layer) {
-  const auto waiting = store.under_review(layer.id, Decision::accept, {});
-  if (!waiting) return tl::unexpected(waiting.error());
-  if (waiting->empty()) return TileMap{};
+  const auto waiting = STRATA_TRY(store.under_review(layer.id, Decision::accept, {}));
+  if (waiting.empty()) return TileMap{};
   std::vector<std::int64_t> sequences;
-  for (const auto& edit : *waiting) sequences.push_back(edit.sequence);
-  const auto written = store.written_by(layer, sequences);
-  if (!written) return tl::unexpected(written.error());
+  for (const auto& edit : waiting) sequences.push_back(edit.sequence);
+  const auto written = STRATA_TRY(store.written_by(layer, sequences));
   TileMap tiles;
-  for (const auto& [tile, texels] : *written) {
+  for (const auto& [tile, texels] : written) {
     // what the texels hold does not matter here
     TileResolver resolver(TileData(layer.type), texels);
-    if (auto walked = walk_back(resolver, layer, tile, store, [](PastRevision&) {}); !walked)
-      return tl::unexpected(walked.error());
+    STRATA_TRY(walk_back(resolver, layer, tile, store, [](PastRevision&) {}));
     if (resolver.provisional().any())
       tiles[tile] =
           with_provisional(nullptr, {tile, nullptr, nullptr, texels, resolver.provisional()});

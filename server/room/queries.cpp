@@ -52,27 +52,24 @@ query::Statistics nothing_painted(StatisticsWanted wanted) {
 Result<TileMirror::Snapshot> OpenRoom::tiles_at(const LayerState& state, At at) const {
   if (!at) return state.mirror->snapshot();
   if (*at > durable_)
-    return fail(422, "Sequence not reached",
+    return fail(ErrorCode::invalid, "Sequence not reached",
                 "The newest durable edit of this model is " + std::to_string(durable_) + ".", "at");
   return parts_.store.load_tiles(state.layer, at);
 }
 
 Result<TileMirror::Snapshot> OpenRoom::tiles(const std::string& layer, At at) {
   touch();
-  auto found = state(layer);
-  if (!found) return tl::unexpected(found.error());
-  return tiles_at(*found, at);
+  auto found = STRATA_TRY(state(layer));
+  return tiles_at(found, at);
 }
 
 Result<std::vector<query::LayerView>> OpenRoom::layer_views(const std::vector<std::string>& refs,
                                                             At at) const {
   std::vector<query::LayerView> views;
   for (const auto& ref : refs) {
-    auto found = state(ref);
-    if (!found) return tl::unexpected(found.error());
-    auto tiles = tiles_at(*found, at);
-    if (!tiles) return tl::unexpected(tiles.error());
-    views.push_back({found->layer, std::move(*tiles)});
+    auto found = STRATA_TRY(state(ref));
+    auto tiles = STRATA_TRY(tiles_at(found, at));
+    views.push_back({found.layer, std::move(tiles)});
   }
   return views;
 }
@@ -80,27 +77,24 @@ Result<std::vector<query::LayerView>> OpenRoom::layer_views(const std::vector<st
 Result<query::SurfacePoint> OpenRoom::position(const glm::dvec3& world,
                                                const std::vector<std::string>& layers, At at) {
   touch();
-  auto views = layer_views(layers, at);
-  if (!views) return tl::unexpected(views.error());
-  return query::nearest_point(*surface_->tree(), geometry_->origin, world, *views);
+  auto views = STRATA_TRY(layer_views(layers, at));
+  return query::nearest_point(*surface_->tree(), geometry_->origin, world, views);
 }
 
 Result<std::vector<query::SurfacePoint>> OpenRoom::positions(const std::vector<glm::dvec3>& world,
                                                              const std::vector<std::string>& layers,
                                                              At at) {
   touch();
-  auto views = layer_views(layers, at);
-  if (!views) return tl::unexpected(views.error());
-  return query::nearest_points(*surface_->tree(), geometry_->origin, world, *views,
+  auto views = STRATA_TRY(layer_views(layers, at));
+  return query::nearest_points(*surface_->tree(), geometry_->origin, world, views,
                                mesh::background_threads());
 }
 
 Result<query::SurfacePoint> OpenRoom::pick(const Camera& camera, double x, double y,
                                            const std::vector<std::string>& layers, At at) {
   touch();
-  auto views = layer_views(layers, at);
-  if (!views) return tl::unexpected(views.error());
-  return query::pick(*surface_->tree(), geometry_->origin, camera, x, y, *views);
+  auto views = STRATA_TRY(layer_views(layers, at));
+  return query::pick(*surface_->tree(), geometry_->origin, camera, x, y, views);
 }
 
 Result<std::vector<std::optional<std::uint32_t>>> OpenRoom::seen_keys(const std::string& layer,
@@ -108,19 +102,17 @@ Result<std::vector<std::optional<std::uint32_t>>> OpenRoom::seen_keys(const std:
                                                                       int columns, int rows,
                                                                       At at) {
   touch();
-  auto views = layer_views({layer}, at);
-  if (!views) return tl::unexpected(views.error());
+  auto views = STRATA_TRY(layer_views({layer}, at));
   return query::seen_keys(*surface_->tree(), geometry_->origin, camera, columns, rows,
-                          views->front());
+                          views.front());
 }
 
 Result<std::vector<query::SeenLayer>> OpenRoom::seen_layers(
     const std::vector<std::string>& layers, const std::vector<query::LayerCover>& covers,
     const Camera& camera, int columns, int rows, At at) {
   touch();
-  auto views = layer_views(layers, at);
-  if (!views) return tl::unexpected(views.error());
-  return query::seen_layers(*surface_->tree(), geometry_->origin, camera, columns, rows, *views,
+  auto views = STRATA_TRY(layer_views(layers, at));
+  return query::seen_layers(*surface_->tree(), geometry_->origin, camera, columns, rows, views,
                             covers);
 }
 
@@ -128,16 +120,14 @@ Result<std::optional<query::TexelSelection>> OpenRoom::texels_within(const Selec
                                                                      const mesh::SurfaceMap& map) {
   if (!selection.within) return std::nullopt;
   if (const auto* outline = std::get_if<Outline>(&*selection.within)) {
-    const auto masks = texels_in(*outline, map, *surface_, parts_.renderer, model_handle());
-    if (!masks) return tl::unexpected(masks.error());
-    return as_selection(*masks, map);
+    const auto masks =
+        STRATA_TRY(texels_in(*outline, map, *surface_, parts_.renderer, model_handle()));
+    return as_selection(masks, map);
   }
   const auto& around = std::get<Selection::Around>(*selection.within);
-  const auto start = find_place(around.at, map, *surface_, "within.at");
-  if (!start) return tl::unexpected(start.error());
-  const auto graph = surface_->graph(map);
-  if (!graph) return tl::unexpected(graph.error());
-  return query::select_near(map, **graph, start->texel, start->position,
+  const auto start = STRATA_TRY(find_place(around.at, map, *surface_, "within.at"));
+  const auto graph = STRATA_TRY(surface_->graph(map));
+  return query::select_near(map, *graph, start.texel, start.position,
                             static_cast<float>(around.radius));
 }
 
@@ -154,13 +144,11 @@ Result<std::optional<query::TexelSelection>> OpenRoom::select_texels(const Selec
   // Those that are not there are refused by the evaluator, with the field.
   std::erase_if(slugs,
                 [&](const auto& slug) { return std::ranges::find(named, slug) == named.end(); });
-  const auto views = layer_views(slugs, selection.at);
-  if (!views) return tl::unexpected(views.error());
-  const auto bound = bind_expression(*selection.where, *views, parts_.store, selection.seen_by,
-                                     selection.at, "where");
-  if (!bound) return tl::unexpected(bound.error());
+  const auto views = STRATA_TRY(layer_views(slugs, selection.at));
+  const auto bound = STRATA_TRY(bind_expression(*selection.where, views, parts_.store,
+                                                selection.seen_by, selection.at, "where"));
   auto holds =
-      query::select_where(*bound, *views, map, "where", mesh::background_threads(),
+      query::select_where(bound, views, map, "where", mesh::background_threads(),
                           {geometry_->origin, model().metres()}, *inside ? &**inside : nullptr);
   if (!holds) return tl::unexpected(holds.error());
   return std::move(*holds);
@@ -177,9 +165,8 @@ Result<query::Statistics> OpenRoom::count(const query::LayerView& view, const me
   request.threads = mesh::background_threads();
   std::shared_ptr<const mesh::TexelGraph> graph;
   if (wanted.pieces || wanted.perimeter) {
-    auto found = surface_->graph(map);
-    if (!found) return tl::unexpected(found.error());
-    graph = std::move(*found);
+    auto found = STRATA_TRY(surface_->graph(map));
+    graph = std::move(found);
     request.graph = graph.get();
   }
   const auto found = state(view.layer.slug);
@@ -190,25 +177,20 @@ Result<query::Statistics> OpenRoom::count(const query::LayerView& view, const me
 Result<query::Statistics> OpenRoom::statistics(const std::string& layer, const Selection& selection,
                                                StatisticsWanted wanted) {
   touch();
-  const auto views = layer_views({layer}, selection.at);
-  if (!views) return tl::unexpected(views.error());
-  if (is_empty(views->front()) && selection.whole()) return nothing_painted(wanted);
-  const auto map = surface_map(views->front().layer.resolution);
-  if (!map) return tl::unexpected(map.error());
-  const auto selected = select_texels(selection, **map);
-  if (!selected) return tl::unexpected(selected.error());
-  return count(views->front(), **map, *selected ? &**selected : nullptr, !selection.at, wanted);
+  const auto views = STRATA_TRY(layer_views({layer}, selection.at));
+  if (is_empty(views.front()) && selection.whole()) return nothing_painted(wanted);
+  const auto map = STRATA_TRY(surface_map(views.front().layer.resolution));
+  const auto selected = STRATA_TRY(select_texels(selection, *map));
+  return count(views.front(), *map, selected ? &*selected : nullptr, !selection.at, wanted);
 }
 
 Result<SelectedArea> OpenRoom::select(const Selection& selection,
                                       const std::vector<std::string>& layers,
                                       StatisticsWanted wanted) {
   touch();
-  const auto views = layer_views(layers, selection.at);
-  if (!views) return tl::unexpected(views.error());
+  const auto views = STRATA_TRY(layer_views(layers, selection.at));
   SelectedArea area;
-  for (const auto& view : *views)
-    area.resolution = std::max(area.resolution, view.layer.resolution);
+  for (const auto& view : views) area.resolution = std::max(area.resolution, view.layer.resolution);
   if (selection.where)
     for (const auto& slug : layers_of(*selection.where))
       if (const auto found = state(slug))
@@ -221,13 +203,11 @@ Result<SelectedArea> OpenRoom::select(const Selection& selection,
   };
   std::map<int, Selected> of_resolution;  // layers of one resolution share it
   std::set<int> resolutions{area.resolution};
-  for (const auto& view : *views) resolutions.insert(view.layer.resolution);
+  for (const auto& view : views) resolutions.insert(view.layer.resolution);
   for (const int resolution : resolutions) {
-    auto map = surface_map(resolution);
-    if (!map) return tl::unexpected(map.error());
-    auto selected = select_texels(selection, **map);
-    if (!selected) return tl::unexpected(selected.error());
-    of_resolution[resolution] = {std::move(*map), std::move(*selected)};
+    auto map = STRATA_TRY(surface_map(resolution));
+    auto selected = STRATA_TRY(select_texels(selection, *map));
+    of_resolution[resolution] = {std::move(map), std::move(selected)};
   }
   const Selected& finest = of_resolution.at(area.resolution);
   const double m2_per_unit2 = model().metres() * model().metres();
@@ -238,11 +218,10 @@ Result<SelectedArea> OpenRoom::select(const Selection& selection,
   area.share = finest.map->area_total > 0 ? std::min(1.0, extent.area / finest.map->area_total) : 0;
   area.bounds_min = glm::dvec3(extent.low) + geometry_->origin;
   area.bounds_max = glm::dvec3(extent.high) + geometry_->origin;
-  for (const auto& view : *views) {
+  for (const auto& view : views) {
     const Selected& here = of_resolution.at(view.layer.resolution);
-    auto counted = count(view, *here.map, here.within(), !selection.at, wanted);
-    if (!counted) return tl::unexpected(counted.error());
-    area.layers.emplace(view.layer.slug, std::move(*counted));
+    auto counted = STRATA_TRY(count(view, *here.map, here.within(), !selection.at, wanted));
+    area.layers.emplace(view.layer.slug, std::move(counted));
   }
   return area;
 }
@@ -250,71 +229,59 @@ Result<SelectedArea> OpenRoom::select(const Selection& selection,
 Result<query::Profile> OpenRoom::profile(const ProfileLine& line,
                                          const std::vector<std::string>& layers, At at) {
   touch();
-  const auto views = layer_views(layers, at);
-  if (!views) return tl::unexpected(views.error());
+  const auto views = STRATA_TRY(layer_views(layers, at));
   const auto tree = surface_->tree();
   if (const auto* seen = std::get_if<SeenLine>(&line))
-    return query::profile_seen(*tree, geometry_->origin, seen->camera, seen->path, *views);
+    return query::profile_seen(*tree, geometry_->origin, seen->camera, seen->path, views);
   const auto& steps = std::get<PlacesInSteps>(line);
-  return query::profile_near(*tree, geometry_->origin, steps.places, steps.step, *views);
+  return query::profile_near(*tree, geometry_->origin, steps.places, steps.step, views);
 }
 
 Result<query::CrossTable> OpenRoom::cross_table(const std::string& rows, const std::string& columns,
                                                 const Selection& selection) {
   touch();
-  const auto views = layer_views({rows, columns}, selection.at);
-  if (!views) return tl::unexpected(views.error());
-  const auto map =
-      surface_map(std::max((*views)[0].layer.resolution, (*views)[1].layer.resolution));
+  const auto views = STRATA_TRY(layer_views({rows, columns}, selection.at));
+  const auto map = surface_map(std::max(views[0].layer.resolution, views[1].layer.resolution));
   if (!map) return tl::unexpected(map.error());
-  const auto selected = select_texels(selection, **map);
-  if (!selected) return tl::unexpected(selected.error());
-  return query::cross_tabulate((*views)[0], (*views)[1], **map, *selected ? &**selected : nullptr,
+  const auto selected = STRATA_TRY(select_texels(selection, **map));
+  return query::cross_tabulate(views[0], views[1], **map, selected ? &*selected : nullptr,
                                model().metres());
 }
 
 Result<OpenRoom::LayerGraph> OpenRoom::layer_graph(const std::string& layer, At at) {
-  auto views = layer_views({layer}, at);
-  if (!views) return tl::unexpected(views.error());
-  auto map = surface_map(views->front().layer.resolution);
-  if (!map) return tl::unexpected(map.error());
-  auto graph = surface_->graph(**map);
-  if (!graph) return tl::unexpected(graph.error());
-  return LayerGraph{std::move(views->front()), std::move(*map), std::move(*graph)};
+  auto views = STRATA_TRY(layer_views({layer}, at));
+  auto map = STRATA_TRY(surface_map(views.front().layer.resolution));
+  auto graph = STRATA_TRY(surface_->graph(*map));
+  return LayerGraph{std::move(views.front()), std::move(map), std::move(graph)};
 }
 
 Result<query::Quantities> OpenRoom::quantities(const std::string& layer, At at) {
   touch();
-  const auto found = layer_graph(layer, at);
-  if (!found) return tl::unexpected(found.error());
-  return query::quantities(found->view, *found->map, *found->graph,
-                           query::classes_of(found->view.layer), model().metres());
+  const auto found = STRATA_TRY(layer_graph(layer, at));
+  return query::quantities(found.view, *found.map, *found.graph,
+                           query::classes_of(found.view.layer), model().metres());
 }
 
 Result<LayerAreas> OpenRoom::layer_areas(const std::string& layer, At at) {
   touch();
-  auto found = layer_graph(layer, at);
-  if (!found) return tl::unexpected(found.error());
-  const query::ValueClasses classes = query::classes_of(found->view.layer);
+  auto found = STRATA_TRY(layer_graph(layer, at));
+  const query::ValueClasses classes = query::classes_of(found.view.layer);
   auto quantities =
-      query::quantities(found->view, *found->map, *found->graph, classes, model().metres());
+      query::quantities(found.view, *found.map, *found.graph, classes, model().metres());
   if (!quantities) return tl::unexpected(quantities.error());
-  auto perimeters = query::measure_perimeters(found->view, *found->map, *found->graph, nullptr,
+  auto perimeters = query::measure_perimeters(found.view, *found.map, *found.graph, nullptr,
                                               classes, mesh::background_threads());
-  return LayerAreas{std::move(found->view), std::move(found->map), std::move(*quantities),
+  return LayerAreas{std::move(found.view), std::move(found.map), std::move(*quantities),
                     std::move(perimeters)};
 }
 
 Result<query::SurfaceTexels> OpenRoom::surface_texels(const std::string& layer,
                                                       const Selection& selection) {
   touch();
-  auto views = layer_views({layer}, selection.at);
-  if (!views) return tl::unexpected(views.error());
-  auto map = surface_map(views->front().layer.resolution);
-  if (!map) return tl::unexpected(map.error());
-  auto selected = select_texels(selection, **map);
-  if (!selected) return tl::unexpected(selected.error());
-  return query::SurfaceTexels{std::move(views->front()), std::move(*map), std::move(*selected),
+  auto views = STRATA_TRY(layer_views({layer}, selection.at));
+  auto map = STRATA_TRY(surface_map(views.front().layer.resolution));
+  auto selected = STRATA_TRY(select_texels(selection, *map));
+  return query::SurfaceTexels{std::move(views.front()), std::move(map), std::move(selected),
                               geometry_->origin, model().metres()};
 }
 

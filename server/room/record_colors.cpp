@@ -21,13 +21,12 @@ bool holds_numbers(ColumnKind kind) {
 
 Result<Palette> by_column(store::Store& store, std::int64_t table_id, Role seen_by,
                           const Palette& palette) {
-  auto table = store.table(std::to_string(table_id), seen_by);
-  if (!table) return tl::unexpected(table.error());
-  const Column* column = find_column(table->columns, palette.column);
+  auto table = STRATA_TRY(store.table(std::to_string(table_id), seen_by));
+  const Column* column = find_column(table.columns, palette.column);
   if (!column)
-    return fail(422, "No such column",
+    return fail(ErrorCode::invalid, "No such column",
                 "The palette colours by the column '" + palette.column + "', which the table '" +
-                    table->name + "' no longer has. Choose another one.",
+                    table.name + "' no longer has. Choose another one.",
                 "palette.column");
   if (holds_numbers(column->kind)) {
     auto numbers = store.record_numbers(table_id, seen_by, column_of(column->slug), std::nullopt,
@@ -37,7 +36,7 @@ Result<Palette> by_column(store::Store& store, std::int64_t table_id, Role seen_
   }
   if (palette.mode != PaletteMode::categorical)
     return fail(
-        422, "Column holds no numbers",
+        ErrorCode::invalid, "Column holds no numbers",
         "'" + column->name + "' holds no numbers: only a categorical palette can colour by it.",
         "palette.column");
   auto texts = store.record_texts(table_id, seen_by, column->slug, "palette.column");
@@ -51,11 +50,10 @@ Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::in
                                                     Role seen_by, const Highlight& highlight,
                                                     const std::string& field) {
   if (const auto* keys = std::get_if<std::vector<std::uint32_t>>(&highlight.records)) return *keys;
-  auto truths = store.record_numbers(table_id, seen_by, std::get<Expression>(highlight.records),
-                                     std::nullopt, field);
-  if (!truths) return tl::unexpected(truths.error());
+  auto truths = STRATA_TRY(store.record_numbers(
+      table_id, seen_by, std::get<Expression>(highlight.records), std::nullopt, field));
   std::vector<std::uint32_t> keys;
-  for (const KeyNumber& truth : *truths)
+  for (const KeyNumber& truth : truths)
     if (truth.number != 0) keys.push_back(truth.key);
   std::ranges::sort(keys);
   return keys;
@@ -70,9 +68,8 @@ Result<std::shared_ptr<const Palette>> RecordColors::make(store::Store& store,
   Palette by_key = *wanted.palette;
   const Role seen_by = least_role(wanted.sight);
   if (!by_key.column.empty()) {
-    auto colored = by_column(store, wanted.table, seen_by, by_key);
-    if (!colored) return tl::unexpected(colored.error());
-    by_key = std::move(*colored);
+    auto colored = STRATA_TRY(by_column(store, wanted.table, seen_by, by_key));
+    by_key = std::move(colored);
   }
   if (wanted.highlight) {
     const auto keys =
@@ -119,7 +116,7 @@ void RecordColors::run(const std::shared_ptr<Entry>& entry) {
     if (made)
       entry->found = {std::move(*made), nullptr};
     else
-      entry->found.problem = std::make_shared<const Problem>(made.error());
+      entry->found.problem = std::make_shared<const Error>(made.error());
     start(entry);
   }
   if (ready_) ready_();

@@ -13,7 +13,7 @@
 
 namespace strata::room {
 
-// The keys that are meant, ascending. Refused (422 at `field`): what the columns do not fit.
+// The keys that are meant, ascending. Refused (invalid at `field`): what the columns do not fit.
 Result<std::vector<std::uint32_t>> highlighted_keys(store::Store& store, std::int64_t table_id,
                                                     Role seen_by, const Highlight& highlight,
                                                     const std::string& field);
@@ -35,7 +35,7 @@ class RecordColors : public std::enable_shared_from_this<RecordColors> {
   };
   struct Found {
     std::shared_ptr<const Palette> palette;  // null: not there yet, or not to be had
-    std::shared_ptr<const Problem> problem;  // why not
+    std::shared_ptr<const Error> problem;    // why not
   };
   // The newest that is there; what is not is on its way.
   Found find(const Wanted& wanted);

@@ -21,16 +21,14 @@ RecordMarks::RecordMarks(store::Store& store, boost::asio::thread_pool& workers,
 
 Result<RecordMarks::Marks> RecordMarks::read(const Wanted& wanted,
                                              std::optional<std::int64_t> at) const {
-  auto marks = store_.marks(wanted.first, least_role(wanted.second), model_id_, at);
-  if (!marks) return tl::unexpected(marks.error());
-  return marks->empty() ? nullptr : std::make_shared<const std::vector<KeyMark>>(std::move(*marks));
+  auto marks = STRATA_TRY(store_.marks(wanted.first, least_role(wanted.second), model_id_, at));
+  return marks.empty() ? nullptr : std::make_shared<const std::vector<KeyMark>>(std::move(marks));
 }
 
 Result<RecordMarks::Marks> RecordMarks::when(std::int64_t table_id, Visibility sight,
                                              std::int64_t sequence) const {
-  const auto at = store_.table_sequence_when(table_id, model_id_, sequence);
-  if (!at) return tl::unexpected(at.error());
-  return read({table_id, sight}, *at);
+  const auto at = STRATA_TRY(store_.table_sequence_when(table_id, model_id_, sequence));
+  return read({table_id, sight}, at);
 }
 
 RecordMarks::Marks RecordMarks::find(std::int64_t table_id, Visibility sight) {

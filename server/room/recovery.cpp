@@ -131,10 +131,10 @@ void OpenRoom::on_gpu_filled(int losses_before, const Result<GpuContents>& conte
   recover();
 }
 
-void OpenRoom::retry_recovery(const Problem& why) {
+void OpenRoom::retry_recovery(const Error& why) {
   log::warning("model " + std::to_string(model_id_) +
                " could not be loaded again, trying again: " + why.title + ": " + why.detail);
-  pipeline_->refuse_waiting({503,
+  pipeline_->refuse_waiting({ErrorCode::unavailable,
                              "Model is reloading",
                              "The model is being loaded again, which failed for now: " + why.detail,
                              {}});

@@ -40,11 +40,11 @@ Result<PlaceOnSurface> find_place(const Place& place, const mesh::SurfaceMap& ma
           [&](const glm::dvec3& world) { return query::nearest_point(*tree, origin, world, {}); }},
       place);
   if (!point.hit)
-    return fail(422, "Not on the model",
+    return fail(ErrorCode::invalid, "Not on the model",
                 "There is no surface at this place; give one that is on the model.", field);
   if (const auto texel = mesh::surface_texel_at(map, point.uv))
     return PlaceOnSurface{*texel, glm::vec3(point.position - origin)};
-  return fail(422, "No texel there",
+  return fail(ErrorCode::invalid, "No texel there",
               "The surface at this place is too small to hold a texel of this layer.", field);
 }
 
@@ -75,11 +75,9 @@ Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType typ
     return fill_selected(context.tiles, type, context.map, std::move(*selection), value);
   };
   const auto flooded = [&](const Place& at, auto flood) -> Changes {
-    const auto start = find_place(at, context.map, context.surface, "at");
-    if (!start) return tl::unexpected(start.error());
-    const auto graph = context.surface.graph(context.map);
-    if (!graph) return tl::unexpected(graph.error());
-    return selected(flood(**graph, start->texel));
+    const auto start = STRATA_TRY(find_place(at, context.map, context.surface, "at"));
+    const auto graph = STRATA_TRY(context.surface.graph(context.map));
+    return selected(flood(*graph, start.texel));
   };
   return std::visit(
       Overloaded{
@@ -87,11 +85,11 @@ Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType typ
             return fill_everywhere(context.tiles, type, context.map, value);
           },
           [&](const FillEdit::Where& where) -> Changes {
-            const auto bound = bind_for_layer(where.condition, context.layers, context.store,
-                                              context.author, context.visibility, "where");
-            if (!bound) return tl::unexpected(bound.error());
+            const auto bound =
+                STRATA_TRY(bind_for_layer(where.condition, context.layers, context.store,
+                                          context.author, context.visibility, "where"));
             return selected(
-                query::select_where(bound->expression, bound->layers, context.map, "where", 2,
+                query::select_where(bound.expression, bound.layers, context.map, "where", 2,
                                     {context.surface.geometry().origin, context.metres}));
           },
           [&](const FillEdit::Island& island) {

@@ -26,7 +26,7 @@ struct RegionContext {
 };
 
 // A place as a surface texel (numbered as in mesh::TexelGraph) and a point in model space. Refused
-// (422 at `field`) where there is none.
+// (invalid at `field`) where there is none.
 struct PlaceOnSurface {
   std::uint32_t texel = 0;
   glm::vec3 position{0};
@@ -39,7 +39,7 @@ Result<TileMasks> texels_in(const Outline& outline, const mesh::SurfaceMap& map,
                             render::ModelHandle model);
 
 // What a fill or a polygon changes. Blocks: for worker threads. Refused: an expression over layers
-// that are not there (422), a place that is not on the model (422), what the GPU refuses.
+// that are not there (invalid), a place that is not on the model (invalid), what the GPU refuses.
 Result<std::vector<TileChange>> fill_changes(const FillEdit& fill, ValueType type,
                                              const RegionContext& context);
 Result<std::vector<TileChange>> polygon_changes(const PolygonEdit& polygon, ValueType type,

@@ -53,7 +53,7 @@ class Listener {
   // visible, not yet durable
   virtual void edit_applied(const Edit& edit) = 0;
   // rolled back
-  virtual void edits_unsaved(const std::vector<Edit>& edits, const Problem& why) = 0;
+  virtual void edits_unsaved(const std::vector<Edit>& edits, const Error& why) = 0;
   enum class LayerChange { created, changed, deleted };
   virtual void layer_changed(LayerChange change, const Layer& layer) = 0;
   virtual void look_changed(LayerChange change, const Look& look) = 0;
@@ -62,7 +62,7 @@ class Listener {
   virtual void presence_changed() = 0;
   // Of this person's own view, and on the GPU thread: it cannot be drawn as asked for, until
   // something changes.
-  virtual void view_refused(std::uint32_t view_id, const Problem& why) = 0;
+  virtual void view_refused(std::uint32_t view_id, const Error& why) = 0;
 };
 
 // Records of a database layer that are to be seen before all others.
@@ -176,7 +176,7 @@ class Member {
   virtual void edits() = 0;  // its person does: onlookers do not hold up what they see of it
   virtual void pointer(std::optional<Pointing> at) = 0;
   // Replaces what was said before. Refused as a whole, in `follow`: a session that is not here
-  // (404), one that follows this one (409).
+  // (not_found), one that follows this one (conflict).
   virtual Result<void> look_together(bool leading, const std::optional<Uuid>& follow) = 0;
 };
 
@@ -272,7 +272,7 @@ class Room {
   // Of a layer that it locks every edit that had begun is durable, or refused, when it returns.
   virtual Result<Layer> update_layer(Layer layer, const store::FirstAnswer<Layer>& answer = {}) = 0;
   // The layer with room for larger keys or values, its history too; `layer` as it was read. Refused
-  // (422, `type`): a type that it does not widen to, and a computed layer.
+  // (invalid, `type`): a type that it does not widen to, and a computed layer.
   virtual Result<Layer> widen_layer(const Layer& layer, ValueType type,
                                     const store::FirstAnswer<Layer>& answer = {}) = 0;
   // for ever
@@ -289,15 +289,15 @@ class Room {
   // Records of a table have changed: layers that are computed from them are stale, those that take
   // their colours from its terms others.
   virtual void records_changed(std::int64_t table_id) = 0;
-  // Whether a formula for a computed layer can be evaluated here. Refused (422 at `field`) as by
-  // bind_for_layer.
+  // Whether a formula for a computed layer can be evaluated here. Refused (invalid at `field`) as
+  // by bind_for_layer.
   virtual Result<void> check_expression(const Expression& expression, const std::string& field,
                                         Visibility layer) const = 0;
   virtual Result<Model> update_model(Model model, const store::FirstAnswer<Model>& answer = {}) = 0;
 
   // Queries; may take a while the first time (search tree, surface map), so call from a worker
   // thread. Values of the given layers only, as they were after a sequence or as they are. Refused
-  // (422, `at`): a sequence that is not durable yet.
+  // (invalid, `at`): a sequence that is not durable yet.
   using At = std::optional<std::int64_t>;
   virtual Result<query::SurfacePoint> position(const glm::dvec3& world,
                                                const std::vector<std::string>& layers,
@@ -337,7 +337,7 @@ class Room {
     int line = 0;  // of the text that they came from
   };
   // Around the surface point nearest to each place, which may lie `tolerance` from it (model
-  // units): refused otherwise (422).
+  // units): refused otherwise (invalid).
   virtual Result<TileMap> dabs(const Layer& layer, const std::vector<PlacedValue>& values,
                                double radius, double tolerance) = 0;
   // The surface that is seen first along a direction, without perspective, by a function of its
@@ -357,7 +357,7 @@ class Room {
   virtual std::shared_ptr<const mesh::SearchTree> search_tree() = 0;
   virtual Result<std::shared_ptr<const mesh::SurfaceMap>> surface_map(int resolution) = 0;
   // Pictures, RGBA8, top row first; waits for them and for the looks they show. `see` gets each in
-  // turn, in bands of its whole width from the top, and may end it with a Problem: a large picture
+  // turn, in bands of its whole width from the top, and may end it with an Error: a large picture
   // is nowhere as a whole, and between its bands others have theirs. With `at` all show one state,
   // also while others paint.
   struct PictureBand {
@@ -398,7 +398,7 @@ class Room {
 
 struct RoomOptions {
   std::chrono::seconds close_after{60};  // after the last user left
-  // of a room, not yet answered; more are refused (429)
+  // of a room, not yet answered; more are refused (too_many_requests)
   std::size_t max_waiting_edits = 512;
   std::chrono::milliseconds retry_for{30'000};  // commits that fail
   std::chrono::milliseconds drain_for{40'000};  // longer than commits are retried
@@ -419,11 +419,11 @@ class Rooms {
   Result<std::shared_ptr<Room>> open(const std::string& model_ref, Role seen_by);
   // in the models that are open (Room::records_changed)
   void records_changed(std::int64_t table_id);
-  // From now on edits that would paint the key of the table are refused (409). Those that were let
-  // in are durable when it returns; of a Problem this is not known, and the key is retired all the
-  // same. Blocks.
+  // From now on edits that would paint the key of the table are refused (conflict). Those that were
+  // let in are durable when it returns; of an Error this is not known, and the key is retired all
+  // the same. Blocks.
   Result<void> retire_key(std::int64_t table_id, std::int64_t key);
-  // Returns when every edit that was let in is durable. Of a Problem this is not known, and to ask
+  // Returns when every edit that was let in is durable. Of an Error this is not known, and to ask
   // again is right. Blocks.
   Result<void> settle();
   // they have records again

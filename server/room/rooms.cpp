@@ -33,9 +33,12 @@ std::uint64_t default_budget() {
   return bytes / 10 * 6;
 }
 
-const Problem kClosing{
-    503, "Model is closing", "The server is letting go of this model; try again in a moment.", {}};
-const Problem kStopping{503, "Server is stopping", "Try again when it is back.", {}};
+const Error kClosing{ErrorCode::unavailable,
+                     "Model is closing",
+                     "The server is letting go of this model; try again in a moment.",
+                     {}};
+const Error kStopping{
+    ErrorCode::unavailable, "Server is stopping", "Try again when it is back.", {}};
 
 }  // namespace
 
@@ -188,43 +191,41 @@ Rooms::Rooms(store::Store& store, render::Renderer& renderer, stream::StreamCont
 Rooms::~Rooms() = default;
 
 Result<std::shared_ptr<Room>> Rooms::open(const std::string& model_ref, Role seen_by) {
-  auto room = impl_->open(model_ref);
-  if (!room) return tl::unexpected(room.error());
-  return seen_as(std::move(*room), seen_by);
+  auto room = STRATA_TRY(impl_->open(model_ref));
+  return seen_as(std::move(room), seen_by);
 }
 
 Result<std::shared_ptr<OpenRoom>> Rooms::Impl::open(const std::string& model_ref) {
   // An open room is found without the database, so that viewing goes on when that is away.
   if (auto room = find(model_ref)) return room;
-  auto model = parts.store.model(model_ref);
-  if (!model) return tl::unexpected(model.error());
+  auto model = STRATA_TRY(parts.store.model(model_ref));
   const int losses_before = context_losses;
   {
     std::unique_lock lock(mutex);
     // One at a time loads a model; the others wait for it.
-    changed.wait(lock, [&] { return stopping || draining || !opening.contains(model->id); });
+    changed.wait(lock, [&] { return stopping || draining || !opening.contains(model.id); });
     if (stopping || draining) return tl::unexpected(kStopping);
-    if (auto found = rooms.find(model->id); found != rooms.end()) {
+    if (auto found = rooms.find(model.id); found != rooms.end()) {
       found->second->touch();
       return found->second;
     }
-    opening.insert(model->id);
+    opening.insert(model.id);
   }
-  auto room = OpenRoom::open(parts, std::to_string(model->id));
-  if (!room && is_used_up(room.error()) && close_empty_rooms())
-    room = OpenRoom::open(parts, std::to_string(model->id));
+  auto room = OpenRoom::open(parts, std::to_string(model.id));
+  if (!room && room.error().code == ErrorCode::out_of_memory && close_empty_rooms())
+    room = OpenRoom::open(parts, std::to_string(model.id));
   std::unique_lock lock(mutex);
-  opening.erase(model->id);
+  opening.erase(model.id);
   changed.notify_all();
-  const bool deleted = deleted_meanwhile.erase(model->id) > 0;
+  const bool deleted = deleted_meanwhile.erase(model.id) > 0;
   if (!room) return tl::unexpected(room.error());
   if (deleted || draining) {
     lock.unlock();
     (*room)->shut(kClosing);
     if (!deleted) return tl::unexpected(kStopping);
-    return fail(404, "Not found", "The model was deleted.");
+    return fail(ErrorCode::not_found, "Not found", "The model was deleted.");
   }
-  rooms[model->id] = *room;
+  rooms[model.id] = *room;
   if (context_losses != losses_before) (*room)->gpu_lost();  // it was filled in vain
   return room;
 }
@@ -239,7 +240,7 @@ Result<void> Rooms::retire_key(std::int64_t table_id, std::int64_t key) {
     const auto layers = room->layers();
     if (std::ranges::none_of(layers, [&](const Layer& layer) { return layer.table == table_id; }))
       continue;
-    if (auto settled = room->settle(); !settled) return settled;
+    STRATA_TRY(room->settle());
   }
   return {};
 }
@@ -247,7 +248,8 @@ Result<void> Rooms::retire_key(std::int64_t table_id, std::int64_t key) {
 Result<void> Rooms::settle() {
   // whose model was deleted meanwhile
   for (const auto& room : impl_->open_ones())
-    if (auto settled = room->settle(); !settled && settled.error().status != 410) return settled;
+    if (auto settled = room->settle(); !settled && settled.error().code != ErrorCode::gone)
+      return settled;
   return {};
 }
 

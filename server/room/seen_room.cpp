@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/no_such.h"
+
 namespace strata::room {
 namespace {
 
@@ -30,59 +32,59 @@ class SeenRoom final : public Room {
 
   Result<query::SurfacePoint> position(const glm::dvec3& world,
                                        const std::vector<std::string>& layers, At at) override {
-    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check(layers));
     return room_->position(world, layers, at);
   }
   Result<std::vector<query::SurfacePoint>> positions(const std::vector<glm::dvec3>& world,
                                                      const std::vector<std::string>& layers,
                                                      At at) override {
-    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check(layers));
     return room_->positions(world, layers, at);
   }
   Result<query::SurfacePoint> pick(const Camera& camera, double x, double y,
                                    const std::vector<std::string>& layers, At at) override {
-    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check(layers));
     return room_->pick(camera, x, y, layers, at);
   }
   Result<query::Statistics> statistics(const std::string& layer, const Selection& selection,
                                        StatisticsWanted wanted) override {
-    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check({layer}));
     return room_->statistics(layer, seen_by(selection), wanted);
   }
   Result<SelectedArea> select(const Selection& selection, const std::vector<std::string>& layers,
                               StatisticsWanted wanted) override {
-    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check(layers));
     return room_->select(seen_by(selection), layers, wanted);
   }
   Result<query::Profile> profile(const ProfileLine& line, const std::vector<std::string>& layers,
                                  At at) override {
-    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check(layers));
     return room_->profile(line, layers, at);
   }
   Result<query::CrossTable> cross_table(const std::string& rows, const std::string& columns,
                                         const Selection& selection) override {
-    if (auto seen = check({rows, columns}); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check({rows, columns}));
     return room_->cross_table(rows, columns, seen_by(selection));
   }
   Result<query::Quantities> quantities(const std::string& layer, At at) override {
-    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check({layer}));
     return room_->quantities(layer, at);
   }
   Result<LayerAreas> layer_areas(const std::string& layer, At at) override {
-    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check({layer}));
     return room_->layer_areas(layer, at);
   }
   Result<query::SurfaceTexels> surface_texels(const std::string& layer,
                                               const Selection& selection) override {
-    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check({layer}));
     return room_->surface_texels(layer, seen_by(selection));
   }
   Result<std::map<std::int64_t, query::KeyArea>> key_areas(const std::string& layer) override {
-    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check({layer}));
     return room_->key_areas(layer);
   }
   Result<TileMirror::Snapshot> tiles(const std::string& layer, At at) override {
-    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check({layer}));
     return room_->tiles(layer, at);
   }
   Result<void> pictures(const PictureRequest& asked, std::span<const PicturePart> parts,
@@ -90,7 +92,7 @@ class SeenRoom final : public Room {
     PictureRequest seen = asked;
     seen.seen_by = std::min(asked.seen_by, role_);
     if (asked.layers) {
-      if (auto known = check(*asked.layers); !known) return tl::unexpected(known.error());
+      STRATA_TRY(check(*asked.layers));
     } else {
       seen.layers.emplace();
       std::vector<Layer> in_order = layers();
@@ -104,14 +106,14 @@ class SeenRoom final : public Room {
   Result<std::vector<std::optional<std::uint32_t>>> seen_keys(const std::string& layer,
                                                               const Camera& camera, int columns,
                                                               int rows, At at) override {
-    if (auto seen = check({layer}); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check({layer}));
     return room_->seen_keys(layer, camera, columns, rows, at);
   }
   Result<std::vector<query::SeenLayer>> seen_layers(const std::vector<std::string>& layers,
                                                     const std::vector<query::LayerCover>& covers,
                                                     const Camera& camera, int columns, int rows,
                                                     At at) override {
-    if (auto seen = check(layers); !seen) return tl::unexpected(seen.error());
+    STRATA_TRY(check(layers));
     return room_->seen_layers(layers, covers, camera, columns, rows, at);
   }
   DurableState durable_state() const override {
@@ -198,8 +200,7 @@ class SeenRoom final : public Room {
 
  private:
   Result<void> check(const std::vector<std::string>& refs) const {
-    for (const std::string& ref : refs)
-      if (auto seen = layer(ref); !seen) return tl::unexpected(seen.error());
+    for (const std::string& ref : refs) STRATA_TRY(layer(ref));
     return {};
   }
   Selection seen_by(Selection selection) const {
@@ -218,8 +219,8 @@ std::shared_ptr<Room> seen_as(std::shared_ptr<Room> room, Role role) {
   return std::make_shared<SeenRoom>(std::move(room), role);
 }
 
-tl::unexpected<Problem> no_such_layer(const std::string& ref) {
-  return fail(404, "No such layer", "This model has no layer \"" + ref + "\".", "layer");
+tl::unexpected<Error> no_such_layer(const std::string& ref) {
+  return no_such("layer", ref, "layer");
 }
 
 }  // namespace strata::room

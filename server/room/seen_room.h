@@ -13,6 +13,6 @@ namespace strata::room {
 std::shared_ptr<Room> seen_as(std::shared_ptr<Room> room, Role role);
 
 // The answer for a layer that is not there, and for one that somebody does not see.
-tl::unexpected<Problem> no_such_layer(const std::string& ref);
+tl::unexpected<Error> no_such_layer(const std::string& ref);
 
 }  // namespace strata::room

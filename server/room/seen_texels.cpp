@@ -31,15 +31,14 @@ Result<TileMasks> seen_texels(render::Renderer& renderer, render::ModelHandle mo
                               bool through) {
   // Erasing a layer that is empty changes nothing and takes no page, and tells all the same what it
   // went over.
-  auto scratch = await<render::LayerHandle>(
-      [&](auto done) { renderer.add_layer(model, ValueType::u8, resolution, std::move(done)); });
-  if (!scratch) return tl::unexpected(scratch.error());
+  auto scratch = STRATA_TRY(await<render::LayerHandle>(
+      [&](auto done) { renderer.add_layer(model, ValueType::u8, resolution, std::move(done)); }));
   StrokeBatch stroke = box_stroke(camera, low, high);
   stroke.erase = true;
   stroke.through = through;
   const auto outcome = await<render::StrokeOutcome>(
-      [&](auto done) { renderer.paint(*scratch, std::move(stroke), std::move(done)); });
-  renderer.remove_layer(*scratch);
+      [&](auto done) { renderer.paint(scratch, std::move(stroke), std::move(done)); });
+  renderer.remove_layer(scratch);
   if (!outcome) return tl::unexpected(outcome.error());
   TileMasks seen;
   for (const render::WrittenTile& tile : outcome->tiles) seen[tile.address] = tile.written;

@@ -11,10 +11,9 @@ std::shared_ptr<const mesh::SearchTree> SurfaceLookup::tree() {
 }
 
 Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::graph(const mesh::SurfaceMap& map) {
-  auto graph = find_or_build(map);
-  if (!graph) return graph;
+  auto graph = STRATA_TRY(find_or_build(map));
   // Without the lock: to make room, graphs may be dropped.
-  auto share = memory_.reserve((*graph)->bytes(), "the neighbours of a surface map's texels");
+  auto share = memory_.reserve(graph->bytes(), "the neighbours of a surface map's texels");
   std::lock_guard lock(graphs_mutex_);
   const auto found = graphs_.find(map.resolution);
   if (found == graphs_.end() || found->second.share.bytes() > 0) return graph;
@@ -32,9 +31,8 @@ Result<std::shared_ptr<const mesh::TexelGraph>> SurfaceLookup::find_or_build(
   std::lock_guard lock(graphs_mutex_);  // held while it is built: who else asks wants the same
   if (const auto found = graphs_.find(map.resolution); found != graphs_.end())
     return found->second.graph;
-  auto built = mesh::build_texel_graph(*geometry_, map, progress_);
-  if (!built) return tl::unexpected(built.error());
-  auto graph = std::make_shared<const mesh::TexelGraph>(std::move(*built));
+  auto built = STRATA_TRY(mesh::build_texel_graph(*geometry_, map, progress_));
+  auto graph = std::make_shared<const mesh::TexelGraph>(std::move(built));
   graphs_[map.resolution].graph = graph;
   return graph;
 }

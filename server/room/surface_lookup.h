@@ -21,7 +21,7 @@ class SurfaceLookup {
 
   const mesh::Geometry& geometry() const { return *geometry_; }
   std::shared_ptr<const mesh::SearchTree> tree();
-  // A Problem 503 beyond the budget of main memory.
+  // An Error `unavailable` beyond the budget of main memory.
   Result<std::shared_ptr<const mesh::TexelGraph>> graph(const mesh::SurfaceMap& map);
   // they are made again when next asked for; false when there is none, or one is being made
   bool drop_graphs();

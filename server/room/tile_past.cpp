@@ -9,14 +9,13 @@ constexpr int kRevisionsAtOnce = 32;  // no more of a tile's history are in memo
 Result<void> walk_back(TileResolver& resolver, const Layer& layer, TileAddress tile,
                        store::Store& store, const std::function<void(PastRevision&)>& turn) {
   for (std::int64_t newest = std::numeric_limits<std::int64_t>::max(); resolver.is_open();) {
-    auto revisions = store.tile_history(layer, tile, newest, kRevisionsAtOnce);
-    if (!revisions) return tl::unexpected(revisions.error());
-    if (revisions->empty()) break;
-    for (auto& revision : *revisions) {
+    auto revisions = STRATA_TRY(store.tile_history(layer, tile, newest, kRevisionsAtOnce));
+    if (revisions.empty()) break;
+    for (auto& revision : revisions) {
       turn(revision);
       resolver.add(revision);
     }
-    newest = revisions->back().sequence;
+    newest = revisions.back().sequence;
   }
   return {};
 }

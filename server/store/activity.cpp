@@ -87,16 +87,14 @@ Result<ActivityPage> Store::activity(std::int64_t project_id, Role seen_by,
         .boolean(query.with_members)
         .integer(limit + 1)  // one more tells whether there is a next page
         .array(visibilities_seen_by(seen_by));
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         query.model ? STRATA_ACTIVITY_PAGE(STRATA_ACTIVITY_OF_MODEL)
                     : STRATA_ACTIVITY_PAGE(STRATA_ACTIVITY_LINES("project_id = $1")),
-        params);
-    if (!rows) return tl::unexpected(rows.error());
+        params));
     ActivityPage page;
-    for (int i = 0; i < std::min(rows->rows(), limit); ++i)
-      page.lines.push_back(read_line(*rows, i));
-    if (rows->rows() > limit)
-      page.next = ActivityPlace{rows->integer(limit - 1, 20), page.lines.back().id};
+    for (int i = 0; i < std::min(rows.rows(), limit); ++i) page.lines.push_back(read_line(rows, i));
+    if (rows.rows() > limit)
+      page.next = ActivityPlace{rows.integer(limit - 1, 20), page.lines.back().id};
     return page;
   });
 }
@@ -111,8 +109,7 @@ Result<void> rename_in_activity(PgConnection& connection, const std::string& nam
                                 const std::string& former) {
   for (const char* sql : {"UPDATE activities SET user_name = $2 WHERE user_name = $1",
                           "UPDATE activities SET person = $2 WHERE person = $1"})
-    if (auto done = connection.query(sql, Params().text(name).text(former)); !done)
-      return tl::unexpected(done.error());
+    STRATA_TRY(connection.query(sql, Params().text(name).text(former)));
   return {};
 }
 

@@ -37,13 +37,12 @@ Result<std::vector<Attachment>> rows_of_ids(PgConnection& connection, std::int64
                                             std::span<const std::int64_t> ids) {
   PgArray list(oid::kInt8);
   for (const auto id : ids) list.add(id);
-  auto rows = connection.query("SELECT " STRATA_ATTACHMENT_COLUMNS
-                               " FROM attachments a JOIN blobs b USING (sha256) "
-                               "WHERE a.table_id = $1 AND a.id = any($2) ORDER BY a.id",
-                               Params().integer(table_id).array(list));
-  if (!rows) return tl::unexpected(rows.error());
+  auto rows = STRATA_TRY(connection.query("SELECT " STRATA_ATTACHMENT_COLUMNS
+                                          " FROM attachments a JOIN blobs b USING (sha256) "
+                                          "WHERE a.table_id = $1 AND a.id = any($2) ORDER BY a.id",
+                                          Params().integer(table_id).array(list)));
   std::vector<Attachment> found;
-  for (int i = 0; i < rows->rows(); ++i) found.push_back(read_attachment_row(*rows, i));
+  for (int i = 0; i < rows.rows(); ++i) found.push_back(read_attachment_row(rows, i));
   return found;
 }
 
@@ -56,7 +55,7 @@ Result<const Column*> column_for(const Table& table, std::optional<std::int64_t>
   for (const Column& column : table.columns) {
     if (wished && column.id == *wished) {
       if (!holds_attachments(column.kind))
-        return fail(422, "No column of files",
+        return fail(ErrorCode::invalid, "No column of files",
                     "\"" + column.name + "\" is of kind `" + std::string(name(column.kind)) +
                         "`; files go to columns of kind `picture` or `document`.",
                     "column");
@@ -65,11 +64,11 @@ Result<const Column*> column_for(const Table& table, std::optional<std::int64_t>
     if (column.kind == ColumnKind::picture && !pictures) pictures = &column;
     if (column.kind == ColumnKind::document && !documents) documents = &column;
   }
-  if (wished) return not_found("column", std::to_string(*wished));
+  if (wished) return no_such("column", std::to_string(*wished));
   if (all_pictures && pictures) return pictures;
   if (documents) return documents;
   return fail(
-      422, "No column of files",
+      ErrorCode::invalid, "No column of files",
       pictures
           ? table.name +
                 " has columns of pictures only, and not all that was sent is one (JPEG, PNG, TIFF, WebP, "
@@ -80,11 +79,10 @@ Result<const Column*> column_for(const Table& table, std::optional<std::int64_t>
 
 Result<Record> record_of(PgConnection& connection, const OpenTable& open, std::int64_t key,
                          std::optional<std::int64_t> version) {
-  auto rows = load_rows(connection, open.table.id, open.all, std::vector{key});
-  if (!rows) return tl::unexpected(rows.error());
-  if (rows->empty()) return not_found("record", std::to_string(key));
-  if (version && *version != rows->front().version) return stale("record");
-  return std::move(rows->front());
+  auto rows = STRATA_TRY(load_rows(connection, open.table.id, open.all, std::vector{key}));
+  if (rows.empty()) return no_such("record", std::to_string(key));
+  if (version && *version != rows.front().version) return stale("record");
+  return std::move(rows.front());
 }
 
 nlohmann::json cell_of(const Record& record, const Column& column) {
@@ -98,7 +96,7 @@ Result<Attachment> insert_attachment(PgConnection& connection, std::int64_t tabl
   const auto side = [](std::optional<int> value) {
     return value ? std::optional<std::int64_t>(*value) : std::nullopt;
   };
-  auto row = connection.query(
+  auto row = STRATA_TRY(connection.query(
       "INSERT INTO attachments (table_id, sha256, name, media_type, width, height, user_name, visibility) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8) RETURNING id",
       Params()
@@ -109,11 +107,9 @@ Result<Attachment> insert_attachment(PgConnection& connection, std::int64_t tabl
           .optional_integer(side(file.width))
           .optional_integer(side(file.height))
           .text(user)
-          .text(name(file.visibility)));
-  if (!row) return tl::unexpected(row.error());
-  auto made = rows_of_ids(connection, table_id, std::vector{row->integer(0, 0)});
-  if (!made) return tl::unexpected(made.error());
-  return std::move(made->front());
+          .text(name(file.visibility))));
+  auto made = STRATA_TRY(rows_of_ids(connection, table_id, std::vector{row.integer(0, 0)}));
+  return std::move(made.front());
 }
 
 Result<TableChange> without_problems(Result<TableChange> change) {
@@ -128,13 +124,12 @@ Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key,
                                       const std::vector<NewAttachment>& files,
                                       std::optional<std::int64_t> version, const Author& who,
                                       const FirstAnswer<Attached>& answer) {
-  if (auto good = check_text(who.user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(who.user, "user"));
   std::vector<Content> contents;
   for (const NewAttachment& file : files) {
-    if (auto good = check_name(file.name); !good) return tl::unexpected(good.error());
-    auto content = content_of(file.file, {});
-    if (!content) return tl::unexpected(content.error());
-    contents.push_back(std::move(*content));
+    STRATA_TRY(check_name(file.name));
+    auto content = STRATA_TRY(content_of(file.file, {}));
+    contents.push_back(std::move(content));
   }
   std::vector<const Content*> by_hash;
   for (const Content& content : contents) by_hash.push_back(&content);
@@ -144,48 +139,40 @@ Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key,
   // locked, which others wait for. Not in one transaction: having read the rows it would keep them
   // from who deletes the table, and waits for them with the table locked.
   auto may = impl_->pool.read([&](PgConnection& connection) -> Result<void> {
-    auto open = read_table(connection, table_id, who.role);
-    if (!open) return tl::unexpected(open.error());
-    if (auto there = record_of(connection, *open, key, version); !there) {
+    auto open = STRATA_TRY(read_table(connection, table_id, who.role));
+    if (auto there = record_of(connection, open, key, version); !there) {
       // Deleted between the two looks.
-      if (connection.sqlstate() == "42P01") return not_found("table", std::to_string(table_id));
+      if (connection.sqlstate() == "42P01") return no_such("table", std::to_string(table_id));
       return tl::unexpected(there.error());
     }
-    auto column = column_for(open->table, column_id, files);
+    auto column = column_for(open.table, column_id, files);
     return column ? Result<void>{} : tl::unexpected(column.error());
   });
   if (!may) return tl::unexpected(may.error());
   const auto work = [&](PgConnection& connection) -> Result<Attached> {
-    for (const Content* content : by_hash)
-      if (auto kept = keep_blob(connection, *content, {}); !kept)
-        return tl::unexpected(kept.error());
-    auto open = lock_table(connection, table_id);
-    if (!open) return tl::unexpected(open.error());
-    auto record = record_of(connection, *open, key, version);
-    if (!record) return tl::unexpected(record.error());
-    const Table seen = seen_by(open->table, who.role);
-    auto column = column_for(seen, column_id, files);
-    if (!column) return tl::unexpected(column.error());
+    for (const Content* content : by_hash) STRATA_TRY(keep_blob(connection, *content, {}));
+    auto open = STRATA_TRY(lock_table(connection, table_id));
+    auto record = STRATA_TRY(record_of(connection, open, key, version));
+    const Table seen = seen_by(open.table, who.role);
+    auto column = STRATA_TRY(column_for(seen, column_id, files));
     Attached attached;
-    nlohmann::json cell = cell_of(*record, **column), ids = nlohmann::json::array();
+    nlohmann::json cell = cell_of(record, *column), ids = nlohmann::json::array();
     for (std::size_t i = 0; i < files.size(); ++i) {
-      auto made = insert_attachment(connection, table_id, files[i], contents[i].hash, who.user);
-      if (!made) return tl::unexpected(made.error());
-      cell.push_back(made->id);
-      ids.push_back(made->id);
-      attached.attachments.push_back(std::move(*made));
+      auto made =
+          STRATA_TRY(insert_attachment(connection, table_id, files[i], contents[i].hash, who.user));
+      cell.push_back(made.id);
+      ids.push_back(made.id);
+      attached.attachments.push_back(std::move(made));
     }
-    auto value = check_value(**column, cell, "column");
-    if (!value) return tl::unexpected(value.error());
+    auto value = STRATA_TRY(check_value(*column, cell, "column"));
     TableEdit edit{who.user,
                    "attach",
                    {{"records", 1}, {"keys", nlohmann::json::array({key})}, {"attachments", ids}},
                    {},
                    {}};
-    edit.records[key][std::to_string((*column)->id)] = std::move(*value);
-    auto change = without_problems(apply_edit(connection, *open, std::move(edit)));
-    if (!change) return tl::unexpected(change.error());
-    attached.change = std::move(*change);
+    edit.records[key][std::to_string(column->id)] = std::move(value);
+    auto change = STRATA_TRY(without_problems(apply_edit(connection, open, std::move(edit))));
+    attached.change = std::move(change);
     return attached;
   };
   return impl_->change(answer, work, kBulkLimits);
@@ -193,51 +180,47 @@ Result<Store::Attached> Store::attach(std::int64_t table_id, std::int64_t key,
 
 Result<TableChange> Store::detach(std::int64_t attachment_id, const std::string& user,
                                   const FirstAnswer<TableChange>& answer) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(user, "user"));
   return impl_->change(answer, [&](PgConnection& connection) -> Result<TableChange> {
-    auto owner = connection.query("SELECT table_id FROM attachments WHERE id = $1",
-                                  Params().integer(attachment_id));
-    if (!owner) return tl::unexpected(owner.error());
-    if (owner->rows() == 0) return not_found("attachment", std::to_string(attachment_id));
-    auto open = lock_table(connection, owner->integer(0, 0));
-    if (!open) return tl::unexpected(open.error());
+    auto owner = STRATA_TRY(connection.query("SELECT table_id FROM attachments WHERE id = $1",
+                                             Params().integer(attachment_id)));
+    if (owner.rows() == 0) return no_such("attachment", std::to_string(attachment_id));
+    auto open = STRATA_TRY(lock_table(connection, owner.integer(0, 0)));
     TableEdit edit{
         user, "detach", {{"attachments", nlohmann::json::array({attachment_id})}}, {}, {}};
     std::vector<std::int64_t> keys;
-    for (const Column& column : open->table.columns) {
+    for (const Column& column : open.table.columns) {
       if (!holds_attachments(column.kind)) continue;
-      auto holding = rows_holding(connection, open->table.id, column, attachment_id);
-      if (!holding) return tl::unexpected(holding.error());
-      auto rows = load_rows(connection, open->table.id, {column}, *holding);
-      if (!rows) return tl::unexpected(rows.error());
-      for (const Record& row : *rows) {
+      auto holding = STRATA_TRY(rows_holding(connection, open.table.id, column, attachment_id));
+      auto rows = STRATA_TRY(load_rows(connection, open.table.id, {column}, holding));
+      for (const Record& row : rows) {
         nlohmann::json cell = cell_of(row, column);
         cell.erase(std::remove(cell.begin(), cell.end(), nlohmann::json(attachment_id)),
                    cell.end());
         edit.records[row.key][std::to_string(column.id)] =
             cell.empty() ? nlohmann::json() : std::move(cell);
       }
-      keys.insert(keys.end(), holding->begin(), holding->end());
+      keys.insert(keys.end(), holding.begin(), holding.end());
     }
     if (edit.records.empty())
-      return fail(404, "Not found",
+      return fail(ErrorCode::not_found, "Not found",
                   "No record has the attachment " + std::to_string(attachment_id) + " any more.");
     edit.record["records"] = edit.records.size();
     if (keys.size() > kMostRowProblems) keys.resize(kMostRowProblems);
     edit.record["keys"] = keys;
-    return without_problems(apply_edit(connection, *open, std::move(edit)));
+    return without_problems(apply_edit(connection, open, std::move(edit)));
   });
 }
 
 Result<Attachment> Store::attachment(std::int64_t id, const Author& seen_by) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<Attachment> {
-    auto row = connection.query("SELECT " STRATA_ATTACHMENT_COLUMNS
-                                " FROM attachments a JOIN blobs b USING (sha256) WHERE a.id = $1",
-                                Params().integer(id));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) return not_found("attachment", std::to_string(id));
-    Attachment found = read_attachment_row(*row, 0);
-    if (!sees(seen_by, found)) return not_found("attachment", std::to_string(id));
+    auto row = STRATA_TRY(
+        connection.query("SELECT " STRATA_ATTACHMENT_COLUMNS
+                         " FROM attachments a JOIN blobs b USING (sha256) WHERE a.id = $1",
+                         Params().integer(id)));
+    if (row.rows() == 0) return no_such("attachment", std::to_string(id));
+    Attachment found = read_attachment_row(row, 0);
+    if (!sees(seen_by, found)) return no_such("attachment", std::to_string(id));
     return found;
   });
 }
@@ -254,26 +237,24 @@ Result<std::vector<Attachment>> Store::attachments(std::int64_t table_id, const 
 Result<Attachment> Store::show_attachment(std::int64_t id, Visibility visibility,
                                           const FirstAnswer<Attachment>& answer) {
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Attachment> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "WITH a AS (UPDATE attachments SET visibility = $2 WHERE id = $1 RETURNING *) SELECT " STRATA_ATTACHMENT_COLUMNS
         " FROM a JOIN blobs b USING (sha256)",
-        Params().integer(id).text(name(visibility)));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) return not_found("attachment", std::to_string(id));
-    return read_attachment_row(*row, 0);
+        Params().integer(id).text(name(visibility))));
+    if (row.rows() == 0) return no_such("attachment", std::to_string(id));
+    return read_attachment_row(row, 0);
   });
 }
 
 Result<void> Store::read_attachment(
     const Attachment& attachment, std::uint64_t begin, std::uint64_t end,
     const std::function<bool(std::span<const std::uint8_t>)>& sink) {
-  auto row = impl_->pool.read([&](PgConnection& connection) {
+  auto row = STRATA_TRY(impl_->pool.read([&](PgConnection& connection) {
     return connection.query("SELECT sha256 FROM attachments WHERE id = $1",
                             Params().integer(attachment.id));
-  });
-  if (!row) return tl::unexpected(row.error());
-  if (row->rows() == 0) return not_found("attachment", std::to_string(attachment.id));
-  const Bytes hash = row->bytes(0, 0);
+  }));
+  if (row.rows() == 0) return no_such("attachment", std::to_string(attachment.id));
+  const Bytes hash = row.bytes(0, 0);
   return stream_blob(impl_->pool, {hash.begin(), hash.end()}, begin,
                      std::min(end, attachment.bytes), sink);
 }
@@ -282,12 +263,11 @@ Result<std::optional<std::vector<std::uint8_t>>> Store::thumbnail(const Attachme
                                                                   int side) {
   using Found = std::optional<std::vector<std::uint8_t>>;
   return impl_->pool.read([&](PgConnection& connection) -> Result<Found> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "SELECT picture FROM thumbnails WHERE sha256 = decode($1, 'hex') AND side = $2",
-        Params().text(attachment.sha256).integer(side));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) return Found();
-    const Bytes picture = row->bytes(0, 0);
+        Params().text(attachment.sha256).integer(side)));
+    if (row.rows() == 0) return Found();
+    const Bytes picture = row.bytes(0, 0);
     return Found(std::vector(picture.begin(), picture.end()));
   });
 }

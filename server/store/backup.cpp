@@ -27,8 +27,8 @@ constexpr const char* kManifest = "manifest.json";
 constexpr std::uintmax_t kLargestManifest = 64u << 20;
 constexpr auto kGlance = std::chrono::milliseconds(100);
 
-Problem damaged(const fs::path& folder, const std::string& why) {
-  return {422, "Backup damaged", folder.string() + ": " + why, {}};
+Error damaged(const fs::path& folder, const std::string& why) {
+  return {ErrorCode::invalid, "Backup damaged", folder.string() + ": " + why, {}};
 }
 
 // A folder that is being written, gone again unless it is kept.
@@ -46,7 +46,7 @@ class Unfinished {
     std::error_code error;
     fs::rename(folder_, name, error);
     if (error)
-      return fail(500, "Not written",
+      return fail(ErrorCode::internal, "Not written",
                   "Cannot name the folder " + name.string() + ": " + error.message() + ".");
     folder_.clear();
     return {};
@@ -61,7 +61,8 @@ Result<fs::path> make_scratch() {
   std::error_code error;
   std::string folder = (fs::temp_directory_path(error) / "strata-backup-XXXXXX").string();
   if (!mkdtemp(folder.data()))
-    return fail(500, "Folder cannot be made", folder + ": " + std::strerror(errno) + ".");
+    return fail(ErrorCode::internal, "Folder cannot be made",
+                folder + ": " + std::strerror(errno) + ".");
   return fs::path(folder);
 }
 
@@ -86,7 +87,7 @@ Result<std::string> hide_password(const std::string& dsn, const fs::path& file) 
   if (!options) {
     const std::string why = error ? error : "not understood";
     PQfreemem(error);
-    return fail(400, "Database not understood", why, "--database");
+    return fail(ErrorCode::malformed, "Database not understood", why, "--database");
   }
   std::string shown, password;
   for (const PQconninfoOption* option = options.get(); option->keyword; ++option) {
@@ -102,20 +103,20 @@ Result<std::string> hide_password(const std::string& dsn, const fs::path& file) 
   fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write, ignored);
   out << "*:*:*:*:" << passfile_field(password) << "\n";
   out.close();
-  if (!out) return fail(507, "Disk full", "Cannot write " + file.string() + ".");
+  if (!out)
+    return fail(ErrorCode::storage_full, "Disk full", "Cannot write " + file.string() + ".");
   return shown + "passfile=" + dsn_value(file.string());
 }
 
 // Runs until it ends; `watch` is called now and then. What it says goes to `log`.
 Result<void> run_program(const std::vector<std::string>& command, const fs::path& log,
                          const Progress& progress, const std::function<void()>& watch) {
-  const auto child = spawn(command, DatabaseUser{}, log, SIGKILL);
-  if (!child) return tl::unexpected(child.error());
+  const auto child = STRATA_TRY(spawn(command, DatabaseUser{}, log, SIGKILL));
   int status = 0;
   for (;;) {
-    const pid_t ended = waitpid(*child, &status, WNOHANG);
-    if (ended == *child || (ended < 0 && errno != EINTR)) break;
-    if (progress.cancelled()) kill(*child, SIGKILL);
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended == child || (ended < 0 && errno != EINTR)) break;
+    if (progress.cancelled()) kill(child, SIGKILL);
     watch();
     std::this_thread::sleep_for(kGlance);
   }
@@ -125,25 +126,24 @@ Result<void> run_program(const std::vector<std::string>& command, const fs::path
   const std::string said = tail(log);
   const bool full = said.find("No space left") != std::string::npos ||
                     said.find("File too large") != std::string::npos;
-  if (full) return fail(507, "Disk full", name + ": " + said);
-  return fail(500, "Not done", name + " failed: " + said);
+  if (full) return fail(ErrorCode::storage_full, "Disk full", name + ": " + said);
+  return fail(ErrorCode::internal, "Not done", name + " failed: " + said);
 }
 
 // The programs must not be older than the server whose data they read.
 Result<fs::path> programs_for(PgConnection& connection) {
-  auto version = connection.query("SELECT current_setting('server_version_num')::int8 / 10000");
-  if (!version) return tl::unexpected(version.error());
-  if (auto same = find_programs(static_cast<int>(version->integer(0, 0)))) return same;
+  auto version =
+      STRATA_TRY(connection.query("SELECT current_setting('server_version_num')::int8 / 10000"));
+  if (auto same = find_programs(static_cast<int>(version.integer(0, 0)))) return same;
   return find_programs(0);
 }
 
 // --- what a database holds
 
 Result<PgConnection> connect(const std::string& dsn) {
-  auto connection = PgConnection::connect(dsn, kMigrationLimits);
-  if (!connection) return connection;
+  auto connection = STRATA_TRY(PgConnection::connect(dsn, kMigrationLimits));
   // Rows are compared as texts: everything that changes how one is written is set.
-  if (auto set = connection->script(
+  if (auto set = connection.script(
           "SET datestyle = 'ISO'; SET intervalstyle = 'postgres'; SET timezone = 'UTC'; "
           "SET extra_float_digits = 1; SET bytea_output = 'hex'; SET search_path = ''");
       !set)
@@ -157,42 +157,38 @@ struct Relation {
 };
 
 Result<std::vector<Relation>> relations(PgConnection& connection, const char* kind) {
-  auto found = connection.query_once(
+  auto found = STRATA_TRY(connection.query_once(
       "SELECT format('%I.%I', n.nspname, c.relname), pg_catalog.pg_table_size(c.oid) FROM pg_catalog.pg_class c "
       "JOIN pg_catalog.pg_namespace n ON n.oid = c.relnamespace WHERE c.relkind = '" +
       std::string(kind) +
-      "' AND n.nspname !~ '^pg_' AND n.nspname <> 'information_schema' ORDER BY 1");
-  if (!found) return tl::unexpected(found.error());
+      "' AND n.nspname !~ '^pg_' AND n.nspname <> 'information_schema' ORDER BY 1"));
   std::vector<Relation> list;
-  for (int row = 0; row < found->rows(); ++row)
-    list.push_back({found->text(row, 0), found->integer(row, 1)});
+  for (int row = 0; row < found.rows(); ++row)
+    list.push_back({found.text(row, 0), found.integer(row, 1)});
   return list;
 }
 
 Result<void> read_contents(PgConnection& connection, BackupFacts& facts, Progress& progress) {
-  const auto tables = relations(connection, "r");
-  if (!tables) return tl::unexpected(tables.error());
+  const auto tables = STRATA_TRY(relations(connection, "r"));
   std::int64_t all = 1, done = 0;
-  for (const Relation& table : *tables) all += table.bytes;
-  for (const Relation& table : *tables) {
+  for (const Relation& table : tables) all += table.bytes;
+  for (const Relation& table : tables) {
     if (progress.cancelled()) return cancelled_problem();
     progress.report(double(done) / double(all), "Reading it over");
     // Sixty bits of a hash of each row, added up: the order of rows does not matter, and two that
     // are alike do not cancel out.
-    auto sum = connection.query_once(
+    auto sum = STRATA_TRY(connection.query_once(
         "SELECT count(*), coalesce(sum(('x' || left(md5(t::text), 15))::bit(60)::int8), 0)::text FROM ONLY " +
-        table.name + " t");
-    if (!sum) return tl::unexpected(sum.error());
-    facts.tables[table.name] = {sum->integer(0, 0), sum->text(0, 1)};
+        table.name + " t"));
+    facts.tables[table.name] = {sum.integer(0, 0), sum.text(0, 1)};
     done += table.bytes;
   }
-  const auto sequences = relations(connection, "S");
-  if (!sequences) return tl::unexpected(sequences.error());
-  for (const Relation& sequence : *sequences) {
-    auto last = connection.query_once(
-        "SELECT CASE WHEN is_called THEN last_value ELSE last_value - 1 END FROM " + sequence.name);
-    if (!last) return tl::unexpected(last.error());
-    facts.sequences[sequence.name] = last->integer(0, 0);
+  const auto sequences = STRATA_TRY(relations(connection, "S"));
+  for (const Relation& sequence : sequences) {
+    auto last = STRATA_TRY(connection.query_once(
+        "SELECT CASE WHEN is_called THEN last_value ELSE last_value - 1 END FROM " +
+        sequence.name));
+    facts.sequences[sequence.name] = last.integer(0, 0);
   }
   return {};
 }
@@ -201,7 +197,7 @@ Result<void> read_contents(PgConnection& connection, BackupFacts& facts, Progres
 
 Result<void> read_dump(const fs::path& file, BackupFacts& facts, Progress& progress) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) return fail(404, "No backup", "Cannot read " + file.string() + ".");
+  if (!in) return fail(ErrorCode::not_found, "No backup", "Cannot read " + file.string() + ".");
   std::error_code error;
   const double size = std::max<double>(1, double(fs::file_size(file, error)));
   Sha256Stream digest;
@@ -214,7 +210,8 @@ Result<void> read_dump(const fs::path& file, BackupFacts& facts, Progress& progr
     facts.bytes += count;
     progress.report(double(facts.bytes) / size, "Reading the dump");
   }
-  if (in.bad()) return fail(500, "Not readable", "Reading " + file.string() + " failed.");
+  if (in.bad())
+    return fail(ErrorCode::internal, "Not readable", "Reading " + file.string() + " failed.");
   facts.sha256 = to_hex(digest.finish());
   return {};
 }
@@ -238,14 +235,14 @@ Result<BackupFacts> read_manifest(const fs::path& folder) {
   const auto size = fs::file_size(file, error);
   if (error)
     return fail(
-        404, "No backup",
+        ErrorCode::not_found, "No backup",
         "There is no " + file.string() + ": name a folder that `strata backup` has written.");
   if (size > kLargestManifest) return tl::unexpected(damaged(folder, "the manifest is too large."));
   std::ifstream in(file);
   const json manifest = json::parse(in, nullptr, false);
   try {
     if (manifest.at("format").get<int>() != kFormat)
-      return fail(422, "Another format",
+      return fail(ErrorCode::invalid, "Another format",
                   folder.string() + " was written by a newer version of this program.");
     BackupFacts facts;
     facts.made = manifest.at("made").get<std::string>();
@@ -267,23 +264,21 @@ Result<void> write_file(const fs::path& file, const std::string& text) {
   std::ofstream out(file);
   out << text;
   out.close();
-  if (!out) return fail(507, "Disk full", "Cannot write " + file.string() + ".");
+  if (!out)
+    return fail(ErrorCode::storage_full, "Disk full", "Cannot write " + file.string() + ".");
   return {};
 }
 
 Result<void> dump(PgConnection& connection, const std::string& dsn, const std::string& snapshot,
                   const fs::path& folder, std::uint64_t database_bytes, Progress& progress) {
-  const auto programs = programs_for(connection);
-  if (!programs) return tl::unexpected(programs.error());
-  const auto made = make_scratch();
-  if (!made) return tl::unexpected(made.error());
-  const Unfinished scratch(*made);
-  const auto client = hide_password(dsn, scratch.folder() / "password");
-  if (!client) return tl::unexpected(client.error());
+  const auto programs = STRATA_TRY(programs_for(connection));
+  const auto made = STRATA_TRY(make_scratch());
+  const Unfinished scratch(made);
+  const auto client = STRATA_TRY(hide_password(dsn, scratch.folder() / "password"));
   const fs::path file = folder / kDump;
   return run_program(
-      {*programs / "pg_dump", "--format=custom", "--compress=1", "--no-owner", "--no-privileges",
-       "--snapshot=" + snapshot, "--file=" + file.string(), "--dbname=" + *client},
+      {programs / "pg_dump", "--format=custom", "--compress=1", "--no-owner", "--no-privileges",
+       "--snapshot=" + snapshot, "--file=" + file.string(), "--dbname=" + client},
       scratch.folder() / "log", progress, [&] {
         std::error_code not_yet;
         const auto size = fs::file_size(file, not_yet);
@@ -304,10 +299,9 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
                                  Progress& progress) {
   std::error_code error;
   if (fs::exists(folder, error))
-    return fail(409, "Already there",
+    return fail(ErrorCode::conflict, "Already there",
                 folder.string() + " exists: a backup makes a folder of its own.", "folder");
-  auto connection = connect(dsn);
-  if (!connection) return tl::unexpected(connection.error());
+  auto connection = STRATA_TRY(connect(dsn));
 
   // Others may read a backup only if they are let: it holds everything, hashes of passwords among
   // it.
@@ -316,52 +310,45 @@ Result<BackupFacts> write_backup(const std::string& dsn, const fs::path& folder,
   fs::remove_all(part, error);  // of one that was killed
   fs::create_directories(fs::absolute(part, error).parent_path(), error);
   if (mkdir(part.c_str(), 0700) != 0)
-    return fail(500, "Folder cannot be made", part.string() + ": " + std::strerror(errno) + ".",
-                "folder");
+    return fail(ErrorCode::internal, "Folder cannot be made",
+                part.string() + ": " + std::strerror(errno) + ".", "folder");
   Unfinished unfinished(part);
 
-  auto moment = Transaction::begin_reading(*connection);
-  if (!moment) return tl::unexpected(moment.error());
-  auto state = connection->query(
+  const auto moment = STRATA_TRY(Transaction::begin_reading(connection));
+  auto state = STRATA_TRY(connection.query(
       "SELECT pg_export_snapshot(), to_char(now() AT TIME ZONE 'UTC', 'YYYY-MM-DD\"T\"HH24:MI:SS\"Z\"'), "
       "(SELECT max(version::int8) FROM public.schema_migrations), current_setting('server_version'), "
-      "pg_database_size(current_database())");
-  if (!state) return tl::unexpected(state.error());
+      "pg_database_size(current_database())"));
   BackupFacts facts;
-  facts.made = state->text(0, 1);
-  facts.schema_version = state->integer(0, 2);
-  facts.server_version = state->text(0, 3);
+  facts.made = state.text(0, 1);
+  facts.schema_version = state.integer(0, 2);
+  facts.server_version = state.text(0, 3);
 
   // Before the dump: sequences go on, whatever moment is looked at, and the dump's must not stand
   // behind these.
   progress.begin_stage(0, 0.4);
-  if (auto read = read_contents(*connection, facts, progress); !read)
-    return tl::unexpected(read.error());
+  STRATA_TRY(read_contents(connection, facts, progress));
   progress.begin_stage(0.4, 0.9);
-  if (auto dumped = dump(*connection, dsn, state->text(0, 0), part,
-                         static_cast<std::uint64_t>(state->integer(0, 4)), progress);
+  if (auto dumped = dump(connection, dsn, state.text(0, 0), part,
+                         static_cast<std::uint64_t>(state.integer(0, 4)), progress);
       !dumped)
     return tl::unexpected(dumped.error());
   progress.begin_stage(0.9, 1);
-  if (auto read = read_dump(part / kDump, facts, progress); !read)
-    return tl::unexpected(read.error());
-  if (auto written = write_file(part / kManifest, to_json(facts).dump(2) + "\n"); !written)
-    return tl::unexpected(written.error());
-  if (auto kept = unfinished.keep_as(folder); !kept) return tl::unexpected(kept.error());
+  STRATA_TRY(read_dump(part / kDump, facts, progress));
+  STRATA_TRY(write_file(part / kManifest, to_json(facts).dump(2) + "\n"));
+  STRATA_TRY(unfinished.keep_as(folder));
   return facts;
 }
 
 Result<BackupFacts> check_backup(const fs::path& folder, Progress& progress) {
-  auto facts = read_manifest(folder);
-  if (!facts) return facts;
+  auto facts = STRATA_TRY(read_manifest(folder));
   BackupFacts found;
-  if (auto read = read_dump(folder / kDump, found, progress); !read)
-    return tl::unexpected(read.error());
-  if (found.bytes != facts->bytes)
+  STRATA_TRY(read_dump(folder / kDump, found, progress));
+  if (found.bytes != facts.bytes)
     return tl::unexpected(damaged(folder, std::string(kDump) + " has " +
                                               std::to_string(found.bytes) + " bytes; " +
-                                              std::to_string(facts->bytes) + " were written."));
-  if (found.sha256 != facts->sha256)
+                                              std::to_string(facts.bytes) + " were written."));
+  if (found.sha256 != facts.sha256)
     return tl::unexpected(
         damaged(folder, std::string(kDump) + " is not what was written: its checksum differs."));
   return facts;
@@ -369,35 +356,28 @@ Result<BackupFacts> check_backup(const fs::path& folder, Progress& progress) {
 
 Result<void> restore_backup(const fs::path& folder, const BackupFacts& facts,
                             const std::string& dsn, Progress& progress) {
-  auto connection = connect(dsn);
-  if (!connection) return tl::unexpected(connection.error());
-  const auto there = relations(*connection, "r");
-  if (!there) return tl::unexpected(there.error());
-  if (!there->empty())
-    return fail(409, "Database not empty",
+  auto connection = STRATA_TRY(connect(dsn));
+  const auto there = STRATA_TRY(relations(connection, "r"));
+  if (!there.empty())
+    return fail(ErrorCode::conflict, "Database not empty",
                 "A backup is restored into an empty database only; this one has the table " +
-                    there->front().name + ".",
+                    there.front().name + ".",
                 "--database");
-  const auto programs = programs_for(*connection);
-  if (!programs) return tl::unexpected(programs.error());
+  const auto programs = STRATA_TRY(programs_for(connection));
 
-  const auto made = make_scratch();
-  if (!made) return tl::unexpected(made.error());
-  const Unfinished scratch(*made);
-  const auto client = hide_password(dsn, scratch.folder() / "password");
-  if (!client) return tl::unexpected(client.error());
+  const auto made = STRATA_TRY(make_scratch());
+  const Unfinished scratch(made);
+  const auto client = STRATA_TRY(hide_password(dsn, scratch.folder() / "password"));
   progress.begin_stage(0, 0.7);
-  auto restored = run_program(
-      {*programs / "pg_restore", "--exit-on-error", "--single-transaction", "--no-owner",
-       "--no-privileges", "--dbname=" + *client, (folder / kDump).string()},
-      scratch.folder() / "log", progress, [&] { progress.report(0.5, "Restoring"); });
-  if (!restored) return restored;
+  STRATA_TRY(
+      run_program({programs / "pg_restore", "--exit-on-error", "--single-transaction", "--no-owner",
+                   "--no-privileges", "--dbname=" + client, (folder / kDump).string()},
+                  scratch.folder() / "log", progress, [&] { progress.report(0.5, "Restoring"); }));
 
   progress.begin_stage(0.7, 1);
   BackupFacts now;
-  auto same_moment = Transaction::begin_reading(*connection);
-  if (!same_moment) return tl::unexpected(same_moment.error());
-  if (auto read = read_contents(*connection, now, progress); !read) return read;
+  const auto moment = STRATA_TRY(Transaction::begin_reading(connection));
+  STRATA_TRY(read_contents(connection, now, progress));
   for (const auto& [name, table] : facts.tables)
     if (const auto found = now.tables.find(name);
         found == now.tables.end() || found->second != table)

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/progress.h"
 
 // A whole site in a folder: `database.dump` in pg_dump's custom format, and `manifest.json`, which
@@ -32,16 +32,16 @@ struct BackupFacts {
 
 // Of the database as it is at one moment, also while a server writes into it. The folder must not
 // be there yet; it appears when all is written and read over once, so that one which is there is
-// whole. 409: it is there; 507: the disk is full.
+// whole. conflict: it is there; storage_full: the disk is full.
 Result<BackupFacts> write_backup(const std::string& dsn, const std::filesystem::path& folder,
                                  Progress& progress);
 
-// That the folder holds a backup whose dump is, byte for byte, what was written. 404: it holds
-// none; 422: it is damaged.
+// That the folder holds a backup whose dump is, byte for byte, what was written. not_found: it
+// holds none; invalid: it is damaged.
 Result<BackupFacts> check_backup(const std::filesystem::path& folder, Progress& progress);
 
-// Into an empty database, all or nothing, and compares every table with what was backed up. 409:
-// the database is not empty; 422: what came out is not what went in.
+// Into an empty database, all or nothing, and compares every table with what was backed up.
+// conflict: the database is not empty; invalid: what came out is not what went in.
 Result<void> restore_backup(const std::filesystem::path& folder, const BackupFacts& facts,
                             const std::string& dsn, Progress& progress);
 

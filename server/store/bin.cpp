@@ -58,8 +58,8 @@ const char* name_of(Kind kind) {
   return kind == Kind::layer ? "layer" : kind == Kind::model ? "model" : "record";
 }
 
-tl::unexpected<Problem> not_in_bin(const BinEntry& entry) {
-  return fail(404, "Not in the Bin",
+tl::unexpected<Error> not_in_bin(const BinEntry& entry) {
+  return fail(ErrorCode::not_found, "Not in the Bin",
               "The " + std::string(name_of(entry.kind)) + " " + entry.name +
                   " is not in the Bin any more: it was restored or erased.");
 }
@@ -67,17 +67,16 @@ tl::unexpected<Problem> not_in_bin(const BinEntry& entry) {
 // Done where one row was changed; `id` is of something that may not be there.
 Result<void> changed_one(const Result<PgResult>& done, Kind kind, std::int64_t id) {
   if (!done) return tl::unexpected(done.error());
-  return done->affected() > 0 ? Result<void>{} : not_found(name_of(kind), std::to_string(id));
+  return done->affected() > 0 ? Result<void>{} : no_such(name_of(kind), std::to_string(id));
 }
 
 }  // namespace
 
 Result<void> erase_layer(PgConnection& connection, std::int64_t id) {
   // What was written about it is seen by no more people than before.
-  auto kept = connection.query(
+  STRATA_TRY(connection.query(
       "UPDATE comments c SET visibility = l.visibility FROM all_layers l WHERE l.id = $1 AND c.layer_id = l.id",
-      Params().integer(id));
-  if (!kept) return tl::unexpected(kept.error());
+      Params().integer(id)));
   auto done = connection.query("DELETE FROM all_layers WHERE id = $1", Params().integer(id));
   return done ? Result<void>{} : tl::unexpected(done.error());
 }
@@ -89,25 +88,23 @@ Result<void> erase_layer(PgConnection& connection, std::int64_t id) {
   "SELECT geometry FROM detail_levels WHERE model_id = $1"
 
 Result<void> erase_model(PgConnection& connection, std::int64_t id) {
-  auto used = connection.query(STRATA_BLOBS_OF_MODEL, Params().integer(id));
-  if (!used) return tl::unexpected(used.error());
+  auto used = STRATA_TRY(connection.query(STRATA_BLOBS_OF_MODEL, Params().integer(id)));
   std::vector<std::vector<std::uint8_t>> hashes;
-  for (int i = 0; i < used->rows(); ++i) {
-    const Bytes hash = used->bytes(i, 0);
+  for (int i = 0; i < used.rows(); ++i) {
+    const Bytes hash = used.bytes(i, 0);
     hashes.emplace_back(hash.begin(), hash.end());
   }
-  auto done = connection.query("DELETE FROM all_models WHERE id = $1", Params().integer(id));
-  if (!done) return tl::unexpected(done.error());
+  STRATA_TRY(connection.query("DELETE FROM all_models WHERE id = $1", Params().integer(id)));
   return drop_unused(connection, hashes);
 }
 
 Result<Bin::Page> Bin::of_project(std::int64_t project_id, const Sight& sight, int limit,
                                   int offset, const std::optional<Place>& after) {
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
-    auto total = connection.query("SELECT count(*) FROM " STRATA_BIN, seen_in(project_id, sight));
-    if (!total) return tl::unexpected(total.error());
+    auto total = STRATA_TRY(
+        connection.query("SELECT count(*) FROM " STRATA_BIN, seen_in(project_id, sight)));
     const Place place = after.value_or(Place{});
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         "SELECT * FROM " STRATA_BIN
         "CROSS JOIN (SELECT timestamptz 'epoch' + $7::bigint * interval '1 microsecond' AS time) place "
         "WHERE NOT $8 OR binned < place.time OR (binned = place.time AND (kind, table_id, id) > ($9, $10::bigint, $11::bigint)) "
@@ -119,11 +116,10 @@ Result<Bin::Page> Bin::of_project(std::int64_t project_id, const Sight& sight, i
             .boolean(after.has_value())
             .text(name_of(place.kind))
             .integer(place.table_id)
-            .integer(place.id));
-    if (!rows) return tl::unexpected(rows.error());
+            .integer(place.id)));
     Page page;
-    page.total = total->integer(0, 0);
-    for (int i = 0; i < rows->rows(); ++i) page.entries.push_back(read_entry(*rows, i));
+    page.total = total.integer(0, 0);
+    for (int i = 0; i < rows.rows(); ++i) page.entries.push_back(read_entry(rows, i));
     return page;
   });
 }
@@ -131,15 +127,14 @@ Result<Bin::Page> Bin::of_project(std::int64_t project_id, const Sight& sight, i
 Result<BinEntry> Bin::entry(std::int64_t project_id, Kind kind, std::int64_t id,
                             std::int64_t table_id, const Sight& sight) {
   return pool_.read([&](PgConnection& connection) -> Result<BinEntry> {
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         "SELECT * FROM " STRATA_BIN "WHERE kind = $5 AND id = $6 AND table_id = $7",
-        seen_in(project_id, sight).text(name_of(kind)).integer(id).integer(table_id));
-    if (!rows) return tl::unexpected(rows.error());
-    if (rows->rows() == 0)
-      return fail(404, "Not in the Bin",
+        seen_in(project_id, sight).text(name_of(kind)).integer(id).integer(table_id)));
+    if (rows.rows() == 0)
+      return fail(ErrorCode::not_found, "Not in the Bin",
                   "The project's Bin has no such " + std::string(name_of(kind)) + ": " +
                       std::to_string(id) + ".");
-    return read_entry(*rows, 0);
+    return read_entry(rows, 0);
   });
 }
 
@@ -177,19 +172,17 @@ Result<BinRestored> Bin::restore(const BinEntry& entry, const FirstAnswer<BinRes
     // Of a layer the model first, which must not go into the Bin meanwhile, and gets no layer of
     // that short name.
     if (is_layer) {
-      auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR UPDATE",
-                                    Params().integer(entry.model_id));
-      if (!model) return tl::unexpected(model.error());
-      if (model->rows() == 0) return not_in_bin(entry);
+      auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR UPDATE",
+                                               Params().integer(entry.model_id)));
+      if (model.rows() == 0) return not_in_bin(entry);
     }
-    auto known = connection.query(
+    auto known = STRATA_TRY(connection.query(
         is_layer
             ? "SELECT slug::text FROM all_layers WHERE id = $1 AND binned IS NOT NULL AND NOT erasing FOR UPDATE"
             : "SELECT slug::text FROM all_models WHERE id = $1 AND binned IS NOT NULL AND NOT erasing FOR UPDATE",
-        Params().integer(entry.id));
-    if (!known) return tl::unexpected(known.error());
-    if (known->rows() == 0) return not_in_bin(entry);
-    const std::string former = known->text(0, 0);
+        Params().integer(entry.id)));
+    if (known.rows() == 0) return not_in_bin(entry);
+    const std::string former = known.text(0, 0);
     auto taken =
         is_layer
             ? connection.query("SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2",
@@ -200,17 +193,15 @@ Result<BinRestored> Bin::restore(const BinEntry& entry, const FirstAnswer<BinRes
     BinRestored restored{entry, free_slug(former, *taken), {}};
     if (restored.slug != former) {
       restored.former_slug = former;
-      auto renamed = connection.query(is_layer ? "UPDATE all_layers SET slug = $2 WHERE id = $1"
-                                               : "UPDATE all_models SET slug = $2 WHERE id = $1",
-                                      Params().integer(entry.id).text(restored.slug));
-      if (!renamed) return tl::unexpected(renamed.error());
+      STRATA_TRY(connection.query(is_layer ? "UPDATE all_layers SET slug = $2 WHERE id = $1"
+                                           : "UPDATE all_models SET slug = $2 WHERE id = $1",
+                                  Params().integer(entry.id).text(restored.slug)));
     }
-    auto back = connection.query(
+    STRATA_TRY(connection.query(
         is_layer
             ? "UPDATE all_layers SET binned = NULL, binned_by = NULL, binned_bytes = NULL, version = version + 1 WHERE id = $1"
             : "UPDATE all_models SET binned = NULL, binned_by = NULL, binned_bytes = NULL, version = version + 1 WHERE id = $1",
-        Params().integer(entry.id));
-    if (!back) return tl::unexpected(back.error());
+        Params().integer(entry.id)));
     return restored;
   });
 }
@@ -218,41 +209,38 @@ Result<BinRestored> Bin::restore(const BinEntry& entry, const FirstAnswer<BinRes
 Result<TableChange> Bin::restore_record(const BinEntry& entry, const std::string& user,
                                         const FirstAnswer<TableChange>& answer) {
   return change(pool_, answer, [&](PgConnection& connection) -> Result<TableChange> {
-    auto open = lock_table(connection, entry.table_id);
-    if (!open) return tl::unexpected(open.error());
-    auto last = connection.query(
+    auto open = STRATA_TRY(lock_table(connection, entry.table_id));
+    auto last = STRATA_TRY(connection.query(
         "SELECT before FROM table_changes WHERE table_id = $1 AND subject = 'record' AND subject_id = $2 "
         "AND after ? 'exists' ORDER BY sequence DESC LIMIT 1",
-        Params().integer(entry.table_id).integer(entry.id));
-    if (!last) return tl::unexpected(last.error());
-    if (last->rows() == 0 || !last->json(0, 0).value("exists", false)) return not_in_bin(entry);
-    const nlohmann::json before = last->json(0, 0);
+        Params().integer(entry.table_id).integer(entry.id)));
+    if (last.rows() == 0 || !last.json(0, 0).value("exists", false)) return not_in_bin(entry);
+    const nlohmann::json before = last.json(0, 0);
     TableEdit edit{user, "restore", {{"records", 1}, {"keys", nlohmann::json::array({entry.id})}},
                    {},   {},        true};
     Cells& cells = edit.records[entry.id];
     cells["exists"] = true;
-    for (const Column& column : open->all)
+    for (const Column& column : open.all)
       if (const auto cell = before.find(std::to_string(column.id)); cell != before.end())
         cells[cell.key()] = *cell;
-    auto done = apply_edit(connection, *open, std::move(edit));
+    auto done = apply_edit(connection, open, std::move(edit));
     if (done && !done->problems.empty())
-      return fail(409, "Cannot be restored", done->problems.front().problem.detail);
+      return fail(ErrorCode::conflict, "Cannot be restored", done->problems.front().problem.detail);
     return done;
   });
 }
 
 Result<void> Bin::erase(const BinEntry& entry, const FirstAnswer<>& answer) {
   if (entry.kind == Kind::record)
-    return fail(409, "Records are kept",
+    return fail(ErrorCode::conflict, "Records are kept",
                 "What the record said stays in the history of its table, where nothing is erased.");
   return change(pool_, answer, [&](PgConnection& connection) -> Result<void> {
-    auto done = connection.query(
+    auto done = STRATA_TRY(connection.query(
         entry.kind == Kind::layer
             ? "UPDATE all_layers SET erasing = true WHERE id = $1 AND binned IS NOT NULL AND NOT erasing"
             : "UPDATE all_models SET erasing = true WHERE id = $1 AND binned IS NOT NULL AND NOT erasing",
-        Params().integer(entry.id));
-    if (!done) return tl::unexpected(done.error());
-    return done->affected() > 0 ? Result<void>{} : not_in_bin(entry);
+        Params().integer(entry.id)));
+    return done.affected() > 0 ? Result<void>{} : not_in_bin(entry);
   });
 }
 
@@ -262,35 +250,31 @@ Result<void> Bin::expire(std::chrono::days after) {
         const char* sql :
         {"UPDATE all_layers SET erasing = true WHERE NOT erasing AND binned <= clock_timestamp() - $1 * interval '1 day'",
          "UPDATE all_models SET erasing = true WHERE NOT erasing AND binned <= clock_timestamp() - $1 * interval '1 day'"})
-      if (auto done = connection.query(sql, Params().integer(after.count())); !done)
-        return tl::unexpected(done.error());
+      STRATA_TRY(connection.query(sql, Params().integer(after.count())));
     return {};
   });
 }
 
 Result<bool> Bin::erase_some() {
   return pool_.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<bool> {
-    auto layer = connection.query(
-        "SELECT l.id FROM all_layers l JOIN all_models m ON m.id = l.model_id WHERE l.erasing OR m.erasing ORDER BY l.id LIMIT 1");
-    if (!layer) return tl::unexpected(layer.error());
-    if (layer->rows() > 0) {
-      const std::int64_t id = layer->integer(0, 0);
+    auto layer = STRATA_TRY(connection.query(
+        "SELECT l.id FROM all_layers l JOIN all_models m ON m.id = l.model_id WHERE l.erasing OR m.erasing ORDER BY l.id LIMIT 1"));
+    if (layer.rows() > 0) {
+      const std::int64_t id = layer.integer(0, 0);
       for (
           const char* sql :
           {"DELETE FROM tile_revisions WHERE ctid = any(ARRAY(SELECT ctid FROM tile_revisions WHERE layer_id = $1 LIMIT $2))",
            "DELETE FROM edits WHERE ctid = any(ARRAY(SELECT ctid FROM edits WHERE layer_id = $1 LIMIT $2))"}) {
-        auto some = connection.query(sql, Params().integer(id).integer(kRowsAtOnce));
-        if (!some) return tl::unexpected(some.error());
-        if (some->affected() > 0) return true;
+        auto some = STRATA_TRY(connection.query(sql, Params().integer(id).integer(kRowsAtOnce)));
+        if (some.affected() > 0) return true;
       }
-      if (auto gone = erase_layer(connection, id); !gone) return tl::unexpected(gone.error());
+      STRATA_TRY(erase_layer(connection, id));
       return true;
     }
-    auto model = connection.query("SELECT id FROM all_models WHERE erasing ORDER BY id LIMIT 1");
-    if (!model) return tl::unexpected(model.error());
-    if (model->rows() == 0) return false;
-    if (auto gone = erase_model(connection, model->integer(0, 0)); !gone)
-      return tl::unexpected(gone.error());
+    auto model =
+        STRATA_TRY(connection.query("SELECT id FROM all_models WHERE erasing ORDER BY id LIMIT 1"));
+    if (model.rows() == 0) return false;
+    STRATA_TRY(erase_model(connection, model.integer(0, 0)));
     return true;
   });
 }

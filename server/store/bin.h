@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/role.h"
 #include "store/first_answer.h"
 #include "store/table_changes.h"
@@ -72,8 +72,8 @@ class Bin {
   // A layer or model out of it, with the short name that it had where that is free. A room that is
   // open does not know it yet.
   Result<BinRestored> restore(const BinEntry& entry, const FirstAnswer<BinRestored>& answer);
-  // A record, with its key, as an entry of the table's journal. Refused (409): its values do not
-  // fit the table as it is now, or it is there.
+  // A record, with its key, as an entry of the table's journal. Refused (conflict): its values do
+  // not fit the table as it is now, or it is there.
   Result<TableChange> restore_record(const BinEntry& entry, const std::string& user,
                                      const FirstAnswer<TableChange>& answer);
   // A layer or model, gone for ever; its content is left to `erase_some`.

@@ -29,7 +29,7 @@ Result<void> copy_chunks(PgConnection& connection, const Sha256& hash, const Nex
     append_field(row, hash);
     append_int4(row, number);
     append_field(row, *chunk);
-    if (auto sent = connection.copy_send(row); !sent) return sent;
+    STRATA_TRY(connection.copy_send(row));
   }
 }
 
@@ -41,10 +41,9 @@ Result<bool> claim(PgConnection& connection, const Sha256& hash, std::int64_t by
                          Params().bytes(hash).integer(bytes));
     if (!made) return tl::unexpected(made.error());
     if (made->affected() > 0) return true;
-    auto held = connection.query("SELECT 1 FROM blobs WHERE sha256 = $1 FOR KEY SHARE",
-                                 Params().bytes(hash));
-    if (!held) return tl::unexpected(held.error());
-    if (held->rows() > 0) return false;
+    auto held = STRATA_TRY(connection.query("SELECT 1 FROM blobs WHERE sha256 = $1 FOR KEY SHARE",
+                                            Params().bytes(hash)));
+    if (held.rows() > 0) return false;
   }
 }
 
@@ -61,7 +60,8 @@ Result<Bytes> next_chunk(std::ifstream& in, std::vector<std::uint8_t>& buffer,
                          const std::filesystem::path& file) {
   in.read(reinterpret_cast<char*>(buffer.data()), static_cast<std::streamsize>(buffer.size()));
   if (in.bad())
-    return fail(500, "File not readable", "Cannot read " + file.string() + ".", "source_files");
+    return fail(ErrorCode::internal, "File not readable", "Cannot read " + file.string() + ".",
+                "source_files");
   return Bytes(buffer).first(static_cast<std::size_t>(in.gcount()));
 }
 
@@ -72,18 +72,18 @@ Result<Content> content_of(const std::filesystem::path& file,
                            const std::function<bool()>& cancelled) {
   std::ifstream in(file, std::ios::binary);
   if (!in)
-    return fail(500, "File not readable", "Cannot open " + file.string() + ".", "source_files");
+    return fail(ErrorCode::internal, "File not readable", "Cannot open " + file.string() + ".",
+                "source_files");
   std::vector<std::uint8_t> buffer(kChunkBytes);
   Sha256Stream stream;
   Content content;
   content.file = file;
   for (;;) {
     if (cancelled && cancelled()) return cancelled_problem();
-    auto chunk = next_chunk(in, buffer, file);
-    if (!chunk) return tl::unexpected(chunk.error());
-    if (chunk->empty()) break;
-    stream.add(*chunk);
-    content.bytes += static_cast<std::int64_t>(chunk->size());
+    auto chunk = STRATA_TRY(next_chunk(in, buffer, file));
+    if (chunk.empty()) break;
+    stream.add(chunk);
+    content.bytes += static_cast<std::int64_t>(chunk.size());
   }
   content.hash = stream.finish();
   return content;
@@ -91,9 +91,8 @@ Result<Content> content_of(const std::filesystem::path& file,
 
 Result<void> keep_blob(PgConnection& connection, const Content& content,
                        const std::function<bool()>& cancelled) {
-  auto fresh = claim(connection, content.hash, content.bytes);
-  if (!fresh) return tl::unexpected(fresh.error());
-  if (!*fresh) return {};
+  auto fresh = STRATA_TRY(claim(connection, content.hash, content.bytes));
+  if (!fresh) return {};
   if (content.file.empty()) {
     Bytes rest = content.memory;
     return copy_chunks(connection, content.hash, [&]() -> Result<Bytes> {
@@ -113,7 +112,7 @@ Result<void> keep_blob(PgConnection& connection, const Content& content,
     return chunk;
   });
   if (written && stream.finish() != content.hash)
-    return fail(409, "File changed",
+    return fail(ErrorCode::conflict, "File changed",
                 content.file.string() + " changed while it was read. Import it again.",
                 "source_files");
   return written;
@@ -123,15 +122,14 @@ Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha2
                                             std::int64_t bytes) {
   std::vector<std::uint8_t> content;
   content.reserve(static_cast<std::size_t>(bytes));
-  auto read = connection.each_row("SELECT data FROM blob_chunks WHERE sha256 = $1 ORDER BY chunk",
-                                  Params().bytes(sha256), [&](const PgResult& row) -> Result<void> {
-                                    const Bytes chunk = row.bytes(0, 0);
-                                    content.insert(content.end(), chunk.begin(), chunk.end());
-                                    return {};
-                                  });
-  if (!read) return tl::unexpected(read.error());
+  STRATA_TRY(connection.each_row("SELECT data FROM blob_chunks WHERE sha256 = $1 ORDER BY chunk",
+                                 Params().bytes(sha256), [&](const PgResult& row) -> Result<void> {
+                                   const Bytes chunk = row.bytes(0, 0);
+                                   content.insert(content.end(), chunk.begin(), chunk.end());
+                                   return {};
+                                 }));
   if (content.size() != static_cast<std::size_t>(bytes))
-    return fail(500, "Damaged content",
+    return fail(ErrorCode::internal, "Damaged content",
                 "Stored content is incomplete: restore the database from a backup.");
   return content;
 }
@@ -139,16 +137,15 @@ Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha2
 Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, std::uint64_t begin,
                          std::uint64_t end, const std::function<bool(Bytes)>& sink) {
   for (std::uint64_t at = begin; at < end;) {
-    auto chunk = pool.read([&](PgConnection& connection) {
+    auto chunk = STRATA_TRY(pool.read([&](PgConnection& connection) {
       return connection.query(
           "SELECT data FROM blob_chunks WHERE sha256 = $1 AND chunk = $2",
           Params().bytes(sha256).integer(static_cast<std::int64_t>(at / kChunkBytes)));
-    });
-    if (!chunk) return tl::unexpected(chunk.error());
+    }));
     const std::size_t skipped = at % kChunkBytes;
-    if (chunk->rows() == 0 || chunk->bytes(0, 0).size() <= skipped)
-      return fail(404, "Not found", "The file was deleted while it was read.");
-    Bytes piece = chunk->bytes(0, 0).subspan(skipped);
+    if (chunk.rows() == 0 || chunk.bytes(0, 0).size() <= skipped)
+      return fail(ErrorCode::not_found, "Not found", "The file was deleted while it was read.");
+    Bytes piece = chunk.bytes(0, 0).subspan(skipped);
     piece = piece.first(static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), end - at)));
     if (!sink(piece)) break;
     at += piece.size();
@@ -179,15 +176,13 @@ Result<void> drop_unused(PgConnection& connection,
 }
 
 Result<std::int64_t> drop_all_unused(PgConnection& connection) {
-  auto locked = connection.query("SELECT sha256 FROM blobs b WHERE " STRATA_IS_UNUSED
-                                 " FOR UPDATE SKIP LOCKED");
-  if (!locked) return tl::unexpected(locked.error());
+  auto locked = STRATA_TRY(connection.query("SELECT sha256 FROM blobs b WHERE " STRATA_IS_UNUSED
+                                            " FOR UPDATE SKIP LOCKED"));
   PgArray list(oid::kBytea);
-  for (int i = 0; i < locked->rows(); ++i) list.add(locked->bytes(i, 0));
-  auto done = connection.query("DELETE FROM blobs b WHERE sha256 = any($1) AND " STRATA_IS_UNUSED,
-                               Params().array(list));
-  if (!done) return tl::unexpected(done.error());
-  return done->affected();
+  for (int i = 0; i < locked.rows(); ++i) list.add(locked.bytes(i, 0));
+  auto done = STRATA_TRY(connection.query(
+      "DELETE FROM blobs b WHERE sha256 = any($1) AND " STRATA_IS_UNUSED, Params().array(list)));
+  return done.affected();
 }
 
 }  // namespace strata::store

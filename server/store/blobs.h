@@ -30,8 +30,8 @@ Result<std::vector<std::uint8_t>> read_blob(PgConnection& connection, Bytes sha2
                                             std::int64_t bytes);
 
 // Hands out the bytes from `begin` to before `end` in pieces of kChunkBytes at most, until `sink`
-// returns false. One query a piece: a slow reader holds no connection while it reads. 404 where the
-// blob goes meanwhile.
+// returns false. One query a piece: a slow reader holds no connection while it reads. `not_found`
+// where the blob goes meanwhile.
 Result<void> stream_blob(Pool& pool, const std::vector<std::uint8_t>& sha256, std::uint64_t begin,
                          std::uint64_t end, const std::function<bool(Bytes)>& sink);
 

@@ -139,18 +139,17 @@ struct Cluster::Impl {
   }
 
   Result<void> prepare(const fs::path& data_dir) {
-    auto who = database_user();
-    if (!who) return tl::unexpected(who.error());
-    user = std::move(*who);
+    auto who = STRATA_TRY(database_user());
+    user = std::move(who);
     std::error_code error;
     folder = postgres_folder(data_dir);
     data = folder / "pgdata";
     log_file = folder / "postgres.log";
-    if (auto given = give_folder(folder, user); !given) return given;
+    STRATA_TRY(give_folder(folder, user));
 
     lock_fd = open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
     if (lock_fd < 0 || flock(lock_fd, LOCK_EX | LOCK_NB) != 0)
-      return fail(409, "Data folder in use",
+      return fail(ErrorCode::conflict, "Data folder in use",
                   "Another Strata server uses " + data_dir.string() +
                       ". Stop it, or choose another --data.");
 
@@ -158,23 +157,21 @@ struct Cluster::Impl {
     if (sockets != folder) {
       if (mkdir(sockets.c_str(), 0700) == 0 && user.switch_user &&
           chown(sockets.c_str(), user.uid, user.gid) != 0)
-        return fail(500, "Socket folder not usable",
+        return fail(ErrorCode::internal, "Socket folder not usable",
                     "Cannot give " + sockets.string() + " to " + user.name + ".");
       struct stat info {};
       if (lstat(sockets.c_str(), &info) != 0 || !S_ISDIR(info.st_mode) || info.st_uid != user.uid ||
           (info.st_mode & 077) != 0)
-        return fail(500, "Socket folder not usable",
+        return fail(ErrorCode::internal, "Socket folder not usable",
                     sockets.string() + " belongs to someone else. Remove it.");
     }
     if (fs::exists(log_file, error) && fs::file_size(log_file, error) > kLargestLog)
       fs::rename(log_file, folder / "postgres.log.1", error);
 
     const int major = version_of(data);
-    auto found = find_programs(major);
-    if (!found) return tl::unexpected(found.error());
-    programs = *found;
-    if (major == 0)
-      if (auto made = initialise(); !made) return made;
+    auto found = STRATA_TRY(find_programs(major));
+    programs = found;
+    if (major == 0) STRATA_TRY(initialise());
     return write_access_rules();
   }
 
@@ -189,7 +186,7 @@ struct Cluster::Impl {
     file.close();
     if (!file || chmod(access_rules().c_str(), 0600) != 0 ||
         (user.switch_user && chown(access_rules().c_str(), user.uid, user.gid) != 0))
-      return fail(500, "Database folder not writable",
+      return fail(ErrorCode::internal, "Database folder not writable",
                   "Cannot write " + access_rules().string() + ".");
     return {};
   }
@@ -201,19 +198,18 @@ struct Cluster::Impl {
     const fs::path fresh = folder / "pgdata.new";
     std::error_code error;
     fs::remove_all(fresh, error);
-    auto child = spawn({programs / "initdb", "-D", fresh, "-U", "strata", "-A", "trust", "-E",
-                        "UTF8", "--locale=C.UTF-8", "--no-instructions"},
-                       user, log_file, SIGKILL);
-    if (!child) return tl::unexpected(child.error());
+    auto child = STRATA_TRY(spawn({programs / "initdb", "-D", fresh, "-U", "strata", "-A", "trust",
+                                   "-E", "UTF8", "--locale=C.UTF-8", "--no-instructions"},
+                                  user, log_file, SIGKILL));
     int status = 0;
-    while (waitpid(*child, &status, 0) < 0 && errno == EINTR) {
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
     if (status != 0)
-      return fail(500, "Database not made",
+      return fail(ErrorCode::internal, "Database not made",
                   "initdb failed in " + folder.string() + ": " + tail(log_file));
     fs::rename(fresh, data, error);
     if (error)
-      return fail(500, "Database not made",
+      return fail(ErrorCode::internal, "Database not made",
                   "Cannot rename " + fresh.string() + ": " + error.message() + ".");
     return {};
   }
@@ -278,7 +274,7 @@ struct Cluster::Impl {
         std::this_thread::sleep_for(10ms);
       }
       if (Clock::now() >= deadline)
-        return fail(503, "Database not started",
+        return fail(ErrorCode::unavailable, "Database not started",
                     "PostgreSQL in " + folder.string() + " does not start: " + tail(log_file));
       std::this_thread::sleep_for(100ms);
     }
@@ -300,11 +296,9 @@ struct Cluster::Impl {
   }
 
   Result<void> make_database() {
-    auto connection = PgConnection::connect(dsn("postgres"));
-    if (!connection) return tl::unexpected(connection.error());
-    auto known = connection->query("SELECT 1 FROM pg_database WHERE datname = 'strata'");
-    if (!known) return tl::unexpected(known.error());
-    return known->rows() > 0 ? Result<void>{} : connection->script("CREATE DATABASE strata");
+    auto connection = STRATA_TRY(PgConnection::connect(dsn("postgres")));
+    auto known = STRATA_TRY(connection.query("SELECT 1 FROM pg_database WHERE datname = 'strata'"));
+    return known.rows() > 0 ? Result<void>{} : connection.script("CREATE DATABASE strata");
   }
 };
 
@@ -329,12 +323,11 @@ Result<std::unique_ptr<Cluster>> Cluster::start(const fs::path& data_dir,
   Impl& impl = *cluster->impl_;
   impl.sql = sql;
   impl.keeper = std::thread([&impl] { impl.keep(); });
-  auto started = impl.on_keeper([&]() -> Result<void> {
+  STRATA_TRY(impl.on_keeper([&]() -> Result<void> {
     if (auto prepared = impl.prepare(data_dir); !prepared) return prepared;
     if (auto running = impl.run(); !running) return running;
     return impl.make_database();
-  });
-  if (!started) return tl::unexpected(started.error());
+  }));
   return cluster;
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::store {
 
@@ -20,7 +20,7 @@ class Cluster {
     int version = 0;       // major, of the PostgreSQL that made the data; 0: there is none yet
     bool running = false;  // a server has it open; `dsn` leads there
     std::string dsn;
-    std::optional<Problem> trouble;  // why it cannot be started
+    std::optional<Error> trouble;  // why it cannot be started
   };
   static State inspect(const std::filesystem::path& data_dir);
 
@@ -33,7 +33,7 @@ class Cluster {
 
   // Everything lies in `data_dir`/postgres. `data_dir` must be reachable by the database user when
   // the server runs as root; the error says what to do. A second server on the same folder is
-  // refused (409).
+  // refused (conflict).
   static Result<std::unique_ptr<Cluster>> start(const std::filesystem::path& data_dir,
                                                 const std::optional<SqlListen>& sql = {});
   ~Cluster();  // fast shutdown, waits

@@ -31,7 +31,7 @@ Result<DatabaseUser> database_user() {
   const passwd* entry = getpwnam("postgres");
   if (!entry)
     return fail(
-        500, "No database user",
+        ErrorCode::internal, "No database user",
         "PostgreSQL refuses to run as root and there is no user `postgres`. Install postgresql, run Strata as "
         "another user, or give --database.");
   user.switch_user = true;
@@ -70,7 +70,7 @@ Result<fs::path> find_programs(int wanted_major) {
       wanted_major ? "PostgreSQL " + std::to_string(wanted_major) + ", which wrote the data,"
                    : "PostgreSQL";
   return fail(
-      500, "PostgreSQL missing",
+      ErrorCode::internal, "PostgreSQL missing",
       which +
           " is not installed (looked in /usr/lib/postgresql/*/bin). Install postgresql, or give --database.");
 }
@@ -96,18 +96,19 @@ Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
     made /= part;
     if (fs::exists(made, error)) continue;
     if (mkdir(made.c_str(), 0755) != 0 && errno != EEXIST)
-      return fail(500, "Data folder not usable",
+      return fail(ErrorCode::internal, "Data folder not usable",
                   "Cannot make " + made.string() + ": " + std::strerror(errno) + ".");
     chmod(made.c_str(), 0755);
   }
   struct stat info {};
   if (lstat(folder.c_str(), &info) != 0 || !S_ISDIR(info.st_mode))
-    return fail(500, "Data folder not usable", folder.string() + " is not a folder.");
+    return fail(ErrorCode::internal, "Data folder not usable",
+                folder.string() + " is not a folder.");
   if ((user.switch_user && info.st_uid != user.uid &&
        chown(folder.c_str(), user.uid, user.gid) != 0) ||
       chmod(folder.c_str(), 0700) != 0)
     return fail(
-        500, "Data folder not usable",
+        ErrorCode::internal, "Data folder not usable",
         "Cannot give " + folder.string() + " to " + user.name + ": " + std::strerror(errno) + ".");
 
   const pid_t child = fork();
@@ -117,7 +118,7 @@ Result<void> give_folder(const fs::path& folder, const DatabaseUser& user) {
   }
   if (child < 0 || status != 0)
     return fail(
-        500, "Data folder not reachable",
+        ErrorCode::internal, "Data folder not reachable",
         "The database runs as user `" + user.name + "`, who cannot enter " + folder.string() +
             ". Choose a data folder outside a private home, such as /var/lib/strata, or give the user the right "
             "to pass through the folders above it (chmod o+x).");
@@ -137,7 +138,7 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
 
   const int output = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0640);
   if (output < 0)
-    return fail(500, "Data folder not usable",
+    return fail(ErrorCode::internal, "Data folder not usable",
                 "Cannot write " + log.string() + ": " + std::strerror(errno));
   const pid_t parent = getpid();
   const pid_t child = fork();
@@ -160,7 +161,8 @@ Result<pid_t> spawn(const std::vector<std::string>& command, const DatabaseUser&
   }
   close(output);
   if (child < 0)
-    return fail(500, "Database not started", std::string("Cannot fork: ") + std::strerror(errno));
+    return fail(ErrorCode::internal, "Database not started",
+                std::string("Cannot fork: ") + std::strerror(errno));
   return child;
 }
 

@@ -7,7 +7,7 @@
 
 #include <sys/types.h>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::store {
 

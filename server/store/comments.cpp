@@ -63,14 +63,14 @@ PgArray array_of(const glm::dvec3& point) {
 }
 
 Result<void> check_words(const std::string& text) {
-  if (auto good = check_text(text, "text"); !good) return good;
+  STRATA_TRY(check_text(text, "text"));
   if (text.find_first_not_of(" \t\r\n\v\f") == std::string::npos)
-    return fail(422, "Nothing written", "`text` is blank.", "text");
+    return fail(ErrorCode::invalid, "Nothing written", "`text` is blank.", "text");
   const auto begins_character = [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
   };
   if (static_cast<std::size_t>(std::ranges::count_if(text, begins_character)) > kLongestText)
-    return fail(422, "Text too long",
+    return fail(ErrorCode::invalid, "Text too long",
                 "`text` has at most " + std::to_string(kLongestText) + " characters.", "text");
   return {};
 }
@@ -86,16 +86,15 @@ Result<Comment> load(PgConnection& connection, std::int64_t id, Lock lock) {
                     : lock == Lock::keep
                         ? "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR SHARE"
                         : "SELECT " STRATA_COMMENT_COLUMNS " " STRATA_COMMENT " FOR UPDATE";
-  auto rows = connection.query(sql, Params().integer(id));
-  if (!rows) return tl::unexpected(rows.error());
-  if (rows->rows() == 0) return not_found("comment", std::to_string(id));
-  return read_comment(*rows, 0);
+  auto rows = STRATA_TRY(connection.query(sql, Params().integer(id)));
+  if (rows.rows() == 0) return no_such("comment", std::to_string(id));
+  return read_comment(rows, 0);
 }
 
 Result<Comment> load_thread(PgConnection& connection, std::int64_t id, Lock lock) {
   auto first = load(connection, id, lock);
   if (first && first->thread)
-    return fail(422, "A reply",
+    return fail(ErrorCode::invalid, "A reply",
                 "Replies are to the first comment of a thread, which is " +
                     std::to_string(*first->thread) + " here.");
   return first;
@@ -147,7 +146,7 @@ Result<Comments::Page> Comments::replies(std::int64_t thread, Role seen_by, int 
   return pool_.read([&](PgConnection& connection) -> Result<Page> {
     auto first = load_thread(connection, thread, Lock::none);
     if (first && !sees(seen_by, first->visibility))
-      return not_found("comment", std::to_string(thread));
+      return no_such("comment", std::to_string(thread));
     if (!first) return tl::unexpected(first.error());
     auto total = connection.query("SELECT count(*) FROM comments WHERE thread_id = $1",
                                   Params().integer(thread));
@@ -162,30 +161,27 @@ Result<Comments::Page> Comments::replies(std::int64_t thread, Role seen_by, int 
 Result<Comment> Comments::comment(std::int64_t id, Role seen_by) {
   auto found =
       pool_.read([&](PgConnection& connection) { return load(connection, id, Lock::none); });
-  if (found && !sees(seen_by, found->visibility)) return not_found("comment", std::to_string(id));
+  if (found && !sees(seen_by, found->visibility)) return no_such("comment", std::to_string(id));
   return found;
 }
 
 Result<Comment> Comments::create(const Comment& comment, const FirstAnswer<Comment>& answer) {
-  if (auto good = check_words(comment.text); !good) return tl::unexpected(good.error());
-  if (auto good = check_text(comment.user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_words(comment.text));
+  STRATA_TRY(check_text(comment.user, "user"));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Comment> {
     std::int64_t model_id = comment.model_id;
     if (comment.thread) {
-      auto first = load_thread(connection, *comment.thread, Lock::keep);
-      if (!first) return tl::unexpected(first.error());
-      model_id = first->model_id;
+      auto first = STRATA_TRY(load_thread(connection, *comment.thread, Lock::keep));
+      model_id = first.model_id;
     }
     // Locked, so that of two at once the later one counts the earlier.
-    auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
-                                  Params().integer(model_id));
-    if (!model) return tl::unexpected(model.error());
-    if (model->rows() == 0) return not_found("model", std::to_string(model_id));
-    auto count = connection.query("SELECT count(*) FROM comments WHERE model_id = $1",
-                                  Params().integer(model_id));
-    if (!count) return tl::unexpected(count.error());
-    if (count->integer(0, 0) >= kMostComments)
-      return fail(409, "Too many comments",
+    auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
+                                             Params().integer(model_id)));
+    if (model.rows() == 0) return no_such("model", std::to_string(model_id));
+    auto count = STRATA_TRY(connection.query("SELECT count(*) FROM comments WHERE model_id = $1",
+                                             Params().integer(model_id)));
+    if (count.integer(0, 0) >= kMostComments)
+      return fail(ErrorCode::conflict, "Too many comments",
                   "A model holds at most " + std::to_string(kMostComments) +
                       " comments. Delete some first.");
     PgArray position(oid::kFloat8), normal(oid::kFloat8);
@@ -193,7 +189,7 @@ Result<Comment> Comments::create(const Comment& comment, const FirstAnswer<Comme
       position = array_of(comment.place->position);
       normal = array_of(comment.place->normal);
     }
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "INSERT INTO comments AS c (model_id, thread_id, position, normal, layer_id, table_id, record_key, text, user_name) "
         "VALUES ($1, $2, nullif($3, '{}'), nullif($4, '{}'), $5, $6, $7, $8, $9) RETURNING " STRATA_COMMENT_COLUMNS,
         Params()
@@ -205,20 +201,17 @@ Result<Comment> Comments::create(const Comment& comment, const FirstAnswer<Comme
             .optional_integer(comment.table_id)
             .optional_integer(comment.record)
             .text(comment.text)
-            .text(comment.user));
-    if (!row) return tl::unexpected(row.error());
-    return read_comment(*row, 0);
+            .text(comment.user)));
+    return read_comment(row, 0);
   });
 }
 
 Result<Comment> Comments::update(const Comment& comment, const FirstAnswer<Comment>& answer) {
-  if (!comment.deleted)
-    if (auto good = check_words(comment.text); !good) return tl::unexpected(good.error());
+  if (!comment.deleted) STRATA_TRY(check_words(comment.text));
   const auto resolver = comment.resolved ? std::optional(comment.resolved->user) : std::nullopt;
-  if (resolver)
-    if (auto good = check_text(*resolver, "user"); !good) return tl::unexpected(good.error());
+  if (resolver) STRATA_TRY(check_text(*resolver, "user"));
   return change(pool_, answer, [&](PgConnection& connection) -> Result<Comment> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "UPDATE comments AS c SET text = $3, edited = CASE WHEN text = $3 THEN edited ELSE clock_timestamp() END, "
         "resolved = CASE WHEN $4::text IS NOT NULL THEN coalesce(resolved, clock_timestamp()) END, "
         "resolved_by = CASE WHEN $4 IS NOT NULL THEN coalesce(resolved_by, $4) END, "
@@ -228,11 +221,9 @@ Result<Comment> Comments::update(const Comment& comment, const FirstAnswer<Comme
             .integer(comment.id)
             .integer(comment.version)
             .text(comment.text)
-            .optional_text(resolver));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() > 0) return read_comment(*row, 0);
-    if (auto known = load(connection, comment.id, Lock::none); !known)
-      return tl::unexpected(known.error());
+            .optional_text(resolver)));
+    if (row.rows() > 0) return read_comment(row, 0);
+    STRATA_TRY(load(connection, comment.id, Lock::none));
     return stale("comment");
   });
 }
@@ -243,11 +234,10 @@ Result<Comments::Removal> Comments::remove(const Comment& comment,
     const std::int64_t thread = comment.thread.value_or(comment.id);
     auto first = load(connection, thread, Lock::change);
     if (!first) return tl::unexpected(first.error());
-    auto now = comment.thread ? load(connection, comment.id, Lock::change) : first;
-    if (!now) return tl::unexpected(now.error());
-    if (now->version != comment.version) return stale("comment");
-    if (now->deleted)
-      return fail(409, "Deleted already",
+    auto now = STRATA_TRY(comment.thread ? load(connection, comment.id, Lock::change) : first);
+    if (now.version != comment.version) return stale("comment");
+    if (now.deleted)
+      return fail(ErrorCode::conflict, "Deleted already",
                   "The comment was deleted; it stands there for its replies until they are.");
     auto others =
         connection.query("SELECT count(*) FROM comments WHERE thread_id = $1 AND id <> $2",
@@ -256,12 +246,11 @@ Result<Comments::Removal> Comments::remove(const Comment& comment,
     const bool has_others = others->integer(0, 0) > 0;
     Removal removal{first->model_id, {}, {}};
     if (!comment.thread && has_others) {
-      auto emptied = connection.query(
+      auto emptied = STRATA_TRY(connection.query(
           "UPDATE comments AS c SET text = '', edited = NULL, deleted = clock_timestamp(), "
           "changed = clock_timestamp(), version = version + 1 WHERE id = $1 RETURNING " STRATA_COMMENT_COLUMNS,
-          Params().integer(comment.id));
-      if (!emptied) return tl::unexpected(emptied.error());
-      removal.left = read_comment(*emptied, 0);
+          Params().integer(comment.id)));
+      removal.left = read_comment(emptied, 0);
       return removal;
     }
     removal.gone.push_back(comment.id);
@@ -280,8 +269,7 @@ Result<void> rename_in_comments(PgConnection& connection, const std::string& nam
                           "UPDATE comments SET resolved_by = $2 WHERE resolved_by = $1",
                           "UPDATE comments SET text = " STRATA_CALL_RENAMED(
                               "text", "10000") " WHERE " STRATA_CALLS_THEM("text")})
-    if (auto done = connection.query(sql, Params().text(name).text(former)); !done)
-      return tl::unexpected(done.error());
+    STRATA_TRY(connection.query(sql, Params().text(name).text(former)));
   return {};
 }
 

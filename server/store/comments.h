@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/visibility.h"
 #include "store/first_answer.h"
 
@@ -65,13 +65,14 @@ class Comments {
   };
   // Those that the role sees; one that it does not see is not found.
   Result<Page> of_model(std::int64_t model_id, Role seen_by, const Query& query);
-  // 422: the comment is a reply itself.
+  // invalid: the comment is a reply itself.
   Result<Page> replies(std::int64_t thread, Role seen_by, int limit, int offset,
                        std::int64_t after = 0);
   Result<Comment> comment(std::int64_t id, Role seen_by);
 
   // Id, times and version are given here; of a reply the model is that of its thread. Refused: text
-  // that is blank or too long (422), a reply to a reply (422), one comment too many (409).
+  // that is blank or too long (invalid), a reply to a reply (invalid), one comment too many
+  // (conflict).
   Result<Comment> create(const Comment& comment, const FirstAnswer<Comment>& answer = {});
   // Text, and who has resolved it, where version equals; what it was resolved for already stays
   // with who did it first.
@@ -83,7 +84,7 @@ class Comments {
     std::vector<std::int64_t> gone;
     std::optional<Comment> left;
   };
-  // Where version equals. 409: it is deleted and stands there for its replies.
+  // Where version equals. conflict: it is deleted and stands there for its replies.
   Result<Removal> remove(const Comment& comment, const FirstAnswer<Removal>& answer = {});
 
  private:

@@ -20,10 +20,9 @@ JournalRow read_row(const PgResult& rows, int i) {
 
 Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char* sql,
                                             const Params& params) {
-  auto rows = connection.query(sql, params);
-  if (!rows) return tl::unexpected(rows.error());
+  auto rows = STRATA_TRY(connection.query(sql, params));
   std::vector<std::int64_t> found;
-  for (int i = 0; i < rows->rows(); ++i) found.push_back(rows->integer(i, 0));
+  for (int i = 0; i < rows.rows(); ++i) found.push_back(rows.integer(i, 0));
   return found;
 }
 
@@ -32,23 +31,21 @@ Result<std::vector<std::int64_t>> sequences(PgConnection& connection, const char
 Result<Store::HistoryPage> Store::history(std::int64_t layer_id, int limit, int offset,
                                           std::optional<std::int64_t> before) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<HistoryPage> {
-    auto total = connection.query(
+    auto total = STRATA_TRY(connection.query(
         "SELECT (SELECT count(*) FROM edits WHERE layer_id = l.id) FROM layers l WHERE id = $1",
-        Params().integer(layer_id));
-    if (!total) return tl::unexpected(total.error());
-    if (total->rows() == 0) return not_found("layer", std::to_string(layer_id));
-    auto rows = connection.query(
+        Params().integer(layer_id)));
+    if (total.rows() == 0) return no_such("layer", std::to_string(layer_id));
+    auto rows = STRATA_TRY(connection.query(
         "SELECT " STRATA_EDIT_COLUMNS
         "WHERE e.layer_id = $1 AND e.sequence < $4 ORDER BY e.sequence DESC LIMIT $2 OFFSET $3",
         Params()
             .integer(layer_id)
             .integer(std::max(limit, 0))
             .integer(std::max(offset, 0))
-            .integer(before.value_or(INT64_MAX)));
-    if (!rows) return tl::unexpected(rows.error());
+            .integer(before.value_or(INT64_MAX))));
     HistoryPage page;
-    page.total = total->integer(0, 0);
-    for (int i = 0; i < rows->rows(); ++i) page.rows.push_back(read_row(*rows, i));
+    page.total = total.integer(0, 0);
+    for (int i = 0; i < rows.rows(); ++i) page.rows.push_back(read_row(rows, i));
     return page;
   });
 }
@@ -60,7 +57,7 @@ Result<Store::JournalState> Store::journal_state(std::int64_t model_id, std::spa
     auto model =
         connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
     if (!model) return tl::unexpected(model.error());
-    if (model->rows() == 0) return not_found("model", std::to_string(model_id));
+    if (model->rows() == 0) return no_such("model", std::to_string(model_id));
     JournalState state{model->integer(0, 0), {}};
     if (ids.empty()) return state;
     auto rows =
@@ -74,7 +71,7 @@ Result<Store::JournalState> Store::journal_state(std::int64_t model_id, std::spa
 
 Result<std::vector<std::int64_t>> Store::undoable(std::int64_t layer_id, const std::string& user,
                                                   bool pending_only) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(user, "user"));
   return impl_->pool.read([&](PgConnection& connection) {
     return sequences(
         connection,
@@ -91,7 +88,7 @@ Result<std::vector<std::int64_t>> Store::undoable(std::int64_t layer_id, const s
 // rejected only a curator brings back.
 Result<std::vector<std::int64_t>> Store::redoable(std::int64_t layer_id, const std::string& user,
                                                   bool pending_only) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(user, "user"));
   return impl_->pool.read([&](PgConnection& connection) {
     return sequences(
         connection,
@@ -109,12 +106,11 @@ Result<std::vector<std::int64_t>> Store::redoable(std::int64_t layer_id, const s
 Result<std::int64_t> Store::sequence_at(std::int64_t model_id, const std::string& utc) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
     // Times are told in milliseconds: one that was read counts its own edit.
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM edits "
         "WHERE model_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
-        Params().integer(model_id).text(utc));
-    if (!row) return tl::unexpected(row.error());
-    return row->integer(0, 0);
+        Params().integer(model_id).text(utc)));
+    return row.integer(0, 0);
   });
 }
 
@@ -123,7 +119,7 @@ Result<std::int64_t> Store::last_sequence(std::int64_t model_id) {
     auto row =
         connection.query("SELECT sequence FROM models WHERE id = $1", Params().integer(model_id));
     if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) return not_found("model", std::to_string(model_id));
+    if (row->rows() == 0) return no_such("model", std::to_string(model_id));
     return row->integer(0, 0);
   });
 }
@@ -142,8 +138,7 @@ Result<void> rename_in_journal(PgConnection& connection, const std::string& name
             "1000") ")) "
                     "WHERE op IN ('accept', 'reject', 'reopen') AND " STRATA_CALLS_THEM(
                         "record ->> 'reason'")})
-    if (auto done = connection.query(sql, Params().text(name).text(former)); !done)
-      return tl::unexpected(done.error());
+    STRATA_TRY(connection.query(sql, Params().text(name).text(former)));
   return {};
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/role.h"
 
 namespace strata::store {
@@ -72,8 +72,8 @@ class Groups {
 
   Result<std::vector<Group>> all();  // by name
   Result<GroupDetail> group(std::int64_t id);
-  // Refused: a name that is empty or too long (422) or taken (409), nobody of a name (422), too
-  // many groups or people (409).
+  // Refused: a name that is empty or too long (invalid) or taken (conflict), nobody of a name
+  // (invalid), too many groups or people (conflict).
   Result<GroupDetail> create(const std::string& name, const std::vector<std::string>& people);
   // The same. Who is in it already, or not in it, stays so.
   Result<Regrouped<GroupDetail>> change(std::int64_t id, const GroupChange& change,
@@ -86,7 +86,7 @@ class Groups {
   // Gives the role (viewer, annotator or curator) in place of the one it had there.
   Result<Regrouped<ProjectGroup>> put(std::int64_t project_id, std::int64_t id, Role role,
                                       const std::string& by);
-  // 404: it has none there.
+  // not_found: it has none there.
   Result<std::vector<std::string>> take(std::int64_t project_id, std::int64_t id,
                                         const std::string& by);
 

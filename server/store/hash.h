@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::store {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::store {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::store {
 
@@ -18,7 +18,7 @@ struct StoredJob {
   std::string kind;  // "import", "layers", "look", "figure"
   // "done", "failed", "cancelled"; "lost": the server ended before the job did
   std::string state;
-  nlohmann::json problem;  // status, title, detail, field; null: none
+  nlohmann::json problem;  // code, title, detail, field; null: none
   // "model", "layers", "look", "report" as far as it made them; null: nothing
   nlohmann::json result;
 };
@@ -36,7 +36,7 @@ class Jobs {
   // ended more than kDaysKept days ago are forgotten. The newest `most` of the others, the newest
   // first.
   Result<std::vector<StoredJob>> take_over(int most);
-  Result<void> begin(const StoredJob& job);  // 404: the project is not there
+  Result<void> begin(const StoredJob& job);  // not_found: the project is not there
   // The end that it came to. What a transaction has written as done stays.
   Result<void> end(const StoredJob& job);
 

@@ -74,7 +74,7 @@ struct JournalRow {
     std::string user, reason;
     std::chrono::system_clock::time_point time;
   };
-  std::optional<Reviewer> reviewer;
+  std::optional<Reviewer> reviewer{};
 };
 
 // What waits for review on a layer.

@@ -14,14 +14,14 @@ constexpr int kTilesASide = 16384 / kTileSize;
 
 // A message without these can never be written; everything else is the database's to refuse.
 Result<void> check(const JournalEntry& entry) {
-  if (auto good = check_texts({{&entry.user, "user"}, {&entry.op, "op"}}); !good) return good;
-  if (auto good = check_json(entry.record, "record"); !good) return good;
-  if (auto good = check_json(entry.answer, "answer"); !good) return good;
+  STRATA_TRY(check_texts({{&entry.user, "user"}, {&entry.op, "op"}}));
+  STRATA_TRY(check_json(entry.record, "record"));
+  STRATA_TRY(check_json(entry.answer, "answer"));
   for (const auto& revision : entry.revisions)
     if (revision.tile.x >= kTilesASide || revision.tile.y >= kTilesASide ||
         revision.difference.empty())
-      return fail(400, "Bad edit", "A tile revision is outside every layer, or empty.",
-                  "revisions");
+      return fail(ErrorCode::malformed, "Bad edit",
+                  "A tile revision is outside every layer, or empty.", "revisions");
   return {};
 }
 
@@ -36,7 +36,7 @@ Result<std::map<std::int64_t, Span>> model_spans(std::span<const JournalEntry* c
     const auto [span, fresh] =
         spans.try_emplace(entry->model_id, Span{entry->sequence, entry->sequence});
     if (!fresh && entry->sequence != ++span->second.last)
-      return fail(409, "Journal out of order",
+      return fail(ErrorCode::conflict, "Journal out of order",
                   "Edit " + std::to_string(entry->sequence) + " does not follow the one before.");
   }
   return spans;
@@ -195,10 +195,10 @@ void keep_decisions(std::span<const JournalEntry* const> entries, Statements& ou
 
 tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
                                                  std::span<const JournalEntry* const> entries) {
-  const auto never = [](Problem problem) {
+  const auto never = [](Error problem) {
     return tl::unexpected(CommitFailure{std::move(problem), false});
   };
-  const auto failed = [&](const Problem& problem) {
+  const auto failed = [&](const Error& problem) {
     return tl::unexpected(CommitFailure{problem, is_transient(connection.sqlstate())});
   };
   for (const JournalEntry* entry : entries)
@@ -221,12 +221,12 @@ tl::expected<void, CommitFailure> commit_entries(PgConnection& connection,
   if (!results) return failed(results.error());
   if ((*results)[1].affected() != static_cast<std::int64_t>(spans->size()))
     return never(
-        {409, "Journal out of order",
+        {ErrorCode::conflict, "Journal out of order",
          "The model was deleted, or an edit before this one was not saved. Nothing was changed; read the layer again.",
          ""});
   if ((*results)[2].affected() != static_cast<std::int64_t>(layer_count))
-    return never(
-        {409, "Layer gone", "The layer was deleted meanwhile; the edit was not saved.", ""});
+    return never({ErrorCode::conflict, "Layer gone",
+                  "The layer was deleted meanwhile; the edit was not saved.", ""});
   if (auto committed = transaction.commit(); !committed) return failed(committed.error());
   return {};
 }
@@ -239,14 +239,13 @@ Result<std::vector<bool>> find_saved(PgConnection& connection,
     sequences.add(entry->sequence);
     ids.add(entry->id);
   }
-  auto rows = connection.query(
+  auto rows = STRATA_TRY(connection.query(
       "SELECT v.n FROM unnest($1::bigint[], $2::bigint[], $3::uuid[]) WITH ORDINALITY AS v (model_id, sequence, id, n) "
       "JOIN edits e ON e.model_id = v.model_id AND e.sequence = v.sequence AND e.id = v.id",
-      Params().array(models).array(sequences).array(ids));
-  if (!rows) return tl::unexpected(rows.error());
+      Params().array(models).array(sequences).array(ids)));
   std::vector<bool> saved(entries.size());
-  for (int i = 0; i < rows->rows(); ++i)
-    saved[static_cast<std::size_t>(rows->integer(i, 0)) - 1] = true;
+  for (int i = 0; i < rows.rows(); ++i)
+    saved[static_cast<std::size_t>(rows.integer(i, 0)) - 1] = true;
   return saved;
 }
 

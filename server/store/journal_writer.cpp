@@ -162,12 +162,10 @@ struct JournalWriter::Impl {
   }
 
   tl::expected<void, CommitFailure> attempt(std::deque<Waiting>& group, bool retry) {
-    auto to = connected();
-    if (!to) return tl::unexpected(to.error());
-    if (retry)
-      if (auto skipped = skip_saved(**to, group); !skipped) return skipped;
+    auto to = STRATA_TRY(connected());
+    if (retry) STRATA_TRY(skip_saved(*to, group));
     return group.empty() ? tl::expected<void, CommitFailure>{}
-                         : commit_entries(**to, pointers(group));
+                         : commit_entries(*to, pointers(group));
   }
 
   // One of the group can never be written: the others are, each in a transaction of its own, except
@@ -176,26 +174,25 @@ struct JournalWriter::Impl {
   tl::expected<void, CommitFailure> one_by_one(std::deque<Waiting>& group) {
     struct Broken {
       std::int64_t sequence;
-      Problem problem;
+      Error problem;
     };
     std::map<std::int64_t, Broken> broken;
     while (!group.empty()) {
       const JournalEntry* entry = &group.front().entry;
       if (const auto before = broken.find(entry->model_id);
           before != broken.end() && entry->sequence > before->second.sequence) {
-        Problem problem = before->second.problem;
+        Error problem = before->second.problem;
         problem.detail =
             "An edit before this one was not saved, so this one was not, either: " + problem.detail;
         answer_front(group, tl::unexpected(problem));
         continue;
       }
-      auto to = connected();
-      if (!to) return tl::unexpected(to.error());
-      const auto committed = commit_entries(**to, std::span(&entry, 1));
+      auto to = STRATA_TRY(connected());
+      const auto committed = commit_entries(*to, std::span(&entry, 1));
       if (!committed && committed.error().transient) return committed;
       bool saved = committed.has_value();
       if (!saved) {
-        const auto found = find_saved(**to, std::span(&entry, 1));
+        const auto found = find_saved(*to, std::span(&entry, 1));
         if (!found) return tl::unexpected(CommitFailure{found.error(), true});
         saved = (*found)[0];
       }
@@ -210,7 +207,7 @@ struct JournalWriter::Impl {
     return {};
   }
 
-  void give_up(std::deque<Waiting>& group, const Problem& problem) {
+  void give_up(std::deque<Waiting>& group, const Error& problem) {
     log::error("journal: commits kept failing, waiting edits are not saved: " + problem.detail);
     std::deque<Waiting> waiting;
     {

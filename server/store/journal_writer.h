@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "store/journal.h"
 #include "store/pg_limits.h"
 
@@ -17,7 +17,7 @@ class Store;
 // retried in order until `retry_for` has passed since its first try began (reconnecting each time;
 // an entry whose id is already in the journal with the same sequence counts as saved, since the
 // first try may have committed before the answer was lost). Then every waiting entry is answered
-// with the Problem, in order, and the writer starts anew with what comes later. A database that
+// with the Error, in order, and the writer starts anew with what comes later. A database that
 // hangs fails as one that is away does: no try lasts longer than `limits.answer` without a byte
 // moving.
 class JournalWriter {

@@ -37,10 +37,9 @@ Kiosk read_kiosk(const PgResult& rows, int i) {
 }
 
 Result<Kiosk> load(PgConnection& connection, std::int64_t id) {
-  auto rows = connection.query(STRATA_KIOSKS "WHERE k.id = $1", Params().integer(id));
-  if (!rows) return tl::unexpected(rows.error());
-  if (rows->rows() == 0) return not_found("kiosk", std::to_string(id));
-  return read_kiosk(*rows, 0);
+  auto rows = STRATA_TRY(connection.query(STRATA_KIOSKS "WHERE k.id = $1", Params().integer(id)));
+  if (rows.rows() == 0) return no_such("kiosk", std::to_string(id));
+  return read_kiosk(rows, 0);
 }
 
 }  // namespace
@@ -51,19 +50,17 @@ Result<Kiosks::Page> Kiosks::all(const std::optional<std::vector<std::int64_t>>&
     PgArray ids(oid::kInt8);
     if (projects)
       for (const std::int64_t project : *projects) ids.add(project);
-    auto total = connection.query(
+    auto total = STRATA_TRY(connection.query(
         "SELECT count(*) FROM kiosks k JOIN tours t ON t.id = k.tour_id JOIN models m ON m.id = t.model_id "
         "WHERE ($1 OR m.project_id = any($2)) AND " STRATA_LISTED_KIOSK,
-        Params().boolean(!projects).array(ids));
-    if (!total) return tl::unexpected(total.error());
-    auto rows = connection.query(
+        Params().boolean(!projects).array(ids)));
+    auto rows = STRATA_TRY(connection.query(
         STRATA_KIOSKS "WHERE ($1 OR p.id = any($2)) AND " STRATA_LISTED_KIOSK
                       " AND k.id > $5 ORDER BY k.id LIMIT $3 OFFSET $4",
-        Params().boolean(!projects).array(ids).integer(limit).integer(offset).integer(after));
-    if (!rows) return tl::unexpected(rows.error());
+        Params().boolean(!projects).array(ids).integer(limit).integer(offset).integer(after)));
     Page page;
-    page.total = total->integer(0, 0);
-    for (int i = 0; i < rows->rows(); ++i) page.kiosks.push_back(read_kiosk(*rows, i));
+    page.total = total.integer(0, 0);
+    for (int i = 0; i < rows.rows(); ++i) page.kiosks.push_back(read_kiosk(rows, i));
     return page;
   });
 }
@@ -86,24 +83,22 @@ Result<std::vector<std::int64_t>> Kiosks::of_tour(std::int64_t tour_id) {
 Result<NewKiosk> Kiosks::create(std::int64_t tour_id, const std::string& name,
                                 const std::string& user,
                                 std::optional<std::chrono::seconds> lifetime) {
-  if (auto good = check_name(name); !good) return tl::unexpected(good.error());
-  if (auto good = check_texts({{&user, "user"}}); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_name(name));
+  STRATA_TRY(check_texts({{&user, "user"}}));
   return pool_.write([&](PgConnection& connection) -> Result<NewKiosk> {
     // Locked, so that of two at once the later one counts the earlier.
-    auto tour = connection.query("SELECT 1 FROM tours WHERE id = $1 FOR NO KEY UPDATE",
-                                 Params().integer(tour_id));
-    if (!tour) return tl::unexpected(tour.error());
-    if (tour->rows() == 0) return not_found("tour", std::to_string(tour_id));
+    auto tour = STRATA_TRY(connection.query("SELECT 1 FROM tours WHERE id = $1 FOR NO KEY UPDATE",
+                                            Params().integer(tour_id)));
+    if (tour.rows() == 0) return no_such("tour", std::to_string(tour_id));
     auto cleared =
         connection.query("DELETE FROM kiosks k WHERE k.tour_id = $1 AND NOT " STRATA_LISTED_KIOSK,
                          Params().integer(tour_id));
     if (!cleared) return tl::unexpected(cleared.error());
-    auto count = connection.query(
+    auto count = STRATA_TRY(connection.query(
         "SELECT count(*) FROM kiosks k WHERE k.tour_id = $1 AND " STRATA_GOOD_KIOSK,
-        Params().integer(tour_id));
-    if (!count) return tl::unexpected(count.error());
-    if (count->integer(0, 0) >= kMostKiosks)
-      return fail(409, "Too many kiosks",
+        Params().integer(tour_id)));
+    if (count.integer(0, 0) >= kMostKiosks)
+      return fail(ErrorCode::conflict, "Too many kiosks",
                   "A tour has links for at most " + std::to_string(kMostKiosks) +
                       " kiosks. Revoke some first.");
     NewKiosk made;
@@ -111,13 +106,11 @@ Result<NewKiosk> Kiosks::create(std::int64_t tour_id, const std::string& name,
     std::optional<Time> expires;
     if (lifetime) expires = std::chrono::system_clock::now() + *lifetime;
     const Sha256 hash = sha256(made.secret);
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "INSERT INTO kiosks (tour_id, hash, name, user_name, expires) VALUES ($1, $2, $3, $4, $5) RETURNING id",
-        Params().integer(tour_id).bytes(hash).text(name).text(user).time(expires));
-    if (!row) return tl::unexpected(row.error());
-    auto kiosk = load(connection, row->integer(0, 0));
-    if (!kiosk) return tl::unexpected(kiosk.error());
-    made.kiosk = std::move(*kiosk);
+        Params().integer(tour_id).bytes(hash).text(name).text(user).time(expires)));
+    auto kiosk = STRATA_TRY(load(connection, row.integer(0, 0)));
+    made.kiosk = std::move(kiosk);
     return made;
   });
 }
@@ -125,10 +118,9 @@ Result<NewKiosk> Kiosks::create(std::int64_t tour_id, const std::string& name,
 Result<std::optional<Kiosk>> Kiosks::find(const std::string& secret) {
   return pool_.read([&](PgConnection& connection) -> Result<std::optional<Kiosk>> {
     const Sha256 hash = sha256(secret);
-    auto rows = connection.query(STRATA_KIOSKS "WHERE k.hash = $1 AND " STRATA_GOOD_KIOSK,
-                                 Params().bytes(hash));
-    if (!rows) return tl::unexpected(rows.error());
-    return rows->rows() == 0 ? std::optional<Kiosk>() : read_kiosk(*rows, 0);
+    auto rows = STRATA_TRY(connection.query(
+        STRATA_KIOSKS "WHERE k.hash = $1 AND " STRATA_GOOD_KIOSK, Params().bytes(hash)));
+    return rows.rows() == 0 ? std::optional<Kiosk>() : read_kiosk(rows, 0);
   });
 }
 
@@ -144,24 +136,22 @@ Result<void> Kiosks::seen(std::int64_t id, bool loaded) {
 
 Result<void> Kiosks::revoke(std::int64_t id) {
   return pool_.write([&](PgConnection& connection) -> Result<void> {
-    auto done = connection.query(
+    auto done = STRATA_TRY(connection.query(
         "UPDATE kiosks SET revoked = coalesce(revoked, now()), wants_reload = false WHERE id = $1",
-        Params().integer(id));
-    if (!done) return tl::unexpected(done.error());
-    if (done->affected() == 0) return not_found("kiosk", std::to_string(id));
+        Params().integer(id)));
+    if (done.affected() == 0) return no_such("kiosk", std::to_string(id));
     return {};
   });
 }
 
 Result<Kiosk> Kiosks::ask_reload(std::int64_t id) {
   return pool_.write([&](PgConnection& connection) -> Result<Kiosk> {
-    auto done = connection.query(
+    auto done = STRATA_TRY(connection.query(
         "UPDATE kiosks k SET wants_reload = true WHERE k.id = $1 AND " STRATA_GOOD_KIOSK,
-        Params().integer(id));
-    if (!done) return tl::unexpected(done.error());
+        Params().integer(id)));
     auto kiosk = load(connection, id);
-    if (kiosk && done->affected() == 0)
-      return fail(409, "Link not valid",
+    if (kiosk && done.affected() == 0)
+      return fail(ErrorCode::conflict, "Link not valid",
                   "The link of this kiosk is revoked or expired: it does not ask any more.");
     return kiosk;
   });

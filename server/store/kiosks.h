@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 namespace strata::store {
 
@@ -47,7 +47,8 @@ class Kiosks {
   Result<Kiosk> kiosk(std::int64_t id);
   Result<std::vector<std::int64_t>> of_tour(std::int64_t tour_id);  // ids, good or not
 
-  // Refused: an empty name (400), a tour that is not there (404), one too many (409).
+  // Refused: an empty name (malformed), a tour that is not there (not_found), one too many
+  // (conflict).
   Result<NewKiosk> create(std::int64_t tour_id, const std::string& name, const std::string& user,
                           std::optional<std::chrono::seconds> lifetime);
   // Nothing: unknown, expired or revoked.
@@ -56,7 +57,7 @@ class Kiosks {
   // asked to.
   Result<void> seen(std::int64_t id, bool loaded);
   Result<void> revoke(std::int64_t id);       // again is the same
-  Result<Kiosk> ask_reload(std::int64_t id);  // 409: it is revoked or expired
+  Result<Kiosk> ask_reload(std::int64_t id);  // conflict: it is revoked or expired
 
  private:
   Pool& pool_;

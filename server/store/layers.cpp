@@ -24,10 +24,9 @@ namespace {
 // A palette without points is that of the terms, where the layer's table is a list of such.
 Result<void> take_term_colors(PgConnection& connection, Layer& layer) {
   if (!layer.table || !takes_term_colors(layer.palette)) return {};
-  auto palette = term_palette_of(connection, *layer.table);
-  if (!palette) return tl::unexpected(palette.error());
-  layer.palette_of_terms = palette->has_value();
-  if (layer.palette_of_terms) layer.palette = std::move(**palette);
+  auto palette = STRATA_TRY(term_palette_of(connection, *layer.table));
+  layer.palette_of_terms = palette.has_value();
+  if (layer.palette_of_terms) layer.palette = std::move(*palette);
   return {};
 }
 
@@ -46,7 +45,7 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.kind = rows.text(i, 4) == "database" ? LayerKind::database : LayerKind::numeric;
   const auto type = parse_value_type(rows.text(i, 5));
   if (!type)
-    return fail(500, "Damaged layer",
+    return fail(ErrorCode::internal, "Damaged layer",
                 "Layer " + std::to_string(layer.id) + " has an unknown value type.");
   layer.type = *type;
   layer.resolution = static_cast<int>(rows.integer(i, 6));
@@ -59,8 +58,7 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
   layer.visible = rows.boolean(i, 11);
   layer.order = static_cast<int>(rows.integer(i, 12));
   if (!rows.null(i, 13)) layer.table = rows.integer(i, 13);
-  if (auto colored = take_term_colors(connection, layer); !colored)
-    return tl::unexpected(colored.error());
+  STRATA_TRY(take_term_colors(connection, layer));
   layer.sequence = rows.integer(i, 14);
   layer.version = rows.integer(i, 15);
   layer.locked = rows.boolean(i, 22);
@@ -88,15 +86,14 @@ Result<Layer> read_layer(PgConnection& connection, const PgResult& rows, int i) 
 }
 
 Result<Layer> load_layer(PgConnection& connection, std::int64_t id) {
-  auto row = connection.query("SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE id = $1",
-                              Params().integer(id));
-  if (!row) return tl::unexpected(row.error());
-  if (row->rows() == 0) return not_found("layer", std::to_string(id));
-  return read_layer(connection, *row, 0);
+  auto row = STRATA_TRY(connection.query(
+      "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE id = $1", Params().integer(id)));
+  if (row.rows() == 0) return no_such("layer", std::to_string(id));
+  return read_layer(connection, row, 0);
 }
 
-// What the layer is computed from, in place of what it was computed from before. Refused (422): a
-// layer that is computed from itself, however many others stand between.
+// What the layer is computed from, in place of what it was computed from before. Refused (invalid):
+// a layer that is computed from itself, however many others stand between.
 Result<void> set_formula(PgConnection& connection, const Layer& layer) {
   auto gone =
       connection.query("DELETE FROM layer_inputs WHERE layer_id = $1", Params().integer(layer.id));
@@ -108,26 +105,23 @@ Result<void> set_formula(PgConnection& connection, const Layer& layer) {
     return plain ? Result<void>{} : tl::unexpected(plain.error());
   }
   // One at a time in a model: two changes that make a circle only together are not done together.
-  auto locked = connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
-                                 Params().integer(layer.model_id));
-  if (!locked) return tl::unexpected(locked.error());
+  STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
+                              Params().integer(layer.model_id)));
   for (const LayerFormula::Input& input : layer.formula->inputs) {
-    auto put = connection.query(
+    STRATA_TRY(connection.query(
         "INSERT INTO layer_inputs (layer_id, slug, input_id, table_id) VALUES ($1, $2, $3, $4)",
         Params()
             .integer(layer.id)
             .text(input.slug)
             .optional_integer(input.layer)
-            .optional_integer(input.table));
-    if (!put) return tl::unexpected(put.error());
+            .optional_integer(input.table)));
   }
-  auto circle = connection.query(
+  auto circle = STRATA_TRY(connection.query(
       "WITH RECURSIVE reads (id) AS (SELECT input_id FROM layer_inputs WHERE layer_id = $1 UNION "
       "SELECT i.input_id FROM layer_inputs i JOIN reads r ON i.layer_id = r.id) SELECT 1 FROM reads WHERE id = $1",
-      Params().integer(layer.id));
-  if (!circle) return tl::unexpected(circle.error());
-  if (circle->rows() > 0)
-    return fail(422, "Computed from itself",
+      Params().integer(layer.id)));
+  if (circle.rows() > 0)
+    return fail(ErrorCode::invalid, "Computed from itself",
                 "This expression reads layers that are computed from " + layer.name + ".",
                 "expression");
   auto set = connection.query(
@@ -150,11 +144,12 @@ Result<void> keep_origin(PgConnection& connection, std::int64_t layer_id, const 
 }
 
 Result<void> check(const Layer& layer) {
-  if (auto good = check_name(layer.name); !good) return good;
+  STRATA_TRY(check_name(layer.name));
   if (!(layer.opacity >= 0 && layer.opacity <= 1))
-    return fail(400, "Bad opacity", "`opacity` must be between 0 and 1.", "opacity");
-  if (auto good = check_json(to_json(layer.palette), "palette"); !good) return good;
-  if (auto good = check_labels(layer.labels); !good) return good;
+    return fail(ErrorCode::malformed, "Bad opacity", "`opacity` must be between 0 and 1.",
+                "opacity");
+  STRATA_TRY(check_json(to_json(layer.palette), "palette"));
+  STRATA_TRY(check_labels(layer.labels));
   if (auto good = check_texts_by_language(layer.descriptions, kLongestDescription, "descriptions");
       !good)
     return good;
@@ -176,17 +171,15 @@ Result<void> find_table(PgConnection& connection, Layer& layer, std::int64_t pro
     table.project_id = project_id;
     table.name = layer.name;
     table.columns = columns;
-    auto made = insert_table(connection, std::move(table));
-    if (!made) return tl::unexpected(made.error());
-    layer.table = made->id;
+    auto made = STRATA_TRY(insert_table(connection, std::move(table)));
+    layer.table = made.id;
     return {};
   }
-  auto known = connection.query(
+  auto known = STRATA_TRY(connection.query(
       "SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2 FOR KEY SHARE",
-      Params().integer(*layer.table).integer(project_id));
-  if (!known) return tl::unexpected(known.error());
-  if (known->rows() == 0)
-    return fail(422, "No such table",
+      Params().integer(*layer.table).integer(project_id)));
+  if (known.rows() == 0)
+    return fail(ErrorCode::invalid, "No such table",
                 "The model's project has no table " + std::to_string(*layer.table) + ".", "table");
   return {};
 }
@@ -195,52 +188,48 @@ Result<void> find_table(PgConnection& connection, Layer& layer, std::int64_t pro
 
 Result<std::vector<Layer>> Store::layers(std::int64_t model_id, Role seen_by) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
-    auto known = connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id));
-    if (!known) return tl::unexpected(known.error());
-    if (known->rows() == 0) return not_found("model", std::to_string(model_id));
-    auto rows = connection.query("SELECT " STRATA_LAYER_COLUMNS
-                                 " FROM layers WHERE model_id = $1 ORDER BY draw_order, id",
-                                 Params().integer(model_id));
-    if (!rows) return tl::unexpected(rows.error());
+    auto known = STRATA_TRY(
+        connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id)));
+    if (known.rows() == 0) return no_such("model", std::to_string(model_id));
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT " STRATA_LAYER_COLUMNS " FROM layers WHERE model_id = $1 ORDER BY draw_order, id",
+        Params().integer(model_id)));
     std::vector<Layer> layers;
-    for (int i = 0; i < rows->rows(); ++i) {
-      auto layer = read_layer(connection, *rows, i);
-      if (!layer) return tl::unexpected(layer.error());
-      if (sees(seen_by, layer->visibility)) layers.push_back(std::move(*layer));
+    for (int i = 0; i < rows.rows(); ++i) {
+      auto layer = STRATA_TRY(read_layer(connection, rows, i));
+      if (sees(seen_by, layer.visibility)) layers.push_back(std::move(layer));
     }
     return layers;
   });
 }
 
 Result<Layer> Store::layer(std::int64_t model_id, const std::string& ref, Role seen_by) {
-  if (!check_text(ref, "layer")) return not_found("layer", ref);
+  if (!check_text(ref, "layer")) return no_such("layer", ref);
   return impl_->pool.read([&](PgConnection& connection) -> Result<Layer> {
     const auto id = id_of(ref);
-    auto rows = id ? connection.query("SELECT " STRATA_LAYER_COLUMNS
-                                      " FROM layers WHERE model_id = $1 AND id = $2",
-                                      Params().integer(model_id).integer(*id))
-                   : connection.query("SELECT " STRATA_LAYER_COLUMNS
-                                      " FROM layers WHERE model_id = $1 AND slug = $2",
-                                      Params().integer(model_id).text(ref));
-    if (!rows) return tl::unexpected(rows.error());
-    if (rows->rows() == 0) return not_found("layer", ref);
-    auto layer = read_layer(connection, *rows, 0);
-    if (layer && !sees(seen_by, layer->visibility)) return not_found("layer", ref);
+    auto rows = STRATA_TRY(id ? connection.query("SELECT " STRATA_LAYER_COLUMNS
+                                                 " FROM layers WHERE model_id = $1 AND id = $2",
+                                                 Params().integer(model_id).integer(*id))
+                              : connection.query("SELECT " STRATA_LAYER_COLUMNS
+                                                 " FROM layers WHERE model_id = $1 AND slug = $2",
+                                                 Params().integer(model_id).text(ref)));
+    if (rows.rows() == 0) return no_such("layer", ref);
+    auto layer = read_layer(connection, rows, 0);
+    if (layer && !sees(seen_by, layer->visibility)) return no_such("layer", ref);
     return layer;
   });
 }
 
 Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
                                   std::vector<Column> columns) {
-  if (auto good = check(layer); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check(layer));
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
-    auto model = connection.query("SELECT project_id FROM models WHERE id = $1 FOR KEY SHARE",
-                                  Params().integer(layer.model_id));
-    if (!model) return tl::unexpected(model.error());
-    if (model->rows() == 0) return not_found("model", std::to_string(layer.model_id));
+    auto model =
+        STRATA_TRY(connection.query("SELECT project_id FROM models WHERE id = $1 FOR KEY SHARE",
+                                    Params().integer(layer.model_id)));
+    if (model.rows() == 0) return no_such("model", std::to_string(layer.model_id));
     if (layer.kind == LayerKind::database)
-      if (auto found = find_table(connection, layer, model->integer(0, 0), columns); !found)
-        return tl::unexpected(found.error());
+      STRATA_TRY(find_table(connection, layer, model.integer(0, 0), columns));
     auto row = insert_with_slug(
         connection, "SELECT slug::text FROM layers WHERE slug LIKE $1 AND model_id = $2",
         layer.model_id, layer.slug.empty() ? layer.name : layer.slug, [&](const std::string& slug) {
@@ -272,18 +261,17 @@ Result<Layer> Store::create_layer(Layer layer, const FirstAnswer<Layer>& answer,
     if (!row || (!layer.formula && !layer.origin))
       return row ? read_layer(connection, *row, 0) : tl::unexpected(row.error());
     layer.id = row->integer(0, 0);
-    if (auto kept = keep_origin(connection, layer.id, layer); !kept)
-      return tl::unexpected(kept.error());
+    STRATA_TRY(keep_origin(connection, layer.id, layer));
     if (!layer.formula) return load_layer(connection, layer.id);
-    if (auto set = set_formula(connection, layer); !set) return tl::unexpected(set.error());
+    STRATA_TRY(set_formula(connection, layer));
     return load_layer(connection, layer.id);
   });
 }
 
 Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer) {
-  if (auto good = check(layer); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check(layer));
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "UPDATE layers SET name = $3, slug = $4, unit = $5, description = $6, palette = $7, opacity = $8, visible = $9, "
         "draw_order = $10, locked = $11, visibility = $12, review = $13, labels = $14, descriptions = $15, version = version + 1 WHERE id = $1 AND version = $2 "
         "RETURNING " STRATA_LAYER_COLUMNS,
@@ -302,24 +290,21 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
             .text(name(layer.visibility))
             .boolean(layer.review)
             .json(layer.labels)
-            .json(layer.descriptions));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() > 0) {
-      auto now = read_layer(connection, *row, 0);
-      if (!now) return now;
+            .json(layer.descriptions)));
+    if (row.rows() > 0) {
+      auto now = STRATA_TRY(read_layer(connection, row, 0));
       const bool same_origin =
-          now->origin == layer.origin && now->edited_by_hand == layer.edited_by_hand;
-      const bool is_same_formula = same_formula(now->formula, layer.formula);
+          now.origin == layer.origin && now.edited_by_hand == layer.edited_by_hand;
+      const bool is_same_formula = same_formula(now.formula, layer.formula);
       if (same_origin && is_same_formula) return now;
-      if (auto kept = keep_origin(connection, layer.id, layer); !kept)
-        return tl::unexpected(kept.error());
+      STRATA_TRY(keep_origin(connection, layer.id, layer));
       if (is_same_formula) return load_layer(connection, layer.id);
-      if (auto set = set_formula(connection, layer); !set) return tl::unexpected(set.error());
+      STRATA_TRY(set_formula(connection, layer));
       return load_layer(connection, layer.id);
     }
-    auto known = connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(layer.id));
-    if (!known) return tl::unexpected(known.error());
-    if (known->rows() == 0) return not_found("layer", std::to_string(layer.id));
+    auto known = STRATA_TRY(
+        connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(layer.id)));
+    if (known.rows() == 0) return no_such("layer", std::to_string(layer.id));
     return stale("layer");
   });
 }
@@ -327,12 +312,11 @@ Result<Layer> Store::update_layer(Layer layer, const FirstAnswer<Layer>& answer)
 Result<std::map<std::int64_t, std::int64_t>> Store::table_sequences_of(std::int64_t layer_id) {
   return impl_->pool.read([&](PgConnection& connection)
                               -> Result<std::map<std::int64_t, std::int64_t>> {
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         "SELECT t.id, t.sequence FROM layer_inputs i JOIN record_tables t ON t.id = i.table_id WHERE i.layer_id = $1",
-        Params().integer(layer_id));
-    if (!rows) return tl::unexpected(rows.error());
+        Params().integer(layer_id)));
     std::map<std::int64_t, std::int64_t> sequences;
-    for (int i = 0; i < rows->rows(); ++i) sequences[rows->integer(i, 0)] = rows->integer(i, 1);
+    for (int i = 0; i < rows.rows(); ++i) sequences[rows.integer(i, 0)] = rows.integer(i, 1);
     return sequences;
   });
 }
@@ -341,45 +325,40 @@ Result<Layer> Store::layer_computed(std::int64_t layer_id, const std::string& ex
                                     std::int64_t sequence,
                                     const std::map<std::int64_t, std::int64_t>& tables) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<Layer> {
-    auto done = connection.query(
+    STRATA_TRY(connection.query(
         "UPDATE layers SET computed_sequence = $3 WHERE id = $1 AND expression = $2",
-        Params().integer(layer_id).text(expression).integer(sequence));
-    if (!done) return tl::unexpected(done.error());
+        Params().integer(layer_id).text(expression).integer(sequence)));
     // What was edited by hand is overwritten, and as it was when it was made.
-    auto whole = connection.query(
+    STRATA_TRY(connection.query(
         "WITH whole AS (UPDATE layer_origins SET edited_by_hand = false WHERE layer_id = $1 AND edited_by_hand RETURNING layer_id) "
         "UPDATE layers SET locked = true, version = version + 1 FROM whole WHERE id = whole.layer_id",
-        Params().integer(layer_id));
-    if (!whole) return tl::unexpected(whole.error());
+        Params().integer(layer_id)));
     PgArray ids(oid::kInt8), sequences(oid::kInt8);
     for (const auto& [table, at] : tables) {
       ids.add(table);
       sequences.add(at);
     }
-    auto seen = connection.query(
+    STRATA_TRY(connection.query(
         "UPDATE layer_inputs i SET table_sequence = v.at FROM unnest($2::bigint[], $3::bigint[]) v (id, at) "
         "WHERE i.layer_id = $1 AND i.table_id = v.id",
-        Params().integer(layer_id).array(ids).array(sequences));
-    if (!seen) return tl::unexpected(seen.error());
+        Params().integer(layer_id).array(ids).array(sequences)));
     return load_layer(connection, layer_id);
   });
 }
 
 Result<std::vector<Layer>> Store::layers_to_recompute() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Layer>> {
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         "SELECT " STRATA_LAYER_COLUMNS
         " FROM layers WHERE automatic AND NOT EXISTS (SELECT 1 FROM layer_origins o WHERE "
         "o.layer_id = layers.id AND o.edited_by_hand) AND " STRATA_LAYER_STALE
         " AND NOT EXISTS (SELECT 1 FROM layer_inputs i WHERE i.layer_id = layers.id AND NOT EXISTS "
         "(SELECT 1 FROM layers l WHERE l.id = i.input_id)) "
-        "ORDER BY computed_sequence, id LIMIT 100");
-    if (!rows) return tl::unexpected(rows.error());
+        "ORDER BY computed_sequence, id LIMIT 100"));
     std::vector<Layer> layers;
-    for (int i = 0; i < rows->rows(); ++i) {
-      auto layer = read_layer(connection, *rows, i);
-      if (!layer) return tl::unexpected(layer.error());
-      layers.push_back(std::move(*layer));
+    for (int i = 0; i < rows.rows(); ++i) {
+      auto layer = STRATA_TRY(read_layer(connection, rows, i));
+      layers.push_back(std::move(layer));
     }
     return layers;
   });
@@ -393,32 +372,29 @@ constexpr int kRevisionsAtOnce = 256;
 // before and after.
 Result<void> widen_revisions(PgConnection& connection, const Layer& layer, ValueType type) {
   for (std::int64_t y = -1, x = 0, sequence = 0;;) {
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         "SELECT tile_y, tile_x, sequence, difference, key_tile FROM tile_revisions WHERE layer_id = $1 AND "
         "(tile_y, tile_x, sequence) > ($2, $3, $4) ORDER BY tile_y, tile_x, sequence LIMIT $5",
         Params().integer(layer.id).integer(y).integer(x).integer(sequence).integer(
-            kRevisionsAtOnce));
-    if (!rows) return tl::unexpected(rows.error());
-    if (rows->rows() == 0) return {};
+            kRevisionsAtOnce)));
+    if (rows.rows() == 0) return {};
     PgArray ys(oid::kInt8), xs(oid::kInt8), sequences(oid::kInt8), differences(oid::kBytea),
         keys(oid::kBytea);
-    for (int i = 0; i < rows->rows(); ++i) {
-      y = rows->integer(i, 0), x = rows->integer(i, 1), sequence = rows->integer(i, 2);
+    for (int i = 0; i < rows.rows(); ++i) {
+      y = rows.integer(i, 0), x = rows.integer(i, 1), sequence = rows.integer(i, 2);
       const TileAddress address{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
-      auto revision = decode_revision(address, layer.type, rows->bytes(i, 3));
-      if (!revision) return tl::unexpected(revision.error());
-      revision->difference = widened(revision->difference, type);
+      auto revision = STRATA_TRY(decode_revision(address, layer.type, rows.bytes(i, 3)));
+      revision.difference = widened(revision.difference, type);
       ys.add(y), xs.add(x), sequences.add(sequence);
-      differences.add(Bytes(encode_revision(*revision)));
-      if (rows->null(i, 4)) {
+      differences.add(Bytes(encode_revision(revision)));
+      if (rows.null(i, 4)) {
         keys.add_null();
         continue;
       }
-      auto tile = decode_tile(layer.type, rows->bytes(i, 4));
-      if (!tile) return tl::unexpected(tile.error());
-      keys.add(Bytes(encode_tile(widened(*tile, type))));
+      auto tile = STRATA_TRY(decode_tile(layer.type, rows.bytes(i, 4)));
+      keys.add(Bytes(encode_tile(widened(tile, type))));
     }
-    auto written = connection.query(
+    STRATA_TRY(connection.query(
         "UPDATE tile_revisions r SET difference = n.difference, key_tile = n.key_tile FROM "
         "unnest($2::bigint[], $3::bigint[], $4::bigint[], $5::bytea[], $6::bytea[]) AS n (y, x, sequence, difference, "
         "key_tile) WHERE r.layer_id = $1 AND r.tile_y = n.y AND r.tile_x = n.x AND r.sequence = n.sequence",
@@ -428,8 +404,7 @@ Result<void> widen_revisions(PgConnection& connection, const Layer& layer, Value
             .array(xs)
             .array(sequences)
             .array(differences)
-            .array(keys));
-    if (!written) return tl::unexpected(written.error());
+            .array(keys)));
   }
 }
 
@@ -438,25 +413,23 @@ Result<void> widen_revisions(PgConnection& connection, const Layer& layer, Value
 Result<Layer> Store::widen_layer(const Layer& layer, ValueType type,
                                  const FirstAnswer<Layer>& answer) {
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Layer> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "UPDATE layers SET type = $3, version = version + 1 WHERE id = $1 AND version = $2 AND type = $4 RETURNING id",
-        Params().integer(layer.id).integer(layer.version).text(name(type)).text(name(layer.type)));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) {
+        Params().integer(layer.id).integer(layer.version).text(name(type)).text(name(layer.type))));
+    if (row.rows() == 0) {
       auto known = load_layer(connection, layer.id);
       return known ? stale("layer") : tl::unexpected(known.error());
     }
-    if (auto done = widen_revisions(connection, layer, type); !done)
-      return tl::unexpected(done.error());
+    STRATA_TRY(widen_revisions(connection, layer, type));
     return load_layer(connection, layer.id);
   });
 }
 
 Result<void> Store::delete_layer(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
-    auto known = connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(id));
-    if (!known) return tl::unexpected(known.error());
-    return known->rows() > 0 ? erase_layer(connection, id) : not_found("layer", std::to_string(id));
+    auto known =
+        STRATA_TRY(connection.query("SELECT 1 FROM layers WHERE id = $1", Params().integer(id)));
+    return known.rows() > 0 ? erase_layer(connection, id) : no_such("layer", std::to_string(id));
   };
   return impl_->change(answer, work, kBulkLimits);
 }

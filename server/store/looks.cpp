@@ -33,18 +33,21 @@ Look read_look(const PgResult& rows, int i) {
 }  // namespace
 
 Result<void> check_look(const Look& look) {
-  if (auto good = check_name(look.name); !good) return good;
+  STRATA_TRY(check_name(look.name));
   if (!(look.opacity >= 0 && look.opacity <= 1))
-    return fail(400, "Bad opacity", "`opacity` must be between 0 and 1.", "opacity");
+    return fail(ErrorCode::malformed, "Bad opacity", "`opacity` must be between 0 and 1.",
+                "opacity");
   if (look.media_type != "image/jpeg" && look.media_type != "image/png")
-    return fail(415, "Bad picture", "A look is a JPEG or a PNG picture.", "media_type");
+    return fail(ErrorCode::unsupported, "Bad picture", "A look is a JPEG or a PNG picture.",
+                "media_type");
   if (look.width < 1 || look.height < 1)
-    return fail(422, "Bad picture", "A look has at least one pixel a side.", "width");
+    return fail(ErrorCode::invalid, "Bad picture", "A look has at least one pixel a side.",
+                "width");
   return check_texts({{&look.slug, "slug"}, {&look.description, "description"}});
 }
 
 Result<Look> insert_look(PgConnection& connection, const Look& look, const Sha256& picture) {
-  auto row = insert_with_slug(
+  auto row = STRATA_TRY(insert_with_slug(
       connection, "SELECT slug::text FROM looks WHERE slug LIKE $1 AND model_id = $2",
       look.model_id, look.slug.empty() ? look.name : look.slug, [&](const std::string& slug) {
         return connection.query(
@@ -63,69 +66,64 @@ Result<Look> insert_look(PgConnection& connection, const Look& look, const Sha25
                 .boolean(look.visible)
                 .integer(look.order)
                 .bytes(picture));
-      });
-  if (!row) return tl::unexpected(row.error());
-  return read_look(*row, 0);
+      }));
+  return read_look(row, 0);
 }
 
 Result<std::vector<Look>> Store::looks(std::int64_t model_id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Look>> {
-    auto known = connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id));
-    if (!known) return tl::unexpected(known.error());
-    if (known->rows() == 0) return not_found("model", std::to_string(model_id));
-    auto rows = connection.query("SELECT " STRATA_LOOK_COLUMNS
-                                 " FROM looks WHERE model_id = $1 ORDER BY draw_order, id",
-                                 Params().integer(model_id));
-    if (!rows) return tl::unexpected(rows.error());
+    auto known = STRATA_TRY(
+        connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(model_id)));
+    if (known.rows() == 0) return no_such("model", std::to_string(model_id));
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT " STRATA_LOOK_COLUMNS " FROM looks WHERE model_id = $1 ORDER BY draw_order, id",
+        Params().integer(model_id)));
     std::vector<Look> looks;
-    for (int i = 0; i < rows->rows(); ++i) looks.push_back(read_look(*rows, i));
+    for (int i = 0; i < rows.rows(); ++i) looks.push_back(read_look(rows, i));
     return looks;
   });
 }
 
 Result<Look> Store::look(std::int64_t model_id, const std::string& ref) {
-  if (!check_text(ref, "look")) return not_found("look", ref);
+  if (!check_text(ref, "look")) return no_such("look", ref);
   return impl_->pool.read([&](PgConnection& connection) -> Result<Look> {
     const auto id = id_of(ref);
-    auto rows = id ? connection.query("SELECT " STRATA_LOOK_COLUMNS
-                                      " FROM looks WHERE model_id = $1 AND id = $2",
-                                      Params().integer(model_id).integer(*id))
-                   : connection.query("SELECT " STRATA_LOOK_COLUMNS
-                                      " FROM looks WHERE model_id = $1 AND slug = $2",
-                                      Params().integer(model_id).text(ref));
-    if (!rows) return tl::unexpected(rows.error());
-    if (rows->rows() == 0) return not_found("look", ref);
-    return read_look(*rows, 0);
+    auto rows = STRATA_TRY(id ? connection.query("SELECT " STRATA_LOOK_COLUMNS
+                                                 " FROM looks WHERE model_id = $1 AND id = $2",
+                                                 Params().integer(model_id).integer(*id))
+                              : connection.query("SELECT " STRATA_LOOK_COLUMNS
+                                                 " FROM looks WHERE model_id = $1 AND slug = $2",
+                                                 Params().integer(model_id).text(ref)));
+    if (rows.rows() == 0) return no_such("look", ref);
+    return read_look(rows, 0);
   });
 }
 
 Result<Look> Store::create_look(const Look& look, std::span<const std::uint8_t> picture,
                                 const FirstAnswer<Look>& answer) {
-  if (auto good = check_look(look); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_look(look));
   const Content content = content_of(picture);
   const auto work = [&](PgConnection& connection) -> Result<Look> {
     // Locked, so that of two at once the later one counts the earlier.
-    auto model = connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
-                                  Params().integer(look.model_id));
-    if (!model) return tl::unexpected(model.error());
-    if (model->rows() == 0) return not_found("model", std::to_string(look.model_id));
-    auto count = connection.query("SELECT count(*) FROM looks WHERE model_id = $1",
-                                  Params().integer(look.model_id));
-    if (!count) return tl::unexpected(count.error());
-    if (count->integer(0, 0) >= kMostLooks)
+    auto model = STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1 FOR NO KEY UPDATE",
+                                             Params().integer(look.model_id)));
+    if (model.rows() == 0) return no_such("model", std::to_string(look.model_id));
+    auto count = STRATA_TRY(connection.query("SELECT count(*) FROM looks WHERE model_id = $1",
+                                             Params().integer(look.model_id)));
+    if (count.integer(0, 0) >= kMostLooks)
       return fail(
-          409, "Too many looks",
+          ErrorCode::conflict, "Too many looks",
           "A model holds at most " + std::to_string(kMostLooks) + " looks. Delete one first.");
-    if (auto kept = keep_blob(connection, content, {}); !kept) return tl::unexpected(kept.error());
+    STRATA_TRY(keep_blob(connection, content, {}));
     return insert_look(connection, look, content.hash);
   };
   return impl_->change(answer, work, kBulkLimits);
 }
 
 Result<Look> Store::update_look(const Look& look, const FirstAnswer<Look>& answer) {
-  if (auto good = check_look(look); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_look(look));
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Look> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "UPDATE looks SET name = $3, slug = $4, description = $5, opacity = $6, visible = $7, draw_order = $8, "
         "version = version + 1 WHERE id = $1 AND version = $2 RETURNING " STRATA_LOOK_COLUMNS,
         Params()
@@ -136,12 +134,11 @@ Result<Look> Store::update_look(const Look& look, const FirstAnswer<Look>& answe
             .text(look.description)
             .real(look.opacity)
             .boolean(look.visible)
-            .integer(look.order));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() > 0) return read_look(*row, 0);
-    auto known = connection.query("SELECT 1 FROM looks WHERE id = $1", Params().integer(look.id));
-    if (!known) return tl::unexpected(known.error());
-    if (known->rows() == 0) return not_found("look", std::to_string(look.id));
+            .integer(look.order)));
+    if (row.rows() > 0) return read_look(row, 0);
+    auto known = STRATA_TRY(
+        connection.query("SELECT 1 FROM looks WHERE id = $1", Params().integer(look.id)));
+    if (known.rows() == 0) return no_such("look", std::to_string(look.id));
     return stale("look");
   });
 }
@@ -151,7 +148,7 @@ Result<void> Store::delete_look(std::int64_t id, const FirstAnswer<>& answer) {
     auto done =
         connection.query("DELETE FROM looks WHERE id = $1 RETURNING picture", Params().integer(id));
     if (!done) return tl::unexpected(done.error());
-    if (done->rows() == 0) return not_found("look", std::to_string(id));
+    if (done->rows() == 0) return no_such("look", std::to_string(id));
     const Bytes hash = done->bytes(0, 0);
     return drop_unused(connection, {{hash.begin(), hash.end()}});
   };
@@ -160,12 +157,11 @@ Result<void> Store::delete_look(std::int64_t id, const FirstAnswer<>& answer) {
 
 Result<std::vector<std::uint8_t>> Store::look_picture(std::int64_t id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "SELECT b.sha256, b.bytes FROM looks l JOIN blobs b ON b.sha256 = l.picture WHERE l.id = $1",
-        Params().integer(id));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) return not_found("look", std::to_string(id));
-    return read_blob(connection, row->bytes(0, 0), row->integer(0, 1));
+        Params().integer(id)));
+    if (row.rows() == 0) return no_such("look", std::to_string(id));
+    return read_blob(connection, row.bytes(0, 0), row.integer(0, 1));
   });
 }
 

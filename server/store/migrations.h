@@ -16,7 +16,7 @@ struct Migration {
 };
 
 // The *.sql files of a folder in order of version. A file without `-- migrate:up`, or two of one
-// version, are a Problem.
+// version, are an Error.
 Result<std::vector<Migration>> read_migrations(const std::filesystem::path& folder);
 
 // Applies what is missing, each file in one transaction that inserts its version row first, under

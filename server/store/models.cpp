@@ -61,11 +61,11 @@ Model read_model(const PgResult& rows, int i) {
 }
 
 Result<void> check(const Model& m) {
-  if (auto good = check_name(m.name); !good) return good;
+  STRATA_TRY(check_name(m.name));
   if (!is_up(m.up))
-    return fail(400, "Bad direction", "`up` must be one of x, y, z, -x, -y and -z.", "up");
-  for (const auto& repair : m.repairs)
-    if (auto good = check_text(repair.what, "repairs"); !good) return good;
+    return fail(ErrorCode::malformed, "Bad direction",
+                "`up` must be one of x, y, z, -x, -y and -z.", "up");
+  for (const auto& repair : m.repairs) STRATA_TRY(check_text(repair.what, "repairs"));
   return check_texts({{&m.slug, "slug"},
                       {&m.north, "north"},
                       {&m.crs, "crs"},
@@ -153,29 +153,27 @@ Look look_of(const Store::NewModel::NewLook& fresh, std::size_t position) {
 
 Result<Model> model_by_id(PgConnection& connection, std::int64_t id) {
   static const std::string sql = std::string(kSelectModels) + "WHERE m.id = $1";
-  auto rows = connection.query(sql.c_str(), Params().integer(id));
-  if (!rows) return tl::unexpected(rows.error());
-  if (rows->rows() == 0) return not_found("model", std::to_string(id));
-  return read_model(*rows, 0);
+  auto rows = STRATA_TRY(connection.query(sql.c_str(), Params().integer(id)));
+  if (rows.rows() == 0) return no_such("model", std::to_string(id));
+  return read_model(rows, 0);
 }
 
 }  // namespace
 
 Result<Model> Store::create_model(const NewModel& fresh, const std::function<bool()>& cancelled,
                                   const FirstAnswer<Model>& answer) {
-  if (auto good = check(fresh.model); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check(fresh.model));
   for (const auto& source : fresh.sources) {
     if (source.name.empty() || source.name.size() > kLongestName)
-      return fail(400, "Bad file name", "A file's name must have 1 to 255 bytes.", "source_files");
-    if (auto good = check_text(source.name, "source_files"); !good)
-      return tl::unexpected(good.error());
+      return fail(ErrorCode::malformed, "Bad file name", "A file's name must have 1 to 255 bytes.",
+                  "source_files");
+    STRATA_TRY(check_text(source.name, "source_files"));
   }
   if (fresh.looks.size() > kMostLooks)
-    return fail(422, "Too many looks",
+    return fail(ErrorCode::invalid, "Too many looks",
                 "A model holds at most " + std::to_string(kMostLooks) + " looks.", "looks");
   for (std::size_t i = 0; i < fresh.looks.size(); ++i)
-    if (auto good = check_look(look_of(fresh.looks[i], i)); !good)
-      return tl::unexpected(good.error());
+    STRATA_TRY(check_look(look_of(fresh.looks[i], i)));
   // The geometry, its coarser copies, the looks, the source files.
   std::vector<Content> contents{content_of(Bytes(fresh.geometry))};
   for (const auto& level : fresh.detail_levels) contents.push_back(content_of(Bytes(level)));
@@ -183,9 +181,8 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
   for (const auto& look : fresh.looks) contents.push_back(content_of(Bytes(look.bytes)));
   const std::size_t first_source = contents.size();
   for (const auto& source : fresh.sources) {
-    auto content = content_of(source.file, cancelled);
-    if (!content) return tl::unexpected(content.error());
-    contents.push_back(std::move(*content));
+    auto content = STRATA_TRY(content_of(source.file, cancelled));
+    contents.push_back(std::move(content));
   }
   const auto work = [&](PgConnection& connection) -> Result<Model> {
     const Sha256 geometry = contents.front().hash;
@@ -193,37 +190,31 @@ Result<Model> Store::create_model(const NewModel& fresh, const std::function<boo
     for (const Content& content : contents) by_hash.push_back(&content);
     std::sort(by_hash.begin(), by_hash.end(),
               [](const Content* a, const Content* b) { return a->hash < b->hash; });
-    for (const Content* content : by_hash)
-      if (auto kept = keep_blob(connection, *content, cancelled); !kept)
-        return tl::unexpected(kept.error());
+    for (const Content* content : by_hash) STRATA_TRY(keep_blob(connection, *content, cancelled));
     const Model& m = fresh.model;
-    auto row = insert_with_slug(connection, "SELECT slug::text FROM models WHERE slug LIKE $1", {},
-                                m.slug.empty() ? m.name : m.slug, [&](const std::string& slug) {
-                                  return insert_model(connection, m, slug, geometry);
-                                });
-    if (!row) return tl::unexpected(row.error());
-    const std::int64_t id = row->integer(0, 0);
+    auto row = STRATA_TRY(insert_with_slug(
+        connection, "SELECT slug::text FROM models WHERE slug LIKE $1", {},
+        m.slug.empty() ? m.name : m.slug,
+        [&](const std::string& slug) { return insert_model(connection, m, slug, geometry); }));
+    const std::int64_t id = row.integer(0, 0);
     for (std::size_t i = 1; i < first_look; ++i) {
-      auto kept = connection.query(
+      STRATA_TRY(connection.query(
           "INSERT INTO detail_levels (model_id, level, geometry) VALUES ($1, $2, $3)",
-          Params().integer(id).integer(static_cast<std::int64_t>(i)).bytes(contents[i].hash));
-      if (!kept) return tl::unexpected(kept.error());
+          Params().integer(id).integer(static_cast<std::int64_t>(i)).bytes(contents[i].hash)));
     }
     for (std::size_t i = 0; i < fresh.looks.size(); ++i) {
       Look look = look_of(fresh.looks[i], i);
       look.model_id = id;
-      if (auto kept = insert_look(connection, look, contents[first_look + i].hash); !kept)
-        return tl::unexpected(kept.error());
+      STRATA_TRY(insert_look(connection, look, contents[first_look + i].hash));
     }
     for (std::size_t i = 0; i < fresh.sources.size(); ++i) {
-      auto kept = connection.query(
+      STRATA_TRY(connection.query(
           "INSERT INTO model_sources (model_id, name, position, sha256) VALUES ($1, $2, $3, $4)",
           Params()
               .integer(id)
               .text(fresh.sources[i].name)
               .integer(static_cast<std::int64_t>(i))
-              .bytes(contents[first_source + i].hash));
-      if (!kept) return tl::unexpected(kept.error());
+              .bytes(contents[first_source + i].hash)));
     }
     if (cancelled && cancelled()) return cancelled_problem();
     return model_by_id(connection, id);
@@ -235,47 +226,42 @@ Result<std::vector<Model>> Store::models(std::optional<std::int64_t> project_id)
   static const std::string sql =
       std::string(kSelectModels) + "WHERE $1 IS NULL OR m.project_id = $1 ORDER BY m.id";
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Model>> {
-    auto rows = connection.query(sql.c_str(), Params().optional_integer(project_id));
-    if (!rows) return tl::unexpected(rows.error());
+    auto rows = STRATA_TRY(connection.query(sql.c_str(), Params().optional_integer(project_id)));
     std::vector<Model> models;
-    for (int i = 0; i < rows->rows(); ++i) models.push_back(read_model(*rows, i));
+    for (int i = 0; i < rows.rows(); ++i) models.push_back(read_model(rows, i));
     return models;
   });
 }
 
 Result<Model> Store::model(const std::string& ref) {
-  if (!check_text(ref, "model")) return not_found("model", ref);
+  if (!check_text(ref, "model")) return no_such("model", ref);
   static const std::string by_slug = std::string(kSelectModels) + "WHERE m.slug = $1";
   return impl_->pool.read([&](PgConnection& connection) -> Result<Model> {
     if (const auto id = id_of(ref)) return model_by_id(connection, *id);
-    auto rows = connection.query(by_slug.c_str(), Params().text(ref));
-    if (!rows) return tl::unexpected(rows.error());
-    if (rows->rows() == 0) return not_found("model", ref);
-    return read_model(*rows, 0);
+    auto rows = STRATA_TRY(connection.query(by_slug.c_str(), Params().text(ref)));
+    if (rows.rows() == 0) return no_such("model", ref);
+    return read_model(rows, 0);
   });
 }
 
 Result<Model> Store::update_model(Model m, const FirstAnswer<Model>& answer) {
-  if (auto good = check(m); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check(m));
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Model> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "UPDATE models SET name = $1, slug = $2, project_id = $3, unit = $4, unit_assumed = $5, scale_verified = $6, up = $7, "
         "north = $8, crs = $9, default_resolution = $10, inventory_number = $11, owner = $12, creator = $13, captured = $14, "
         "method = $15, accuracy = $16, processing = $17, rights_uri = $18, credit = $19, source_download = $20, "
         "version = version + 1 WHERE id = $21 AND version = $22 RETURNING id",
-        metadata(m, m.slug).integer(m.id).integer(m.version));
-    if (!row) return tl::unexpected(row.error());
-    auto now = model_by_id(connection, m.id);
-    if (!now) return now;
-    if (row->rows() == 0) return stale("model");
-    auto layer = connection.query(
+        metadata(m, m.slug).integer(m.id).integer(m.version)));
+    auto now = STRATA_TRY(model_by_id(connection, m.id));
+    if (row.rows() == 0) return stale("model");
+    auto layer = STRATA_TRY(connection.query(
         "SELECT l.name FROM all_layers l JOIN record_tables t ON t.id = l.table_id WHERE l.model_id = $1 AND t.project_id <> $2 "
         "LIMIT 1",
-        Params().integer(m.id).integer(m.project_id));
-    if (!layer) return tl::unexpected(layer.error());
-    if (layer->rows() > 0)
-      return fail(409, "Tables stay",
-                  "The keys of the layer " + layer->text(0, 0) +
+        Params().integer(m.id).integer(m.project_id)));
+    if (layer.rows() > 0)
+      return fail(ErrorCode::conflict, "Tables stay",
+                  "The keys of the layer " + layer.text(0, 0) +
                       " are of a table of the model's present project.",
                   "project");
     return now;
@@ -284,37 +270,34 @@ Result<Model> Store::update_model(Model m, const FirstAnswer<Model>& answer) {
 
 Result<void> Store::delete_model(std::int64_t id, const FirstAnswer<>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<void> {
-    auto known = connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(id));
-    if (!known) return tl::unexpected(known.error());
-    return known->rows() > 0 ? erase_model(connection, id) : not_found("model", std::to_string(id));
+    auto known =
+        STRATA_TRY(connection.query("SELECT 1 FROM models WHERE id = $1", Params().integer(id)));
+    return known.rows() > 0 ? erase_model(connection, id) : no_such("model", std::to_string(id));
   };
   return impl_->change(answer, work, kBulkLimits);
 }
 
 Result<std::vector<std::uint8_t>> Store::geometry(std::int64_t model_id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<std::uint8_t>> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "SELECT b.sha256, b.bytes FROM models m JOIN blobs b ON b.sha256 = m.geometry WHERE m.id = $1",
-        Params().integer(model_id));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) return not_found("model", std::to_string(model_id));
-    return read_blob(connection, row->bytes(0, 0), row->integer(0, 1));
+        Params().integer(model_id)));
+    if (row.rows() == 0) return no_such("model", std::to_string(model_id));
+    return read_blob(connection, row.bytes(0, 0), row.integer(0, 1));
   });
 }
 
 Result<std::vector<std::vector<std::uint8_t>>> Store::detail_levels(std::int64_t model_id) {
   using Levels = std::vector<std::vector<std::uint8_t>>;
   return impl_->pool.read([&](PgConnection& connection) -> Result<Levels> {
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         "SELECT b.sha256, b.bytes FROM detail_levels d JOIN blobs b ON b.sha256 = d.geometry WHERE d.model_id = $1 "
         "ORDER BY d.level",
-        Params().integer(model_id));
-    if (!rows) return tl::unexpected(rows.error());
+        Params().integer(model_id)));
     Levels levels;
-    for (int i = 0; i < rows->rows(); ++i) {
-      auto level = read_blob(connection, rows->bytes(i, 0), rows->integer(i, 1));
-      if (!level) return tl::unexpected(level.error());
-      levels.push_back(std::move(*level));
+    for (int i = 0; i < rows.rows(); ++i) {
+      auto level = STRATA_TRY(read_blob(connection, rows.bytes(i, 0), rows.integer(i, 1)));
+      levels.push_back(std::move(level));
     }
     return levels;
   });
@@ -323,18 +306,17 @@ Result<std::vector<std::vector<std::uint8_t>>> Store::detail_levels(std::int64_t
 Result<SourceFile> Store::read_source(
     std::int64_t model_id, const std::string& file,
     const std::function<bool(std::span<const std::uint8_t>)>& sink) {
-  if (!check_text(file, "name")) return not_found("source file", file);
-  auto known = impl_->pool.read([&](PgConnection& connection) {
+  if (!check_text(file, "name")) return no_such("source file", file);
+  auto known = STRATA_TRY(impl_->pool.read([&](PgConnection& connection) {
     return connection.query(
         "SELECT b.sha256, b.bytes FROM model_sources s JOIN blobs b USING (sha256) "
         "WHERE s.model_id = $1 AND s.name = $2",
         Params().integer(model_id).text(file));
-  });
-  if (!known) return tl::unexpected(known.error());
-  if (known->rows() == 0) return not_found("source file", file);
-  const SourceFile source{file, to_hex(known->bytes(0, 0)),
-                          static_cast<std::uint64_t>(known->integer(0, 1))};
-  const Bytes hash = known->bytes(0, 0);
+  }));
+  if (known.rows() == 0) return no_such("source file", file);
+  const SourceFile source{file, to_hex(known.bytes(0, 0)),
+                          static_cast<std::uint64_t>(known.integer(0, 1))};
+  const Bytes hash = known.bytes(0, 0);
   auto sent = stream_blob(impl_->pool, {hash.begin(), hash.end()}, 0, source.bytes, sink);
   if (!sent) return tl::unexpected(sent.error());
   return source;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "store/first_answer.h"
 
 namespace strata::store {
@@ -51,7 +51,8 @@ class NamedParts {
   Result<std::map<std::int64_t, std::string>> slugs(std::int64_t model_id);  // of all, by id
   Result<NamedPart> find(std::int64_t model_id, const std::string& ref);
 
-  // Id, slug, time and version are given here. Refused: an empty name (400), one too many (409).
+  // Id, slug, time and version are given here. Refused: an empty name (malformed), one too many
+  // (conflict).
   Result<NamedPart> create(const NamedPart& part, const FirstAnswer<NamedPart>& answer = {});
   // Name, text and content, where version equals; the slug stays, so that links go on.
   Result<NamedPart> update(const NamedPart& part, const FirstAnswer<NamedPart>& answer = {});

@@ -16,19 +16,19 @@ Result<void> check_password(std::string_view password, std::string_view user,
            std::tolower(static_cast<unsigned char>(b));
   };
   if (password.size() > kLongestPassword)
-    return fail(422, "Password too long",
+    return fail(ErrorCode::invalid, "Password too long",
                 "A password has at most " + std::to_string(kLongestPassword) + " bytes.", field);
   const auto characters =
       std::ranges::count_if(password, [](char c) { return (c & 0xc0) != 0x80; });
   if (static_cast<std::size_t>(characters) < kShortestPassword)
     return fail(
-        422, "Password too short",
+        ErrorCode::invalid, "Password too short",
         "A password has " + std::to_string(kShortestPassword) +
             " characters or more. A few words that belong together to nobody but you are good.",
         field);
   if (std::ranges::search(password, user, same).size() > 0 &&
       password.size() < user.size() + kShortestPassword)
-    return fail(422, "Password too easy",
+    return fail(ErrorCode::invalid, "Password too easy",
                 "The name and little more is the first thing that is tried.", field);
   return {};
 }
@@ -44,8 +44,8 @@ struct Slot {
   }
 };
 
-tl::unexpected<Problem> too_many() {
-  return fail(429, "Too many sign-ins",
+tl::unexpected<Error> too_many() {
+  return fail(ErrorCode::too_many_requests, "Too many sign-ins",
               "Many sign in at this moment. Wait a little and try again.");
 }
 

@@ -51,16 +51,15 @@ bool is_ascii(const std::string& text) {
 
 Result<Person> load_person(PgConnection& connection, const std::string& name, bool lock) {
   // Names are ASCII. Other letters of which one has the same lower case must not lead to them.
-  if (!is_ascii(name) || !check_text(name, "user")) return not_found("person", name);
-  auto rows = connection.query(
+  if (!is_ascii(name) || !check_text(name, "user")) return no_such("person", name);
+  auto rows = STRATA_TRY(connection.query(
       lock ? "SELECT " STRATA_PERSON_COLUMNS
              " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL FOR UPDATE"
            : "SELECT " STRATA_PERSON_COLUMNS
              " FROM users WHERE lower(name) = lower($1) AND deleted IS NULL",
-      Params().text(name));
-  if (!rows) return tl::unexpected(rows.error());
-  if (rows->rows() == 0) return not_found("person", name);
-  return read_person(*rows, 0);
+      Params().text(name)));
+  if (rows.rows() == 0) return no_such("person", name);
+  return read_person(rows, 0);
 }
 Result<void> run(PgConnection& connection, const char* sql, const Params& params) {
   auto done = connection.query(sql, params);
@@ -104,16 +103,15 @@ Token read_token(const PgResult& rows, TokenKind kind, int i) {
 Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const std::string& user,
                               Role role, std::optional<std::chrono::seconds> lifetime,
                               const std::string& label, std::optional<std::int64_t> project = {}) {
-  auto cleared = run(
+  STRATA_TRY(run(
       connection,
       "DELETE FROM tokens WHERE user_name = $1 AND coalesce(revoked, expires) < now() - interval '30 days'",
-      Params().text(user));
-  if (!cleared) return tl::unexpected(cleared.error());
+      Params().text(user)));
   NewToken made;
   made.secret = random_token();
   std::optional<Time> expires;
   if (lifetime) expires = std::chrono::system_clock::now() + *lifetime;
-  auto row = connection.query(
+  auto row = STRATA_TRY(connection.query(
       "INSERT INTO tokens (hash, kind, user_name, role, expires, label, project_id) VALUES ($1, $2, $3, $4, $5, $6, $7) "
       "RETURNING " STRATA_TOKEN_COLUMNS,
       Params()
@@ -123,9 +121,8 @@ Result<NewToken> insert_token(PgConnection& connection, TokenKind kind, const st
           .text(strata::name(role))
           .time(expires)
           .text(label)
-          .optional_integer(project));
-  if (!row) return tl::unexpected(row.error());
-  made.token = read_token(*row, kind, 0);
+          .optional_integer(project)));
+  made.token = read_token(row, kind, 0);
   return made;
 }
 
@@ -135,12 +132,11 @@ Result<NewToken> open_session(PgConnection& connection, const Person& person,
   auto made =
       insert_token(connection, TokenKind::session, person.name, person.role, lifetime, label);
   if (!made) return made;
-  auto fewer = run(
+  STRATA_TRY(run(
       connection,
       "UPDATE tokens SET revoked = now() WHERE id IN (SELECT id FROM tokens WHERE user_name = $1 AND "
       "kind = 'session' AND " STRATA_GOOD_TOKEN " ORDER BY id DESC OFFSET $2)",
-      Params().text(person.name).integer(kMostTokens));
-  if (!fewer) return tl::unexpected(fewer.error());
+      Params().text(person.name).integer(kMostTokens)));
   return made;
 }
 
@@ -149,46 +145,44 @@ struct Found {
   bool is_fresh = false;  // it was used a moment ago, and that is written
 };
 Result<std::optional<Found>> find(PgConnection& connection, const std::string& secret) {
-  auto row = connection.query(
+  auto row = STRATA_TRY(connection.query(
       "SELECT u.name, u.role, t.role, t.kind, t.id, u.id, coalesce(t.last_used > now() - interval '5 minutes', false), "
       "t.project_id "
       "FROM (SELECT * FROM tokens WHERE hash = $1 AND " STRATA_GOOD_TOKEN
       ") t JOIN users u ON u.name = t.user_name "
       "WHERE u.disabled IS NULL AND u.deleted IS NULL",
-      Params().bytes(sha256(secret)));
-  if (!row) return tl::unexpected(row.error());
-  if (row->rows() == 0) return std::optional<Found>();
-  const auto persons = parse_role(row->text(0, 1)), own = parse_role(row->text(0, 2));
-  const auto kind = parse_kind(row->text(0, 3));
+      Params().bytes(sha256(secret))));
+  if (row.rows() == 0) return std::optional<Found>();
+  const auto persons = parse_role(row.text(0, 1)), own = parse_role(row.text(0, 2));
+  const auto kind = parse_kind(row.text(0, 3));
   if (!persons || !own || !kind) return std::optional<Found>();  // of a later version
   Roles roles{*persons, {}};
-  auto given = connection.query("SELECT project_id, role FROM project_roles WHERE user_id = $1",
-                                Params().integer(row->integer(0, 5)));
-  if (!given) return tl::unexpected(given.error());
-  for (int i = 0; i < given->rows(); ++i)
-    if (const auto role = parse_role(given->text(i, 1))) {
-      Role& there = roles.in_projects[given->integer(i, 0)];
+  auto given =
+      STRATA_TRY(connection.query("SELECT project_id, role FROM project_roles WHERE user_id = $1",
+                                  Params().integer(row.integer(0, 5))));
+  for (int i = 0; i < given.rows(); ++i)
+    if (const auto role = parse_role(given.text(i, 1))) {
+      Role& there = roles.in_projects[given.integer(i, 0)];
       there = std::max(there, *role);
     }
   if (*kind == TokenKind::script) roles = roles.at_most(*own);
-  if (!row->null(0, 7)) {
-    const std::int64_t project = row->integer(0, 7);
+  if (!row.null(0, 7)) {
+    const std::int64_t project = row.integer(0, 7);
     const Role there = std::min(roles.in(project), Role::curator);
     roles = {};
     if (there > Role::guest) roles.in_projects[project] = there;
   }
   return std::optional<Found>(
-      {{row->text(0, 0), std::move(roles), *kind, row->integer(0, 4)}, row->boolean(0, 6)});
+      {{row.text(0, 0), std::move(roles), *kind, row.integer(0, 4)}, row.boolean(0, 6)});
 }
 
 Result<void> put_password(PgConnection& connection, const std::string& user,
                           const std::string& hash, std::optional<std::int64_t> kept) {
-  auto set = run(connection, "UPDATE users SET password = $2 WHERE name = $1",
-                 Params().text(user).text(hash));
-  if (!set) return set;
-  if (auto ended = revoke_all(connection, user, TokenKind::session, kept); !ended) return ended;
+  STRATA_TRY(run(connection, "UPDATE users SET password = $2 WHERE name = $1",
+                 Params().text(user).text(hash)));
+  STRATA_TRY(revoke_all(connection, user, TokenKind::session, kept));
   for (const TokenKind link : {TokenKind::invitation, TokenKind::owner_link})
-    if (auto ended = revoke_all(connection, user, link, {}); !ended) return ended;
+    STRATA_TRY(revoke_all(connection, user, link, {}));
   return {};
 }
 
@@ -200,11 +194,10 @@ Result<Person> lock_person(PgConnection& connection, const std::string& name) {
 
 Result<std::vector<Person>> Store::people() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
-    auto rows = connection.query("SELECT " STRATA_PERSON_COLUMNS
-                                 " FROM users WHERE deleted IS NULL ORDER BY lower(name)");
-    if (!rows) return tl::unexpected(rows.error());
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE deleted IS NULL ORDER BY lower(name)"));
     std::vector<Person> people;
-    for (int i = 0; i < rows->rows(); ++i) people.push_back(read_person(*rows, i));
+    for (int i = 0; i < rows.rows(); ++i) people.push_back(read_person(rows, i));
     return people;
   });
 }
@@ -219,11 +212,10 @@ Result<std::vector<Person>> Store::people_called(const std::vector<std::string>&
   for (const std::string& name : names)
     if (check_text(name, "user")) asked.add(std::string_view(name));
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Person>> {
-    auto rows = connection.query("SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE name = any($1)",
-                                 Params().array(asked));
-    if (!rows) return tl::unexpected(rows.error());
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE name = any($1)", Params().array(asked)));
     std::vector<Person> people;
-    for (int i = 0; i < rows->rows(); ++i) people.push_back(read_person(*rows, i));
+    for (int i = 0; i < rows.rows(); ++i) people.push_back(read_person(rows, i));
     return people;
   });
 }
@@ -240,50 +232,44 @@ Result<Person> Store::create_person(const std::string& name, const std::string& 
   if (name.empty() || name.size() > 64 || !is_plain(name.front()) ||
       !std::ranges::all_of(name, may_stand))
     return fail(
-        422, "Bad name",
+        ErrorCode::invalid, "Bad name",
         "A name has 1 to 64 letters (a to z), digits, `.`, `_`, `@` and `-`, and begins with a letter or digit.",
         "user");
   std::string lower = name;
   for (char& c : lower)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   if (lower.starts_with(kFormer))
-    return fail(409, "Name taken",
+    return fail(ErrorCode::conflict, "Name taken",
                 "Names that begin with `former-` are kept for who is deleted. Choose another name.",
                 "user");
-  if (auto good = check_texts({{&full_name, "full_name"}}); !good)
-    return tl::unexpected(good.error());
+  STRATA_TRY(check_texts({{&full_name, "full_name"}}));
   return impl_->pool.write([&](PgConnection& connection) -> Result<Person> {
-    auto made = connection.query(
+    auto made = STRATA_TRY(connection.query(
         "INSERT INTO users (name, full_name, role) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING "
         "RETURNING " STRATA_PERSON_COLUMNS,
-        Params().text(name).text(full_name).text(strata::name(role)));
-    if (!made) return tl::unexpected(made.error());
-    if (made->rows() == 0)
-      return fail(409, "Name taken",
+        Params().text(name).text(full_name).text(strata::name(role))));
+    if (made.rows() == 0)
+      return fail(ErrorCode::conflict, "Name taken",
                   "There is somebody called `" + name + "`. Choose another name.", "user");
-    if (groups.empty()) return read_person(*made, 0);
-    if (auto named = act_as(connection, by); !named) return tl::unexpected(named.error());
-    if (auto joined = join_groups(connection, made->integer(0, 0), groups); !joined)
-      return tl::unexpected(joined.error());
+    if (groups.empty()) return read_person(made, 0);
+    STRATA_TRY(act_as(connection, by));
+    STRATA_TRY(join_groups(connection, made.integer(0, 0), groups));
     return load_person(connection, name, false);
   });
 }
 
 Result<Person> Store::change_person(std::int64_t id, const PersonChange& change) {
-  if (change.full_name)
-    if (auto good = check_texts({{&*change.full_name, "full_name"}}); !good)
-      return tl::unexpected(good.error());
+  if (change.full_name) STRATA_TRY(check_texts({{&*change.full_name, "full_name"}}));
   return impl_->pool.write([&](PgConnection& connection) -> Result<Person> {
-    auto rows = connection.query("SELECT " STRATA_PERSON_COLUMNS
-                                 " FROM users WHERE id = $1 AND deleted IS NULL FOR UPDATE",
-                                 Params().integer(id));
-    if (!rows) return tl::unexpected(rows.error());
-    if (rows->rows() == 0) return not_found("person", std::to_string(id));
-    Person person = read_person(*rows, 0);
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT " STRATA_PERSON_COLUMNS " FROM users WHERE id = $1 AND deleted IS NULL FOR UPDATE",
+        Params().integer(id)));
+    if (rows.rows() == 0) return no_such("person", std::to_string(id));
+    Person person = read_person(rows, 0);
     if (change.full_name) person.full_name = *change.full_name;
     if (change.role) person.role = *change.role;
     if (change.disabled) person.disabled = *change.disabled;
-    auto done = run(
+    STRATA_TRY(run(
         connection,
         "UPDATE users SET full_name = $2, role = $3, disabled = CASE WHEN $4 THEN coalesce(disabled, now()) END "
         "WHERE id = $1",
@@ -291,28 +277,25 @@ Result<Person> Store::change_person(std::int64_t id, const PersonChange& change)
             .integer(id)
             .text(person.full_name)
             .text(strata::name(person.role))
-            .boolean(person.disabled));
-    if (!done) return tl::unexpected(done.error());
+            .boolean(person.disabled)));
     if (person.disabled)
       for (const TokenKind kind : {TokenKind::session, TokenKind::invitation})
-        if (auto ended = revoke_all(connection, person.name, kind, {}); !ended)
-          return tl::unexpected(ended.error());
+        STRATA_TRY(revoke_all(connection, person.name, kind, {}));
     return person;
   });
 }
 
 Result<void> Store::delete_person(const std::string& name) {
   return impl_->pool.write_within(kBulkLimits, [&](PgConnection& connection) -> Result<void> {
-    auto person = lock_person(connection, name);
-    if (!person) return tl::unexpected(person.error());
+    auto person = STRATA_TRY(lock_person(connection, name));
     auto ended =
-        run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person->name));
+        run(connection, "DELETE FROM tokens WHERE user_name = $1", Params().text(person.name));
     if (!ended) return ended;
     for (const char* sql : {"DELETE FROM project_members WHERE user_id = $1",
                             "DELETE FROM group_people WHERE user_id = $1",
                             "DELETE FROM personal_views WHERE user_id = $1"})
-      if (auto left = run(connection, sql, Params().integer(person->id)); !left) return left;
-    const std::string former = std::string(kFormer) + std::to_string(person->id);
+      STRATA_TRY(run(connection, sql, Params().integer(person.id)));
+    const std::string former = std::string(kFormer) + std::to_string(person.id);
     for (
         const char* sql :
         {"UPDATE users SET name = $2, full_name = '', password = NULL, deleted = now() WHERE name = $1",
@@ -324,41 +307,38 @@ Result<void> Store::delete_person(const std::string& name) {
          "UPDATE tours SET user_name = $2 WHERE user_name = $1",
          "UPDATE kiosks SET user_name = $2 WHERE user_name = $1",
          "UPDATE jobs SET user_name = $2 WHERE user_name = $1"})
-      if (auto done = run(connection, sql, Params().text(person->name).text(former)); !done)
-        return done;
-    if (auto done = rename_in_journal(connection, person->name, former); !done) return done;
-    if (auto done = rename_in_comments(connection, person->name, former); !done) return done;
-    if (auto done = rename_in_activity(connection, person->name, former); !done) return done;
+      STRATA_TRY(run(connection, sql, Params().text(person.name).text(former)));
+    STRATA_TRY(rename_in_journal(connection, person.name, former));
+    STRATA_TRY(rename_in_comments(connection, person.name, former));
+    STRATA_TRY(rename_in_activity(connection, person.name, former));
     // Answers that are kept for calls that come again may tell it, as the name of somebody or in
     // what is said to them; names hold nothing that JSON writes otherwise.
     return run(
         connection,
         "DELETE FROM answers WHERE position('\"' || $1 || '\"' IN replace(answer::text, '\\', '')) > 0 "
         "OR " STRATA_CALLS_THEM("answer::text"),
-        Params().text(person->name));
+        Params().text(person.name));
   });
 }
 
 Result<std::vector<Membership>> Store::members(std::int64_t project_id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Membership>> {
-    auto rows = connection.query(
-        "SELECT " STRATA_PERSON_COLUMNS
-        ", in_project FROM users JOIN "
-        "(SELECT user_id, role AS in_project FROM project_members WHERE project_id = $1) m "
-        "ON user_id = id ORDER BY lower(name)",
-        Params().integer(project_id));
-    if (!rows) return tl::unexpected(rows.error());
+    auto rows =
+        STRATA_TRY(connection.query(
+            "SELECT " STRATA_PERSON_COLUMNS ", in_project FROM users JOIN "
+            "(SELECT user_id, role AS in_project FROM project_members WHERE project_id = $1) m "
+            "ON user_id = id ORDER BY lower(name)",
+            Params().integer(project_id)));
     std::vector<Membership> members;
-    for (int i = 0; i < rows->rows(); ++i)
-      members.push_back(
-          {read_person(*rows, i), parse_role(rows->text(i, 9)).value_or(Role::viewer)});
+    for (int i = 0; i < rows.rows(); ++i)
+      members.push_back({read_person(rows, i), parse_role(rows.text(i, 9)).value_or(Role::viewer)});
     return members;
   });
 }
 
 Result<void> check_project_role(Role role) {
   if (role < Role::viewer || role > Role::curator)
-    return fail(422, "No role in a project",
+    return fail(ErrorCode::invalid, "No role in a project",
                 "In a project people are viewer, annotator or curator.", "role");
   return {};
 }
@@ -367,70 +347,62 @@ Result<void> lock_project(PgConnection& connection, std::int64_t id) {
   auto project =
       connection.query("SELECT 1 FROM projects WHERE id = $1 FOR KEY SHARE", Params().integer(id));
   if (!project) return tl::unexpected(project.error());
-  if (project->rows() == 0) return not_found("project", std::to_string(id));
+  if (project->rows() == 0) return no_such("project", std::to_string(id));
   return {};
 }
 
 Result<Membership> Store::put_member(std::int64_t project_id, const std::string& user, Role role,
                                      const std::string& by) {
-  if (auto good = check_project_role(role); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_project_role(role));
   return impl_->pool.write([&](PgConnection& connection) -> Result<Membership> {
-    auto person = lock_person(connection, user);
-    if (!person) return tl::unexpected(person.error());
-    if (auto there = lock_project(connection, project_id); !there)
-      return tl::unexpected(there.error());
-    if (auto named = act_as(connection, by); !named) return tl::unexpected(named.error());
-    auto put = run(connection,
+    auto person = STRATA_TRY(lock_person(connection, user));
+    STRATA_TRY(lock_project(connection, project_id));
+    STRATA_TRY(act_as(connection, by));
+    STRATA_TRY(run(connection,
                    "INSERT INTO project_members (project_id, user_id, role) VALUES ($1, $2, $3) "
                    "ON CONFLICT (project_id, user_id) DO UPDATE SET role = excluded.role",
-                   Params().integer(project_id).integer(person->id).text(strata::name(role)));
-    if (!put) return tl::unexpected(put.error());
-    return Membership{std::move(*person), role};
+                   Params().integer(project_id).integer(person.id).text(strata::name(role))));
+    return Membership{std::move(person), role};
   });
 }
 
 Result<void> Store::remove_member(std::int64_t project_id, const std::string& user,
                                   const std::string& by) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
-    auto person = lock_person(connection, user);
-    if (!person) return tl::unexpected(person.error());
-    if (auto named = act_as(connection, by); !named) return named;
-    auto gone = connection.query(
+    auto person = STRATA_TRY(lock_person(connection, user));
+    STRATA_TRY(act_as(connection, by));
+    auto gone = STRATA_TRY(connection.query(
         "DELETE FROM project_members WHERE project_id = $1 AND user_id = $2 RETURNING 1",
-        Params().integer(project_id).integer(person->id));
-    if (!gone) return tl::unexpected(gone.error());
-    if (gone->rows() == 0) return not_found("member", user);
+        Params().integer(project_id).integer(person.id)));
+    if (gone.rows() == 0) return no_such("member", user);
     return {};
   });
 }
 
 Result<bool> Store::administrator_has_password() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<bool> {
-    auto rows = connection.query(
-        "SELECT 1 FROM users WHERE password IS NOT NULL AND disabled IS NULL AND deleted IS NULL AND role IN ('administrator', 'owner') LIMIT 1");
-    if (!rows) return tl::unexpected(rows.error());
-    return rows->rows() > 0;
+    auto rows = STRATA_TRY(connection.query(
+        "SELECT 1 FROM users WHERE password IS NOT NULL AND disabled IS NULL AND deleted IS NULL AND role IN ('administrator', 'owner') LIMIT 1"));
+    return rows.rows() > 0;
   });
 }
 
 Result<std::string> Store::password_of(const std::string& name) {
   if (!is_ascii(name) || !check_text(name, "user")) return std::string();
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::string> {
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         "SELECT password FROM users WHERE lower(name) = lower($1) AND disabled IS NULL AND deleted IS NULL AND "
         "password IS NOT NULL",
-        Params().text(name));
-    if (!rows) return tl::unexpected(rows.error());
-    return rows->rows() == 0 ? std::string() : rows->text(0, 0);
+        Params().text(name)));
+    return rows.rows() == 0 ? std::string() : rows.text(0, 0);
   });
 }
 
 Result<void> Store::set_password(const std::string& name, const std::string& hash,
                                  std::optional<std::int64_t> kept) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
-    auto person = lock_person(connection, name);
-    if (!person) return tl::unexpected(person.error());
-    return put_password(connection, person->name, hash, kept);
+    auto person = STRATA_TRY(lock_person(connection, name));
+    return put_password(connection, person.name, hash, kept);
   });
 }
 
@@ -439,52 +411,48 @@ Result<NewToken> Store::create_token(TokenKind kind, const std::string& user, Ro
                                      const std::string& label,
                                      const std::optional<std::string>& hash,
                                      std::optional<std::int64_t> project) {
-  if (auto good = check_texts({{&label, "name"}}); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_texts({{&label, "name"}}));
   return impl_->pool.write([&](PgConnection& connection) -> Result<NewToken> {
-    auto person = lock_person(connection, user);
-    if (!person) return tl::unexpected(person.error());
-    if (person->disabled) return not_found("person", user);
+    auto person = STRATA_TRY(lock_person(connection, user));
+    if (person.disabled) return no_such("person", user);
     if (hash) {
-      auto same = connection.query("SELECT 1 FROM users WHERE id = $1 AND password = $2",
-                                   Params().integer(person->id).text(*hash));
-      if (!same) return tl::unexpected(same.error());
-      if (same->rows() == 0)
-        return fail(401, "Not signed in", "The password was changed meanwhile.", "password");
+      auto same = STRATA_TRY(connection.query("SELECT 1 FROM users WHERE id = $1 AND password = $2",
+                                              Params().integer(person.id).text(*hash)));
+      if (same.rows() == 0)
+        return fail(ErrorCode::unauthenticated, "Not signed in",
+                    "The password was changed meanwhile.", "password");
     }
-    if (kind == TokenKind::session) return open_session(connection, *person, lifetime, label);
-    const auto good = count_good(connection, person->name, kind);
+    if (kind == TokenKind::session) return open_session(connection, person, lifetime, label);
+    const auto good = count_good(connection, person.name, kind);
     if (!good) return tl::unexpected(good.error());
     if (kind == TokenKind::script && *good >= static_cast<std::int64_t>(kMostTokens))
-      return fail(409, "Too many tokens",
+      return fail(ErrorCode::conflict, "Too many tokens",
                   "There are " + std::to_string(kMostTokens) + " tokens. Revoke some first.");
     if (project) {
-      if (auto good = check_project_role(role); !good) return tl::unexpected(good.error());
-      if (auto there = lock_project(connection, *project); !there)
-        return tl::unexpected(there.error());
+      STRATA_TRY(check_project_role(role));
+      STRATA_TRY(lock_project(connection, *project));
     }
-    return insert_token(connection, kind, person->name, role, lifetime, label, project);
+    return insert_token(connection, kind, person.name, role, lifetime, label, project);
   });
 }
 
 Result<NewToken> Store::create_link(TokenKind kind, const std::string& user,
                                     std::chrono::seconds lifetime) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<NewToken> {
-    auto person = lock_person(connection, user);
-    if (!person) return tl::unexpected(person.error());
-    if (person->disabled) return not_found("person", user);
-    if (auto old = revoke_all(connection, person->name, kind, {}); !old)
-      return tl::unexpected(old.error());
-    return insert_token(connection, kind, person->name, person->role, lifetime, {});
+    auto person = STRATA_TRY(lock_person(connection, user));
+    if (person.disabled) return no_such("person", user);
+    STRATA_TRY(revoke_all(connection, person.name, kind, {}));
+    return insert_token(connection, kind, person.name, person.role, lifetime, {});
   });
 }
 
 Result<std::optional<Principal>> Store::find_token(const std::string& secret) {
-  auto found = impl_->pool.read([&](PgConnection& connection) { return find(connection, secret); });
-  if (!found) return tl::unexpected(found.error());
-  if (!*found) return std::optional<Principal>();
-  const Principal& principal = (*found)->principal;
+  auto found = STRATA_TRY(
+      impl_->pool.read([&](PgConnection& connection) { return find(connection, secret); }));
+  if (!found) return std::optional<Principal>();
+  const Principal& principal = found->principal;
   // That it was used is only remembered: whoever asks is let in also where nothing can be written.
-  if (!(*found)->is_fresh &&
+  if (!found->is_fresh &&
       (principal.kind == TokenKind::session || principal.kind == TokenKind::script))
     (void)impl_->pool.write([&](PgConnection& connection) {
       return run(
@@ -498,13 +466,12 @@ Result<std::optional<Principal>> Store::find_token(const std::string& secret) {
 
 Result<std::vector<Token>> Store::tokens(const std::string& user, TokenKind kind) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Token>> {
-    auto rows = connection.query("SELECT " STRATA_TOKEN_COLUMNS
-                                 " FROM tokens WHERE user_name = $1 AND kind = $2 "
-                                 "AND " STRATA_GOOD_TOKEN " ORDER BY id DESC",
-                                 Params().text(user).text(name(kind)));
-    if (!rows) return tl::unexpected(rows.error());
+    auto rows = STRATA_TRY(connection.query("SELECT " STRATA_TOKEN_COLUMNS
+                                            " FROM tokens WHERE user_name = $1 AND kind = $2 "
+                                            "AND " STRATA_GOOD_TOKEN " ORDER BY id DESC",
+                                            Params().text(user).text(name(kind))));
     std::vector<Token> tokens;
-    for (int i = 0; i < rows->rows(); ++i) tokens.push_back(read_token(*rows, kind, i));
+    for (int i = 0; i < rows.rows(); ++i) tokens.push_back(read_token(rows, kind, i));
     return tokens;
   });
 }
@@ -513,15 +480,12 @@ Result<std::optional<std::string>> Store::redeem_owner_link(const std::string& l
                                                             std::chrono::seconds lifetime,
                                                             const std::string& label) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<std::optional<std::string>> {
-    auto owner = find(connection, link);
-    if (!owner) return tl::unexpected(owner.error());
-    if (!*owner || (*owner)->principal.kind != TokenKind::owner_link)
+    auto owner = STRATA_TRY(find(connection, link));
+    if (!owner || owner->principal.kind != TokenKind::owner_link)
       return std::optional<std::string>();
-    auto person = lock_person(connection, (*owner)->principal.user);
-    if (!person) return tl::unexpected(person.error());
-    auto session = open_session(connection, *person, lifetime, label);
-    if (!session) return tl::unexpected(session.error());
-    return std::optional<std::string>(std::move(session->secret));
+    auto person = STRATA_TRY(lock_person(connection, owner->principal.user));
+    auto session = STRATA_TRY(open_session(connection, person, lifetime, label));
+    return std::optional<std::string>(std::move(session.secret));
   });
 }
 
@@ -529,33 +493,25 @@ Result<std::optional<std::string>> Store::accept_invitation(
     const std::string& invitation, const std::string& hash,
     const std::optional<std::string>& full_name, std::chrono::seconds lifetime,
     const std::string& label) {
-  if (full_name)
-    if (auto good = check_texts({{&*full_name, "full_name"}}); !good)
-      return tl::unexpected(good.error());
+  if (full_name) STRATA_TRY(check_texts({{&*full_name, "full_name"}}));
   return impl_->pool.write([&](PgConnection& connection) -> Result<std::optional<std::string>> {
     const auto is_good = [](const auto& found) {
       return found && found->principal.kind == TokenKind::invitation;
     };
-    auto invited = find(connection, invitation);
-    if (!invited) return tl::unexpected(invited.error());
-    if (!is_good(*invited)) return std::optional<std::string>();
-    auto person = lock_person(connection, (*invited)->principal.user);
-    if (!person) return tl::unexpected(person.error());
+    auto invited = STRATA_TRY(find(connection, invitation));
+    if (!is_good(invited)) return std::optional<std::string>();
+    auto person = STRATA_TRY(lock_person(connection, invited->principal.user));
     // Of two who use it at once, one came first; and the person may have been disabled before the
     // lock was had.
-    auto still = find(connection, invitation);
-    if (!still) return tl::unexpected(still.error());
-    if (!is_good(*still)) return std::optional<std::string>();
-    if (auto set = put_password(connection, person->name, hash, {}); !set)
-      return tl::unexpected(set.error());
+    auto still = STRATA_TRY(find(connection, invitation));
+    if (!is_good(still)) return std::optional<std::string>();
+    STRATA_TRY(put_password(connection, person.name, hash, {}));
     if (full_name) {
-      auto named = run(connection, "UPDATE users SET full_name = $2 WHERE name = $1",
-                       Params().text(person->name).text(*full_name));
-      if (!named) return tl::unexpected(named.error());
+      STRATA_TRY(run(connection, "UPDATE users SET full_name = $2 WHERE name = $1",
+                     Params().text(person.name).text(*full_name)));
     }
-    auto session = open_session(connection, *person, lifetime, label);
-    if (!session) return tl::unexpected(session.error());
-    return std::optional<std::string>(std::move(session->secret));
+    auto session = STRATA_TRY(open_session(connection, person, lifetime, label));
+    return std::optional<std::string>(std::move(session.secret));
   });
 }
 
@@ -568,13 +524,12 @@ Result<void> Store::revoke_token(const std::string& secret) {
 
 Result<void> Store::revoke_token(const std::string& user, TokenKind kind, std::int64_t id) {
   return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
-    auto done = connection.query(
+    auto done = STRATA_TRY(connection.query(
         "UPDATE tokens SET revoked = now() WHERE user_name = $1 AND kind = $2 AND id = $3 AND " STRATA_GOOD_TOKEN
         " RETURNING id",
-        Params().text(user).text(name(kind)).integer(id));
-    if (!done) return tl::unexpected(done.error());
-    if (done->rows() == 0)
-      return not_found(kind == TokenKind::session ? "session" : "token", std::to_string(id));
+        Params().text(user).text(name(kind)).integer(id)));
+    if (done.rows() == 0)
+      return no_such(kind == TokenKind::session ? "session" : "token", std::to_string(id));
     return {};
   });
 }

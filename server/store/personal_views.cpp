@@ -9,21 +9,20 @@ constexpr std::size_t kMostBytes = 1 << 20;  // as the table has it
 
 Result<nlohmann::json> Store::personal_view(const std::string& user, std::int64_t model_id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<nlohmann::json> {
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         "SELECT v.content FROM personal_views v JOIN users u ON u.id = v.user_id WHERE u.name = $1 AND v.model_id = $2",
-        Params().text(user).integer(model_id));
-    if (!rows) return tl::unexpected(rows.error());
-    return rows->rows() == 0 ? nlohmann::json::array() : rows->json(0, 0);
+        Params().text(user).integer(model_id)));
+    return rows.rows() == 0 ? nlohmann::json::array() : rows.json(0, 0);
   });
 }
 
 Result<void> Store::keep_personal_view(const std::string& user, std::int64_t model_id,
                                        const nlohmann::json& layers) {
-  if (auto good = check_json(layers, "layers"); !good) return good;
+  STRATA_TRY(check_json(layers, "layers"));
   // PostgreSQL writes a blank behind every comma and colon: half of the room is enough for any of
   // them.
   if (layers.dump().size() > kMostBytes / 2)
-    return fail(413, "Too much to keep",
+    return fail(ErrorCode::too_large, "Too much to keep",
                 "What is kept of a model for a person has at most 512 KiB.", "layers");
   return impl_->pool.write([&](PgConnection& connection) -> Result<void> {
     auto done =

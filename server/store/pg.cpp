@@ -25,7 +25,7 @@ bool starts_with_any(std::string_view sqlstate, std::initializer_list<std::strin
 constexpr const char* kConnectionLost = "08006";
 constexpr std::chrono::milliseconds kConnectFor{5000};
 
-Problem unknown_outcome(Problem lost) {
+Error unknown_outcome(Error lost) {
   lost.title = "Outcome unknown";
   lost.detail =
       "The database's answer to the last step was lost, so this may have been done or not. Look before you repeat it; a "
@@ -35,42 +35,46 @@ Problem unknown_outcome(Problem lost) {
 
 }  // namespace
 
-Problem unavailable(std::string_view why) {
-  return {503, "Database unavailable",
+Error unavailable(std::string_view why) {
+  return {ErrorCode::unavailable, "Database unavailable",
           "PostgreSQL does not answer (" + one_line(why) +
               "). Nothing was changed by this call; try again.",
           ""};
 }
 
-Problem problem_of(std::string_view sqlstate, std::string_view message) {
+Error problem_of(std::string_view sqlstate, std::string_view message) {
   const std::string what = one_line(message);
   if (sqlstate.empty() || starts_with_any(sqlstate, {"08", "57P"})) return unavailable(message);
   if (sqlstate == "53100")
-    return {507, "Disk full",
+    return {ErrorCode::storage_full, "Disk full",
             "The database's disk is full (" + what + "). Free space on it; nothing was changed.",
             ""};
   if (sqlstate.starts_with("53"))
-    return {503, "Database overloaded",
+    return {ErrorCode::busy, "Database overloaded",
             "PostgreSQL is out of resources (" + what + "). Try again shortly.", ""};
   if (sqlstate == "23505")
-    return {409, "Already exists", "Something with this name or id exists already (" + what + ").",
-            ""};
+    return {ErrorCode::conflict, "Already exists",
+            "Something with this name or id exists already (" + what + ").", ""};
   if (sqlstate == "23503")
-    return {409, "Conflict",
+    return {ErrorCode::conflict, "Conflict",
             "What this refers to does not exist, or is still in use (" + what + ").", ""};
   if (sqlstate.starts_with("23"))
-    return {409, "Conflict", "The database refuses these values (" + what + ").", ""};
+    return {ErrorCode::conflict, "Conflict", "The database refuses these values (" + what + ").",
+            ""};
   if (sqlstate == "22021" || sqlstate == "22P05")
-    return {400, "Text not storable", "Text must be UTF-8 without the character U+0000.", ""};
+    return {ErrorCode::malformed, "Text not storable",
+            "Text must be UTF-8 without the character U+0000.", ""};
   if (starts_with_any(sqlstate, {"22", "54"}))
-    return {400, "Value not storable", "The database cannot keep a value (" + what + ").", ""};
+    return {ErrorCode::malformed, "Value not storable",
+            "The database cannot keep a value (" + what + ").", ""};
   if (starts_with_any(sqlstate, {"40", "55P03", "57014", "25006"}))
-    return {503, "Database busy", "PostgreSQL could not do it now (" + what + "). Try again.", ""};
+    return {ErrorCode::busy, "Database busy",
+            "PostgreSQL could not do it now (" + what + "). Try again.", ""};
   if (sqlstate.starts_with("58"))
-    return {503, "Database unavailable",
+    return {ErrorCode::unavailable, "Database unavailable",
             "PostgreSQL cannot read or write its files (" + what + "). Check its disk.", ""};
-  return {500, "Database error", "PostgreSQL reported " + std::string(sqlstate) + ": " + what + ".",
-          ""};
+  return {ErrorCode::internal, "Database error",
+          "PostgreSQL reported " + std::string(sqlstate) + ": " + what + ".", ""};
 }
 
 bool is_transient(std::string_view sqlstate) {
@@ -100,17 +104,15 @@ Result<PgConnection> PgConnection::connect(const std::string& dsn, const PgLimit
   // A session whose client gave up ends, and lets go of its locks. Not every system can do that.
   if (PQserverVersion(raw) >= 140000)
     (void)connection.script("SET client_connection_check_interval = '2s'");
-  if (auto limited = connection.set_limits(limits); !limited)
-    return tl::unexpected(limited.error());
+  STRATA_TRY(connection.set_limits(limits));
   return connection;
 }
 
 Result<void> PgConnection::set_limits(const PgLimits& limits) {
   if (limits == limits_) return {};
   if (limits.statement != limits_.statement || limits.lock != limits_.lock) {
-    auto set = script("SET statement_timeout = " + std::to_string(limits.statement.count()) +
-                      "; SET lock_timeout = " + std::to_string(limits.lock.count()));
-    if (!set) return set;
+    STRATA_TRY(script("SET statement_timeout = " + std::to_string(limits.statement.count()) +
+                      "; SET lock_timeout = " + std::to_string(limits.lock.count())));
   }
   limits_ = limits;
   return {};
@@ -182,7 +184,7 @@ Result<PgResult> PgConnection::outcome() {
   return last;
 }
 
-tl::unexpected<Problem> PgConnection::failed(const PGresult* result) {
+tl::unexpected<Error> PgConnection::failed(const PGresult* result) {
   const char* state = result ? PQresultErrorField(result, PG_DIAG_SQLSTATE) : nullptr;
   const char* primary = result ? PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY) : nullptr;
   const bool lost = PQstatus(connection_.get()) != CONNECTION_OK;
@@ -204,15 +206,14 @@ Result<std::string> PgConnection::prepared(const char* sql, const Params& params
   const std::string name = "s" + std::to_string(prepared_.size());
   if (!PQsendPrepare(connection_.get(), name.c_str(), sql, params.count(), params.types()))
     return failed(nullptr);
-  if (auto made = outcome(); !made) return tl::unexpected(made.error());
+  STRATA_TRY(outcome());
   prepared_.emplace(sql, name);
   return name;
 }
 
 Result<PgResult> PgConnection::query(const char* sql, const Params& params) {
-  const auto name = prepared(sql, params);
-  if (!name) return tl::unexpected(name.error());
-  if (!PQsendQueryPrepared(connection_.get(), name->c_str(), params.count(), params.values(),
+  const auto name = STRATA_TRY(prepared(sql, params));
+  if (!PQsendQueryPrepared(connection_.get(), name.c_str(), params.count(), params.values(),
                            params.lengths(), params.formats(), 1))
     return failed(nullptr);
   return outcome();
@@ -227,9 +228,8 @@ Result<PgResult> PgConnection::query_once(const std::string& sql, const Params& 
 
 Result<void> PgConnection::each_row(const char* sql, const Params& params,
                                     const std::function<Result<void>(const PgResult&)>& on_row) {
-  const auto name = prepared(sql, params);
-  if (!name) return tl::unexpected(name.error());
-  if (!PQsendQueryPrepared(connection_.get(), name->c_str(), params.count(), params.values(),
+  const auto name = STRATA_TRY(prepared(sql, params));
+  if (!PQsendQueryPrepared(connection_.get(), name.c_str(), params.count(), params.values(),
                            params.lengths(), params.formats(), 1))
     return failed(nullptr);
   PQsetSingleRowMode(connection_.get());
@@ -256,9 +256,8 @@ Result<void> PgConnection::each_row(const char* sql, const Params& params,
 Result<std::vector<PgResult>> PgConnection::pipeline(const std::deque<Statement>& statements) {
   std::vector<std::string> names;
   for (const auto& statement : statements) {
-    auto name = prepared(statement.sql, statement.params);
-    if (!name) return tl::unexpected(name.error());
-    names.push_back(std::move(*name));
+    auto name = STRATA_TRY(prepared(statement.sql, statement.params));
+    names.push_back(std::move(name));
   }
   PGconn* raw = connection_.get();
   if (!PQenterPipelineMode(raw)) return failed(nullptr);
@@ -298,7 +297,7 @@ Result<std::vector<PgResult>> PgConnection::pipeline(const std::deque<Statement>
 
 Result<void> PgConnection::copy_begin(const char* sql) {
   if (!PQsendQuery(connection_.get(), sql)) return failed(nullptr);
-  if (auto begun = outcome(); !begun) return tl::unexpected(begun.error());
+  STRATA_TRY(outcome());
   return copy_send(copy_header());
 }
 
@@ -309,7 +308,7 @@ Result<void> PgConnection::copy_send(std::string_view data) {
 }
 
 Result<void> PgConnection::copy_end() {
-  if (auto sent = copy_send(copy_trailer()); !sent) return sent;
+  STRATA_TRY(copy_send(copy_trailer()));
   if (PQputCopyEnd(connection_.get(), nullptr) != 1) return failed(nullptr);
   auto done = outcome();
   return done ? Result<void>{} : tl::unexpected(done.error());
@@ -320,13 +319,12 @@ void PgConnection::copy_abort(const char* reason) {
 }
 
 Result<Transaction> Transaction::begin(PgConnection& connection) {
-  if (auto begun = connection.script("BEGIN"); !begun) return tl::unexpected(begun.error());
+  STRATA_TRY(connection.script("BEGIN"));
   return Transaction(connection);
 }
 
 Result<Transaction> Transaction::begin_reading(PgConnection& connection) {
-  auto begun = connection.script("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY");
-  if (!begun) return tl::unexpected(begun.error());
+  STRATA_TRY(connection.script("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"));
   return Transaction(connection);
 }
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/uuid.h"
 #include "store/pg_limits.h"
 
@@ -118,8 +118,8 @@ class PgResult {
 };
 
 // One connection, used by one thread at a time. Statements are prepared once per connection. A call
-// that waits longer than the limits closes the connection: its Problem is 503 and its sqlstate
-// "08006", as when the server had closed it.
+// that waits longer than the limits closes the connection: its Error is `unavailable` and its
+// sqlstate "08006", as when the server had closed it.
 class PgConnection {
  public:
   // One attempt, of at most 5 seconds. The session writes durably (synchronous_commit on) and
@@ -165,7 +165,7 @@ class PgConnection {
  private:
   explicit PgConnection(PGconn* connection) : connection_(connection) {}
   Result<std::string> prepared(const char* sql, const Params& params);
-  tl::unexpected<Problem> failed(const PGresult* result);
+  tl::unexpected<Error> failed(const PGresult* result);
   bool wait_for_socket(short events);
   bool flush();
   PGresult* next_result();
@@ -193,7 +193,7 @@ class Transaction {
       : connection_(std::exchange(other.connection_, nullptr)) {}
   Transaction& operator=(Transaction&&) = delete;
   ~Transaction();
-  // Where the answer is lost nobody knows whether it was done: the Problem says so.
+  // Where the answer is lost nobody knows whether it was done: the Error says so.
   Result<void> commit();
 
  private:
@@ -208,10 +208,10 @@ void append_int4(std::string& row, std::int32_t value);  // field
 void append_row_start(std::string& row, std::int16_t fields);
 std::string copy_trailer();
 
-// What a failure of PostgreSQL means to our caller: connection → 503, 23xxx → 409, disk full → 507,
-// bad text → 400 …
-Problem problem_of(std::string_view sqlstate, std::string_view message);
-Problem unavailable(std::string_view why);
+// What a failure of PostgreSQL means to our caller: connection → unavailable, 23xxx → conflict,
+// disk full → storage_full, bad text → `malformed` …
+Error problem_of(std::string_view sqlstate, std::string_view message);
+Error unavailable(std::string_view why);
 // True where trying the same again later can succeed (connection, resources, deadlocks), false
 // where it never can.
 bool is_transient(std::string_view sqlstate);

@@ -9,7 +9,7 @@ Result<Pool::Lease> Pool::acquire(const PgLimits& limits) {
     std::unique_lock lock(mutex_);
     if (!changed_.wait_for(lock, slot_for_, [&] { return free_slots_ > 0; }))
       return fail(
-          503, "Database busy",
+          ErrorCode::busy, "Database busy",
           "All connections to the database are at work. Nothing was changed; try again shortly.");
     --free_slots_;
   }

@@ -9,9 +9,9 @@
 
 namespace strata::store {
 
-// Connections shared by threads. A caller waits for a free one, for `slot_for` at most (503);
-// broken ones are replaced. When the database is away, connecting is tried again for
-// `kReconnectFor` (a restart takes about that long) before the Problem 503.
+// Connections shared by threads. A caller waits for a free one, for `slot_for` at most
+// (unavailable); broken ones are replaced. When the database is away, connecting is tried again for
+// `kReconnectFor` (a restart takes about that long) before the Error `unavailable`.
 class Pool {
  public:
   static constexpr std::chrono::milliseconds kReconnectFor{3000};
@@ -43,10 +43,10 @@ class Pool {
   template <class Work>
   auto read(Work&& work) -> std::invoke_result_t<Work, PgConnection&> {
     for (bool again = true;; again = false) {
-      auto lease = acquire();
-      if (!lease) return tl::unexpected(lease.error());
-      auto result = work(**lease);
-      if (result || !again || (**lease).alive() || result.error().status != 503) return result;
+      auto lease = STRATA_TRY(acquire());
+      auto result = work(*lease);
+      if (result || !again || (*lease).alive() || result.error().code != ErrorCode::unavailable)
+        return result;
     }
   }
 
@@ -60,18 +60,15 @@ class Pool {
   auto write_within(const PgLimits& limits, Work&& work)
       -> std::invoke_result_t<Work, PgConnection&> {
     using Outcome = std::invoke_result_t<Work, PgConnection&>;
-    auto lease = acquire(limits);
-    if (!lease) return tl::unexpected(lease.error());
+    auto lease = STRATA_TRY(acquire(limits));
     for (int tries_left = 3;; --tries_left) {
-      auto transaction = Transaction::begin(**lease);
-      if (!transaction) return tl::unexpected(transaction.error());
-      Outcome result = work(**lease);
+      auto transaction = STRATA_TRY(Transaction::begin(*lease));
+      Outcome result = work(*lease);
       if (!result) {
-        if ((**lease).take_deadlock() && tries_left > 0) continue;
+        if ((*lease).take_deadlock() && tries_left > 0) continue;
         return result;
       }
-      if (auto committed = transaction->commit(); !committed)
-        return tl::unexpected(committed.error());
+      STRATA_TRY(transaction.commit());
       return result;
     }
   }

@@ -452,7 +452,7 @@ class Writer {
   const std::string& field_;
   std::map<std::int64_t, Table> targets_;
   int aliases_ = 0;
-  std::optional<Problem> problem_;
+  std::optional<Error> problem_;
 };
 
 }  // namespace
@@ -468,9 +468,9 @@ Result<std::string> number_sql(const Expression& number, const OpenTable& open,
   return Writer(open, connection, params, field).write(number, Kind::number);
 }
 
-Problem unanswerable(const PgConnection& connection, Problem problem, const std::string& field) {
+Error unanswerable(const PgConnection& connection, Error problem, const std::string& field) {
   if (!connection.sqlstate().starts_with("22")) return problem;
-  return {422, "Number out of range",
+  return {ErrorCode::invalid, "Number out of range",
           "A number that this expression computes leaves the range of double precision.", field};
 }
 

@@ -37,12 +37,10 @@ class Intake {
     std::vector<std::int64_t> keys;
     for (const RecordInput& input : asked_.records)
       if (input.key) keys.push_back(*input.key);
-    auto rows = load_rows(connection_, open_.table.id, open_.all, keys);
-    if (!rows) return tl::unexpected(rows.error());
-    for (Record& row : *rows) now_[row.key] = std::move(row);
-    auto gone = used_keys(keys);
-    if (!gone) return tl::unexpected(gone.error());
-    gone_ = std::move(*gone);
+    auto rows = STRATA_TRY(load_rows(connection_, open_.table.id, open_.all, keys));
+    for (Record& row : rows) now_[row.key] = std::move(row);
+    auto gone = STRATA_TRY(used_keys(keys));
+    gone_ = std::move(gone);
     named_.insert(keys.begin(), keys.end());
     next_key_ = open_.next_key;
     TableEdit edit{user, asked_.op, {}, {}, {}};
@@ -57,7 +55,7 @@ class Intake {
     return edit;
   }
 
-  std::vector<RowProblem>& problems() { return problems_; }
+  std::vector<RowError>& problems() { return problems_; }
   std::optional<std::size_t> index_of(std::int64_t key) const {
     const auto found = index_of_.find(key);
     return found == index_of_.end() ? std::nullopt : std::optional(found->second);
@@ -68,13 +66,12 @@ class Intake {
   Result<std::set<std::int64_t>> used_keys(const std::vector<std::int64_t>& keys) {
     PgArray asked(oid::kInt8);
     for (const auto key : keys) asked.add(key);
-    auto rows = connection_.query(
+    auto rows = STRATA_TRY(connection_.query(
         "SELECT DISTINCT subject_id FROM table_changes WHERE table_id = $1 AND subject = 'record' AND subject_id = any($2)",
-        Params().integer(open_.table.id).array(asked));
-    if (!rows) return tl::unexpected(rows.error());
+        Params().integer(open_.table.id).array(asked)));
     std::set<std::int64_t> used;
-    for (int i = 0; i < rows->rows(); ++i)
-      if (!now_.contains(rows->integer(i, 0))) used.insert(rows->integer(i, 0));
+    for (int i = 0; i < rows.rows(); ++i)
+      if (!now_.contains(rows.integer(i, 0))) used.insert(rows.integer(i, 0));
     return used;
   }
 
@@ -82,33 +79,35 @@ class Intake {
   Result<std::pair<std::int64_t, Cells>> cells_for(const RecordInput& input) {
     const std::size_t index = next_index_++;
     if (input.key && (*input.key < 0 || *input.key > kHighestKey))
-      return fail(422, "Bad key", "Keys are whole numbers from 0 to 4294967295.", "key");
+      return fail(ErrorCode::invalid, "Bad key", "Keys are whole numbers from 0 to 4294967295.",
+                  "key");
     const auto now = input.key ? now_.find(*input.key) : now_.end();
     const bool exists = now != now_.end();
     if (exists ? !asked_.may_change : !asked_.may_create)
-      return exists ? fail(409, "Record exists",
+      return exists ? fail(ErrorCode::conflict, "Record exists",
                            "There is a record " + std::to_string(*input.key) + " already.", "key")
                     : Result<std::pair<std::int64_t, Cells>>(
-                          not_found("record", std::to_string(input.key.value_or(0))));
+                          no_such("record", std::to_string(input.key.value_or(0))));
     if (exists && input.version && *input.version != now->second.version) return stale("record");
     if (!exists && input.key && gone_.contains(*input.key))
-      return fail(409, "Key used before",
+      return fail(ErrorCode::conflict, "Key used before",
                   "Key " + std::to_string(*input.key) +
                       " was a record's that is deleted. Keys are not given again.",
                   "key");
     while (!input.key && named_.contains(next_key_)) ++next_key_;
     if (!input.key && next_key_ > kHighestKey)
-      return fail(409, "No keys left", "All keys up to 4294967295 were given.", "key");
+      return fail(ErrorCode::conflict, "No keys left", "All keys up to 4294967295 were given.",
+                  "key");
     const std::int64_t key = input.key ? *input.key : next_key_++;
     if (!index_of_.emplace(key, index).second)
-      return fail(422, "Record named twice",
+      return fail(ErrorCode::invalid, "Record named twice",
                   "Record " + std::to_string(key) + " stands here twice.", "key");
     Cells cells;
     if (!exists) cells["exists"] = true;
     for (const auto& [id, value] : input.values)
       if (std::none_of(open_.table.columns.begin(), open_.table.columns.end(),
                        [id = id](const Column& column) { return column.id == id; }))
-        return not_found("column", std::to_string(id));
+        return no_such("column", std::to_string(id));
     for (const Column& column : open_.table.columns) {
       const auto given = input.values.find(column.id);
       if (given == input.values.end() && exists) continue;
@@ -125,7 +124,7 @@ class Intake {
     return std::pair(key, std::move(cells));
   }
 
-  void add_problem(std::size_t index, const Problem& problem) {
+  void add_problem(std::size_t index, const Error& problem) {
     if (problems_.size() < kMostRowProblems)
       problems_.push_back({asked_.records[index].key.value_or(0), problem, index});
   }
@@ -138,24 +137,21 @@ class Intake {
   std::map<std::int64_t, std::size_t> index_of_;
   std::int64_t next_key_ = 1;
   std::size_t next_index_ = 0;
-  std::vector<RowProblem> problems_;
+  std::vector<RowError> problems_;
 };
 
 Result<TableChange> write(PgConnection& connection, std::int64_t table_id,
                           const WriteRecords& asked, const std::string& user) {
-  auto open = lock_table(connection, table_id);
-  if (!open) return tl::unexpected(open.error());
-  Intake intake(connection, *open, asked);
-  auto edit = intake.read(user);
-  if (!edit) return tl::unexpected(edit.error());
+  auto open = STRATA_TRY(lock_table(connection, table_id));
+  Intake intake(connection, open, asked);
+  auto edit = STRATA_TRY(intake.read(user));
   TableChange change;
-  change.table = open->table;
+  change.table = open.table;
   change.problems = std::move(intake.problems());
   // Nothing that was not so before: no entry.
-  if (!change.problems.empty() || edit->records.empty()) return change;
-  auto done = apply_edit(connection, *open, std::move(*edit));
-  if (!done) return done;
-  for (RowProblem& problem : done->problems) problem.index = intake.index_of(problem.key);
+  if (!change.problems.empty() || edit.records.empty()) return change;
+  auto done = STRATA_TRY(apply_edit(connection, open, std::move(edit)));
+  for (RowError& problem : done.problems) problem.index = intake.index_of(problem.key);
   return done;
 }
 
@@ -164,13 +160,12 @@ Result<TableChange> write(PgConnection& connection, std::int64_t table_id,
 Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection, OpenTable& open,
                                                         std::optional<std::int64_t> at) {
   if (at && *at > open.table.sequence)
-    return fail(422, "Not yet there",
+    return fail(ErrorCode::invalid, "Not yet there",
                 "The newest sequence of this table is " + std::to_string(open.table.sequence) + ".",
                 "at");
   if (!at || *at == open.table.sequence) return std::optional<std::vector<Record>>();
-  auto rows = rows_at(connection, open, *at);
-  if (!rows) return tl::unexpected(rows.error());
-  return std::optional(std::move(*rows));
+  auto rows = STRATA_TRY(rows_at(connection, open, *at));
+  return std::optional(std::move(rows));
 }
 
 }  // namespace
@@ -178,9 +173,9 @@ Result<std::optional<std::vector<Record>>> rows_if_past(PgConnection& connection
 Result<TableChange> Store::write_records(std::int64_t table_id, const WriteRecords& asked,
                                          const std::string& user,
                                          const FirstAnswer<TableChange>& answer) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(user, "user"));
   if (asked.records.size() > kMostRecordsAtOnce)
-    return fail(413, "Too many records",
+    return fail(ErrorCode::too_large, "Too many records",
                 "At most " + std::to_string(kMostRecordsAtOnce) + " records go in one call.");
   // What is only tried, and what has problems, is rolled back, and told all the same.
   std::optional<TableChange> told;
@@ -190,7 +185,7 @@ Result<TableChange> Store::write_records(std::int64_t table_id, const WriteRecor
         auto change = write(connection, table_id, asked, user);
         if (!change || (change->problems.empty() && !asked.dry_run)) return change;
         told = std::move(*change);
-        return fail(409, "Not kept", "Nothing was written.");
+        return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
       },
       kBulkLimits);
   if (told) return std::move(*told);
@@ -201,26 +196,24 @@ Result<TableChange> Store::delete_record(std::int64_t table_id, std::int64_t key
                                          std::optional<std::int64_t> version,
                                          const std::string& user, bool dry_run,
                                          const FirstAnswer<TableChange>& answer) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(user, "user"));
   std::optional<TableChange> told;
   auto done = impl_->change(answer, [&](PgConnection& connection) -> Result<TableChange> {
-    auto open = lock_table(connection, table_id);
-    if (!open) return tl::unexpected(open.error());
-    auto rows = load_rows(connection, table_id, open->all, std::vector{key});
-    if (!rows) return tl::unexpected(rows.error());
-    if (rows->empty()) return not_found("record", std::to_string(key));
-    if (version && *version != rows->front().version) return stale("record");
+    auto open = STRATA_TRY(lock_table(connection, table_id));
+    auto rows = STRATA_TRY(load_rows(connection, table_id, open.all, std::vector{key}));
+    if (rows.empty()) return no_such("record", std::to_string(key));
+    if (version && *version != rows.front().version) return stale("record");
     TableEdit edit{
         user, "delete", {{"records", 1}, {"keys", nlohmann::json::array({key})}}, {}, {}};
     Cells& cells = edit.records[key];
     cells["exists"] = false;
-    for (const Column& column : open->all) cells[std::to_string(column.id)] = nullptr;
-    auto change = apply_edit(connection, *open, std::move(edit));
+    for (const Column& column : open.all) cells[std::to_string(column.id)] = nullptr;
+    auto change = apply_edit(connection, open, std::move(edit));
     if (change && !change->problems.empty())
       return tl::unexpected(change->problems.front().problem);
     if (!change || !dry_run) return change;
     told = std::move(*change);
-    return fail(409, "Not kept", "Nothing was written.");
+    return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
   });
   if (told) return std::move(*told);
   return done;
@@ -231,22 +224,18 @@ Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, Role
                                                      std::optional<std::int64_t> at,
                                                      const std::string& field) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyNumber>> {
-    auto transaction = Transaction::begin_reading(connection);
-    if (!transaction) return tl::unexpected(transaction.error());
-    auto open = read_table(connection, table_id, seen_by);
-    if (!open) return tl::unexpected(open.error());
-    auto past = rows_if_past(connection, *open, at);
-    if (!past) return tl::unexpected(past.error());
+    auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
+    auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
+    auto past = STRATA_TRY(rows_if_past(connection, open, at));
     Params params;
-    auto sql = expression.is_condition()
-                   ? condition_sql(expression, *open, connection, params, field)
-                   : number_sql(expression, *open, connection, params, field);
-    if (!sql) return tl::unexpected(sql.error());
-    auto numbers = load_numbers(connection, table_id, open->table.columns, *past,
-                                expression.is_condition() ? "(" + *sql + ")::integer" : *sql,
-                                std::move(params));
+    auto sql = STRATA_TRY(expression.is_condition()
+                              ? condition_sql(expression, open, connection, params, field)
+                              : number_sql(expression, open, connection, params, field));
+    auto numbers =
+        load_numbers(connection, table_id, open.table.columns, past,
+                     expression.is_condition() ? "(" + sql + ")::integer" : sql, std::move(params));
     if (!numbers) return tl::unexpected(unanswerable(connection, numbers.error(), field));
-    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    STRATA_TRY(transaction.commit());
     return numbers;
   });
 }
@@ -254,19 +243,17 @@ Result<std::vector<KeyNumber>> Store::record_numbers(std::int64_t table_id, Role
 Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, Role seen_by,
                                                  const std::string& ref, const std::string& field) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyText>> {
-    auto open = read_table(connection, table_id, seen_by);
-    if (!open) return tl::unexpected(open.error());
-    const Column* column = find_column(open->table.columns, ref);
+    auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
+    const Column* column = find_column(open.table.columns, ref);
     if (!column)
-      return fail(422, "No such column",
-                  "The table '" + open->table.name + "' has no column '" + ref + "'.", field);
+      return fail(ErrorCode::invalid, "No such column",
+                  "The table '" + open.table.name + "' has no column '" + ref + "'.", field);
     if (holds_lists(column->kind))
-      return fail(422, "Column holds lists",
+      return fail(ErrorCode::invalid, "Column holds lists",
                   "'" + column->name + "' may hold several values in one record.", field);
-    auto rows = load_all_rows(connection, table_id, {*column});
-    if (!rows) return tl::unexpected(rows.error());
+    auto rows = STRATA_TRY(load_all_rows(connection, table_id, {*column}));
     std::vector<KeyText> texts;
-    for (const Record& row : *rows) {
+    for (const Record& row : rows) {
       const auto cell = row.values.find(column->id);
       if (cell == row.values.end() || cell->second.is_null()) continue;
       texts.push_back({static_cast<std::uint32_t>(row.key), text_of(cell->second)});
@@ -278,26 +265,22 @@ Result<std::vector<KeyText>> Store::record_texts(std::int64_t table_id, Role see
 Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, Role seen_by,
                                           std::int64_t model_id, std::optional<std::int64_t> at) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<KeyMark>> {
-    auto transaction = Transaction::begin_reading(connection);
-    if (!transaction) return tl::unexpected(transaction.error());
-    auto open = read_table(connection, table_id, seen_by);
-    if (!open) return tl::unexpected(open.error());
-    auto past = rows_if_past(connection, *open, at);
-    if (!past) return tl::unexpected(past.error());
+    auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
+    auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
+    auto past = STRATA_TRY(rows_if_past(connection, open, at));
     std::vector<Column> columns;
-    for (const Column& column : open->table.columns)
+    for (const Column& column : open.table.columns)
       if (holds_marks(column.kind)) columns.push_back(column);
     std::vector<KeyMark> found;
     if (columns.empty()) return found;
-    auto rows = *past ? Result<std::vector<Record>>(std::move(**past))
-                      : load_all_rows(connection, table_id, columns);
-    if (!rows) return tl::unexpected(rows.error());
-    for (const Record& row : *rows)
+    auto rows = STRATA_TRY(past ? Result<std::vector<Record>>(std::move(*past))
+                                : load_all_rows(connection, table_id, columns));
+    for (const Record& row : rows)
       for (const Column& column : columns)
         for (Mark& mark : marks_of(row, column))
           if (mark.model == model_id) found.push_back({row.key, std::move(mark)});
     std::ranges::stable_sort(found, {}, &KeyMark::key);
-    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    STRATA_TRY(transaction.commit());
     return found;
   });
 }
@@ -305,14 +288,11 @@ Result<std::vector<KeyMark>> Store::marks(std::int64_t table_id, Role seen_by,
 Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by,
                                          const RecordQuery& query) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<RecordPage> {
-    auto transaction = Transaction::begin_reading(connection);
-    if (!transaction) return tl::unexpected(transaction.error());
-    auto open = read_table(connection, table_id, seen_by);
-    if (!open) return tl::unexpected(open.error());
+    auto transaction = STRATA_TRY(Transaction::begin_reading(connection));
+    auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
     RecordPage page;
-    auto past = rows_if_past(connection, *open, query.at);
-    if (!past) return tl::unexpected(past.error());
-    page.table = open->table;
+    auto past = STRATA_TRY(rows_if_past(connection, open, query.at));
+    page.table = open.table;
     std::vector<RecordOrder> order;
     auto collation =
         query.order.empty() ? Result<std::string>() : collation_of(connection, query.language);
@@ -322,10 +302,10 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by,
         order.push_back({0, descending});
         continue;
       }
-      const Column* column = find_column(open->table.columns, ref);
+      const Column* column = find_column(open.table.columns, ref);
       if (!column)
-        return fail(422, "No such column", "The table has no column `" + ref.substr(0, 100) + "`.",
-                    "sortby");
+        return fail(ErrorCode::invalid, "No such column",
+                    "The table has no column `" + ref.substr(0, 100) + "`.", "sortby");
       order.push_back({column->id, descending, *collation});
       if (column->kind != ColumnKind::term) continue;
       auto keys = keys_in_order(connection, *column->target, seen_by, *collation);
@@ -333,26 +313,24 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by,
       order.back().keys = std::move(*keys);
     }
     if (query.keys) {
-      if (*past) {
-        std::erase_if(**past, [&](const Record& row) {
+      if (past) {
+        std::erase_if(*past, [&](const Record& row) {
           return std::find(query.keys->begin(), query.keys->end(), row.key) == query.keys->end();
         });
-        page.records = std::move(**past);
+        page.records = std::move(*past);
       } else {
-        auto rows = load_rows(connection, table_id, open->table.columns, *query.keys);
-        if (!rows) return tl::unexpected(rows.error());
-        page.records = std::move(*rows);
+        auto rows = STRATA_TRY(load_rows(connection, table_id, open.table.columns, *query.keys));
+        page.records = std::move(rows);
       }
       page.total = static_cast<std::int64_t>(page.records.size());
     } else {
       Params params;
       std::string where;
       if (query.filter) {
-        auto sql = condition_sql(*query.filter, *open, connection, params, "filter");
-        if (!sql) return tl::unexpected(sql.error());
-        where = std::move(*sql);
+        auto sql = STRATA_TRY(condition_sql(*query.filter, open, connection, params, "filter"));
+        where = std::move(sql);
       }
-      auto rows = load_page(connection, table_id, open->table.columns, *past, where,
+      auto rows = load_page(connection, table_id, open.table.columns, past, where,
                             std::move(params), order, {query.limit, query.offset, query.after});
       if (!rows && rows.error().field == "after") return tl::unexpected(rows.error());
       if (!rows) return tl::unexpected(unanswerable(connection, rows.error(), "filter"));
@@ -360,7 +338,7 @@ Result<Store::RecordPage> Store::records(std::int64_t table_id, Role seen_by,
       page.total = rows->total;
       page.last = std::move(rows->last);
     }
-    if (auto done = transaction->commit(); !done) return tl::unexpected(done.error());
+    STRATA_TRY(transaction.commit());
     return page;
   });
 }
@@ -374,24 +352,22 @@ Result<std::vector<std::int64_t>> Store::missing_records(std::int64_t table_id,
 Result<std::int64_t> Store::table_sequence_at(std::int64_t table_id, const std::string& utc) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
     // As for a model: a time that was read, in milliseconds, counts its own edit.
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM table_edits "
         "WHERE table_id = $1 AND date_trunc('milliseconds', time) <= $2::timestamptz",
-        Params().integer(table_id).text(utc));
-    if (!row) return tl::unexpected(row.error());
-    return row->integer(0, 0);
+        Params().integer(table_id).text(utc)));
+    return row.integer(0, 0);
   });
 }
 
 Result<std::int64_t> Store::table_sequence_when(std::int64_t table_id, std::int64_t model_id,
                                                 std::int64_t sequence) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::int64_t> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(max(sequence), 0) FROM table_edits WHERE table_id = $1 AND "
         "time <= (SELECT max(time) FROM edits WHERE model_id = $2 AND sequence <= $3)",
-        Params().integer(table_id).integer(model_id).integer(sequence));
-    if (!row) return tl::unexpected(row.error());
-    return row->integer(0, 0);
+        Params().integer(table_id).integer(model_id).integer(sequence)));
+    return row.integer(0, 0);
   });
 }
 
@@ -404,13 +380,11 @@ Result<Store::TableHistory> Store::table_history(std::int64_t table_id, Role see
 }
 
 Result<UndoPlan> Store::plan_table_undo(std::int64_t table_id, const std::string& user, bool redo) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(user, "user"));
   return impl_->pool.read([&](PgConnection& connection) -> Result<UndoPlan> {
-    auto open = read_table(connection, table_id);
-    if (!open) return tl::unexpected(open.error());
-    auto undo = plan_undo(connection, *open, user, redo);
-    if (!undo) return tl::unexpected(undo.error());
-    return std::move(undo->plan);
+    auto open = STRATA_TRY(read_table(connection, table_id));
+    auto undo = STRATA_TRY(plan_undo(connection, open, user, redo));
+    return std::move(undo.plan);
   });
 }
 
@@ -418,27 +392,23 @@ Result<TableChange> Store::undo_table(std::int64_t table_id, const std::string& 
                                       std::int64_t planned_at,
                                       const FirstAnswer<TableChange>& answer) {
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
-    auto open = lock_table(connection, table_id);
-    if (!open) return tl::unexpected(open.error());
-    if (open->table.sequence != planned_at) return stale("table");
-    auto undo = plan_undo(connection, *open, user, redo);
-    if (!undo) return tl::unexpected(undo.error());
-    const std::int64_t sequence = open->table.sequence + 1;
-    auto change = apply_edit(connection, *open, std::move(undo->edit));
-    if (!change) return change;
-    if (!change->problems.empty()) {
-      Problem problem = change->problems.front().problem;
-      return fail(409, redo ? "Cannot be redone" : "Cannot be undone", problem.detail,
-                  problem.field);
+    auto open = STRATA_TRY(lock_table(connection, table_id));
+    if (open.table.sequence != planned_at) return stale("table");
+    auto undo = STRATA_TRY(plan_undo(connection, open, user, redo));
+    const std::int64_t sequence = open.table.sequence + 1;
+    auto change = STRATA_TRY(apply_edit(connection, open, std::move(undo.edit)));
+    if (!change.problems.empty()) {
+      Error problem = change.problems.front().problem;
+      return fail(ErrorCode::conflict, redo ? "Cannot be redone" : "Cannot be undone",
+                  problem.detail, problem.field);
     }
-    auto flipped = connection.query(
+    STRATA_TRY(connection.query(
         "UPDATE table_edits SET in_force = $3, undone_by = $4 WHERE table_id = $1 AND sequence = $2",
         Params()
             .integer(table_id)
-            .integer(undo->plan.edit)
+            .integer(undo.plan.edit)
             .boolean(redo)
-            .optional_integer(redo ? std::nullopt : std::optional(sequence)));
-    if (!flipped) return tl::unexpected(flipped.error());
+            .optional_integer(redo ? std::nullopt : std::optional(sequence))));
     return change;
   };
   return impl_->change(answer, work, kBulkLimits);

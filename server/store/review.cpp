@@ -5,20 +5,18 @@ namespace strata::store {
 Result<ReviewQueue> Store::review_queue(std::int64_t layer_id,
                                         const std::optional<std::string>& user, int limit,
                                         int offset, std::int64_t after) {
-  if (user)
-    if (auto good = check_text(*user, "user"); !good) return tl::unexpected(good.error());
+  if (user) STRATA_TRY(check_text(*user, "user"));
   return impl_->pool.read([&](PgConnection& connection) -> Result<ReviewQueue> {
-    auto people = connection.query(
+    auto people = STRATA_TRY(connection.query(
         "SELECT user_name, count(DISTINCT stroke) FROM edits WHERE layer_id = $1 AND review = 'pending' AND in_force "
         "GROUP BY user_name ORDER BY user_name",
-        Params().integer(layer_id));
-    if (!people) return tl::unexpected(people.error());
+        Params().integer(layer_id)));
     ReviewQueue queue;
-    for (int i = 0; i < people->rows(); ++i) {
-      queue.people.push_back({people->text(i, 0), people->integer(i, 1)});
+    for (int i = 0; i < people.rows(); ++i) {
+      queue.people.push_back({people.text(i, 0), people.integer(i, 1)});
       if (!user || *user == queue.people.back().user) queue.total += queue.people.back().strokes;
     }
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         // A stroke's id is its author's choice: two people's strokes are two. Records, which hold
         // whole paths, are read of a page only.
         "SELECT w.stroke, w.first, w.last, w.user_name, e.op, w.begun, w.time, w.texels, w.area, e.record FROM "
@@ -33,21 +31,19 @@ Result<ReviewQueue> Store::review_queue(std::int64_t layer_id,
             .optional_text(user)
             .integer(std::max(limit, 0))
             .integer(std::max(offset, 0))
-            .integer(after));
-    if (!rows) return tl::unexpected(rows.error());
-    for (int i = 0; i < rows->rows(); ++i)
-      queue.strokes.push_back({rows->uuid(i, 0), rows->integer(i, 1), rows->integer(i, 2),
-                               rows->text(i, 3), rows->text(i, 4), rows->time(i, 5),
-                               rows->time(i, 6), static_cast<std::uint64_t>(rows->integer(i, 7)),
-                               rows->real(i, 8), rows->json(i, 9)});
+            .integer(after)));
+    for (int i = 0; i < rows.rows(); ++i)
+      queue.strokes.push_back({rows.uuid(i, 0), rows.integer(i, 1), rows.integer(i, 2),
+                               rows.text(i, 3), rows.text(i, 4), rows.time(i, 5), rows.time(i, 6),
+                               static_cast<std::uint64_t>(rows.integer(i, 7)), rows.real(i, 8),
+                               rows.json(i, 9)});
     return queue;
   });
 }
 
 Result<std::vector<UnderReview>> Store::under_review(std::int64_t layer_id, Decision decision,
                                                      const Reviewees& which) {
-  if (which.user)
-    if (auto good = check_text(*which.user, "user"); !good) return tl::unexpected(good.error());
+  if (which.user) STRATA_TRY(check_text(*which.user, "user"));
   PgArray named(oid::kInt8);
   for (const std::int64_t sequence : which.edits) named.add(sequence);
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<UnderReview>> {
@@ -61,12 +57,11 @@ Result<std::vector<UnderReview>> Store::under_review(std::int64_t layer_id, Deci
         " AND ($2::text IS NULL OR user_name = $2) AND (cardinality($3) = 0 OR "
         "(stroke, user_name, coalesce(reviewed_by, 0)) IN (SELECT stroke, user_name, coalesce(reviewed_by, 0) "
         "FROM edits WHERE layer_id = $1 AND sequence = any($3))) ORDER BY sequence";
-    auto rows = connection.query(sql.c_str(),
-                                 Params().integer(layer_id).optional_text(which.user).array(named));
-    if (!rows) return tl::unexpected(rows.error());
+    auto rows = STRATA_TRY(connection.query(
+        sql.c_str(), Params().integer(layer_id).optional_text(which.user).array(named)));
     std::vector<UnderReview> found;
-    for (int i = 0; i < rows->rows(); ++i)
-      found.push_back({rows->integer(i, 0), rows->uuid(i, 1), rows->text(i, 2)});
+    for (int i = 0; i < rows.rows(); ++i)
+      found.push_back({rows.integer(i, 0), rows.uuid(i, 1), rows.text(i, 2)});
     return found;
   });
 }

@@ -16,7 +16,8 @@ namespace {
 
 Result<std::string> password_in(const fs::path& file) {
   const auto trouble = [&](const char* why) {
-    return fail(500, "Password not usable", file.string() + " " + why, "--sql-listen");
+    return fail(ErrorCode::internal, "Password not usable", file.string() + " " + why,
+                "--sql-listen");
   };
   std::error_code error;
   if (!fs::exists(file, error)) {
@@ -47,19 +48,17 @@ Result<std::string> password_in(const fs::path& file) {
 
 // Identifiers and settings are ours; the password has no character that means anything in SQL.
 Result<void> admit_readers(const std::string& dsn, const fs::path& password_file) {
-  const auto password = password_in(password_file);
-  if (!password) return tl::unexpected(password.error());
-  auto connection = PgConnection::connect(dsn);
-  if (!connection) return tl::unexpected(connection.error());
+  const auto password = STRATA_TRY(password_in(password_file));
+  auto connection = STRATA_TRY(PgConnection::connect(dsn));
   const std::string role = kReaderRole;
-  auto known = connection->query("SELECT 1 FROM pg_roles WHERE rolname = 'strata_reader'");
-  if (!known) return tl::unexpected(known.error());
+  auto known =
+      STRATA_TRY(connection.query("SELECT 1 FROM pg_roles WHERE rolname = 'strata_reader'"));
   std::string sql = "BEGIN; SET LOCAL log_min_error_statement = panic; ";
-  if (known->rows() == 0) sql += "CREATE ROLE " + role + "; ";
+  if (known.rows() == 0) sql += "CREATE ROLE " + role + "; ";
   sql += "ALTER ROLE " + role +
          " LOGIN NOSUPERUSER NOCREATEDB NOCREATEROLE NOINHERIT NOREPLICATION NOBYPASSRLS "
          "CONNECTION LIMIT 10 PASSWORD '" +
-         *password + "'; ";
+         password + "'; ";
   for (const char* setting :
        {"default_transaction_read_only = on", "statement_timeout = '30s'",
         "idle_in_transaction_session_timeout = '60s'", "idle_session_timeout = '1h'",
@@ -81,8 +80,8 @@ Result<void> admit_readers(const std::string& dsn, const fs::path& password_file
       "DO $$ DECLARE f regprocedure; BEGIN FOR f IN SELECT p.oid::regprocedure FROM pg_proc p "
       "WHERE p.pronamespace = 'pg_catalog'::regnamespace AND p.proname ~ '^(lo_|lowrite|loread|pg_(try_)?advisory_|pg_notify)' "
       "LOOP EXECUTE format('REVOKE EXECUTE ON FUNCTION %s FROM PUBLIC', f); END LOOP; END $$; COMMIT";
-  auto done = connection->script(sql);
-  if (!done) (void)connection->script("ROLLBACK");
+  auto done = connection.script(sql);
+  if (!done) (void)connection.script("ROLLBACK");
   return done;
 }
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 // Analysts who read with SQL: a role with rights on the views of the schema `analysis`
 // (db/migrations/000011) and on nothing else.

@@ -12,21 +12,18 @@ Store::~Store() = default;
 
 Result<std::unique_ptr<Store>> Store::open(StoreOptions options,
                                            const std::filesystem::path& migrations_dir) {
-  auto migrations = read_migrations(migrations_dir);
-  if (!migrations) return tl::unexpected(migrations.error());
+  auto migrations = STRATA_TRY(read_migrations(migrations_dir));
   std::unique_ptr<Store> store(new Store);
   store->impl_ = std::make_unique<Impl>(std::move(options));
   auto connection = PgConnection::connect(store->impl_->options.dsn, kMigrationLimits);
   if (!connection) return tl::unexpected(connection.error());
-  auto encoding = connection->query("SELECT current_setting('server_encoding')");
-  if (!encoding) return tl::unexpected(encoding.error());
-  if (encoding->text(0, 0) != "UTF8")
-    return fail(500, "Database not usable",
-                "The database's encoding is " + encoding->text(0, 0) +
+  auto encoding = STRATA_TRY(connection->query("SELECT current_setting('server_encoding')"));
+  if (encoding.text(0, 0) != "UTF8")
+    return fail(ErrorCode::internal, "Database not usable",
+                "The database's encoding is " + encoding.text(0, 0) +
                     "; Strata needs one made with ENCODING 'UTF8'.");
-  auto version = migrate(*connection, *migrations);
-  if (!version) return tl::unexpected(version.error());
-  store->impl_->schema_version = *version;
+  auto version = STRATA_TRY(migrate(*connection, migrations));
+  store->impl_->schema_version = version;
   return store;
 }
 
@@ -40,11 +37,10 @@ Bin& Store::bin() { return impl_->bin; }
 
 Result<StoreInfo> Store::info() {
   return impl_->pool.read([&](PgConnection& connection) -> Result<StoreInfo> {
-    auto row = connection.query(
-        "SELECT current_setting('server_version'), pg_database_size(current_database())");
-    if (!row) return tl::unexpected(row.error());
-    return StoreInfo{row->text(0, 0), impl_->schema_version,
-                     static_cast<std::uint64_t>(row->integer(0, 1))};
+    auto row = STRATA_TRY(connection.query(
+        "SELECT current_setting('server_version'), pg_database_size(current_database())"));
+    return StoreInfo{row.text(0, 0), impl_->schema_version,
+                     static_cast<std::uint64_t>(row.integer(0, 1))};
   });
 }
 
@@ -65,15 +61,14 @@ bool Store::ready() {
 
 Result<void> check_name(const std::string& name) {
   if (name.empty() || name.size() > kLongestName)
-    return fail(400, "Bad name",
+    return fail(ErrorCode::malformed, "Bad name",
                 "`name` must have 1 to " + std::to_string(kLongestName) + " bytes of UTF-8.",
                 "name");
   return check_text(name, "name");
 }
 
 Result<void> check_texts(std::initializer_list<std::pair<const std::string*, const char*>> texts) {
-  for (const auto& [text, field] : texts)
-    if (auto good = check_text(*text, field); !good) return good;
+  for (const auto& [text, field] : texts) STRATA_TRY(check_text(*text, field));
   return {};
 }
 
@@ -81,10 +76,9 @@ Result<void> check_json(const nlohmann::json& json, const std::string& field) {
   if (json.is_string()) return check_text(json.get_ref<const std::string&>(), field);
   if (!json.is_structured()) return {};
   for (const auto& [key, value] : json.items()) {
-    if (json.is_object())
-      if (auto good = check_text(key, field); !good) return good;
+    if (json.is_object()) STRATA_TRY(check_text(key, field));
     if (value.is_structured() || value.is_string())
-      if (auto good = check_json(value, field + "/" + key); !good) return good;
+      STRATA_TRY(check_json(value, field + "/" + key));
   }
   return {};
 }
@@ -117,9 +111,8 @@ Result<PgResult> insert_with_slug(
     Params params;
     params.text(base + "%");
     if (parent) params.integer(*parent);
-    auto taken = connection.query(taken_sql, params);
-    if (!taken) return taken;
-    auto row = insert(free_slug(base, *taken));
+    auto taken = STRATA_TRY(connection.query(taken_sql, params));
+    auto row = insert(free_slug(base, taken));
     if (!row || row->rows() > 0) return row;
   }
 }

@@ -52,9 +52,9 @@ struct StoreInfo {
 };
 
 // Everything durable. All calls block the calling thread, are thread-safe and take a connection
-// from the pool; when the database is away they return a Problem 503 ("Database unavailable") after
-// trying to reconnect. Constraint failures are a Problem 409, unknown ids 404, a stale `version`
-// 412. Changes keep the caller's answer with them (FirstAnswer).
+// from the pool; when the database is away they return an Error unavailable ("Database
+// unavailable") after trying to reconnect. Constraint failures are an Error conflict, unknown ids
+// not_found, a stale `version` `stale`. Changes keep the caller's answer with them (FirstAnswer).
 class Store {
  public:
   // Connects and applies the missing migrations of `migrations_dir`; a newer schema than known is
@@ -74,7 +74,7 @@ class Store {
   Result<Project> create_project(Project project, const FirstAnswer<Project>& answer = {});
   // Where version equals; returns it with version + 1.
   Result<Project> update_project(Project project, const FirstAnswer<Project>& answer = {});
-  // refused (409) while it has models, and for `default`
+  // refused (conflict) while it has models, and for `default`
   Result<void> delete_project(std::int64_t id, const FirstAnswer<>& answer = {});
   // How many of the things, which are sorted by their names without regard to case and then by ids,
   // do not come after that place.
@@ -188,11 +188,11 @@ class Store {
   Result<Table> create_table(const Table& table, const FirstAnswer<Table>& answer = {});
   // name, labels, description
   Result<Table> update_table(const Table& table, const FirstAnswer<Table>& answer = {});
-  // refused (409) while something names it
+  // refused (conflict) while something names it
   Result<void> delete_table(std::int64_t id, const FirstAnswer<>& answer = {});
   Result<std::vector<Layer>> layers_of_table(std::int64_t table_id, Role seen_by);
   // Several tables and the terms of those that are lists, all or none: where one of the changes has
-  // problems, nothing was made. 409: the project has a table of that name. Terms are the first
+  // problems, nothing was made. conflict: the project has a table of that name. Terms are the first
   // entry of their table's journal.
   struct NewTable {
     Table table;
@@ -203,9 +203,9 @@ class Store {
   Result<std::vector<TableChange>> create_tables(
       const std::vector<NewTable>& tables, bool dry_run, const std::string& user,
       const std::string& op, const FirstAnswer<std::vector<TableChange>>& answer = {});
-  // Terms come into a list (409: the table is none) as one entry of its journal: those whose URI or
-  // code is there change that record, the others are new, and what the text does not have stays.
-  // All or none; problems name the term by its place.
+  // Terms come into a list (conflict: the table is none) as one entry of its journal: those whose
+  // URI or code is there change that record, the others are new, and what the text does not have
+  // stays. All or none; problems name the term by its place.
   Result<TableChange> import_terms(std::int64_t table_id, const TermList& list, bool dry_run,
                                    const std::string& user,
                                    const FirstAnswer<TableChange>& answer = {});
@@ -218,8 +218,8 @@ class Store {
                                     std::optional<std::int64_t> version, const std::string& user,
                                     const FirstAnswer<TableChange>& answer = {});
   // Who sees the column, now and in the past: no entry of the journal, so that nothing is seen
-  // again by undo. Where version equals. Refused (422): a list of terms lives by the column, or who
-  // writes records would not see it and must fill it.
+  // again by undo. Where version equals. Refused (invalid): a list of terms lives by the column, or
+  // who writes records would not see it and must fill it.
   Result<Table> show_column(std::int64_t table_id, std::int64_t column_id, Visibility visibility,
                             std::int64_t version, const FirstAnswer<Table>& answer = {});
   Result<TableChange> drop_column(std::int64_t table_id, std::int64_t column_id,
@@ -235,8 +235,8 @@ class Store {
     std::optional<Expression> filter{};  // only those where this condition over columns holds
     // in whose alphabet texts are sorted ("de-at"); empty: in none in particular
     std::string language{};
-    // Only records that follow this place in the order: what RecordPage::last was. Refused (422,
-    // `after`): one of another order.
+    // Only records that follow this place in the order: what RecordPage::last was. Refused
+    // (invalid, `after`): one of another order.
     std::optional<nlohmann::json> after{};
   };
   struct RecordPage {
@@ -248,13 +248,13 @@ class Store {
   };
   Result<RecordPage> records(std::int64_t table_id, Role seen_by, const RecordQuery& query);
   // What a number or a condition over columns is for each record, where it is known; after sequence
-  // `at` of the table, or now. Refused (422 at `field`): what the columns do not fit.
+  // `at` of the table, or now. Refused (invalid at `field`): what the columns do not fit.
   Result<std::vector<KeyNumber>> record_numbers(std::int64_t table_id, Role seen_by,
                                                 const Expression& expression,
                                                 std::optional<std::int64_t> at,
                                                 const std::string& field);
   // What a column holds for each record that has a value there, now: as text, canonical (of a term,
-  // its key). Refused (422 at `field`): a column that is not there or holds lists.
+  // its key). Refused (invalid at `field`): a column that is not there or holds lists.
   Result<std::vector<KeyText>> record_texts(std::int64_t table_id, Role seen_by,
                                             const std::string& column, const std::string& field);
   // The lines and points that records of a table have on a model, by key; after sequence `at` of
@@ -285,8 +285,8 @@ class Store {
   Result<TableHistory> table_history(std::int64_t table_id, Role seen_by,
                                      std::optional<std::int64_t> key, int limit, int offset,
                                      std::optional<std::int64_t> before = {});
-  // The person's newest entry in force, or the one that was undone last; 409 where there is none.
-  // Done where the table is as it was when it was planned (412).
+  // The person's newest entry in force, or the one that was undone last; `conflict` where there is
+  // none. Done where the table is as it was when it was planned (stale).
   Result<UndoPlan> plan_table_undo(std::int64_t table_id, const std::string& user, bool redo);
   Result<TableChange> undo_table(std::int64_t table_id, const std::string& user, bool redo,
                                  std::int64_t planned_at,
@@ -312,8 +312,8 @@ class Store {
                           const std::vector<NewAttachment>& files,
                           std::optional<std::int64_t> version, const Author& who,
                           const FirstAnswer<Attached>& answer = {});
-  // Takes it out of all cells that list it; 404 where none does. It stays for undo and for reading
-  // the past.
+  // Takes it out of all cells that list it; `not_found` where none does. It stays for undo and for
+  // reading the past.
   Result<TableChange> detach(std::int64_t attachment_id, const std::string& user,
                              const FirstAnswer<TableChange>& answer = {});
   // One that they do not see is not found.
@@ -398,10 +398,10 @@ class Store {
   // Those of these names, exactly as written, whether they may sign in or not, and who is deleted.
   // In no order.
   Result<std::vector<Person>> people_called(const std::vector<std::string>& names);
-  // 422: no name for signing in: 1 to 64 of letters, digits and `._@-`, a letter or digit first.
-  // 409: it is taken, in whatever case, or of the form that is kept for who is deleted
-  // (`former-7`). They are in these groups at once (422: there is no such group; 409: it is full),
-  // by whom the projects' activity tells; empty: it does not.
+  // invalid: no name for signing in: 1 to 64 of letters, digits and `._@-`, a letter or digit
+  // first. conflict: it is taken, in whatever case, or of the form that is kept for who is deleted
+  // (`former-7`). They are in these groups at once (invalid: there is no such group; conflict: it
+  // is full), by whom the projects' activity tells; empty: it does not.
   Result<Person> create_person(const std::string& name, const std::string& full_name, Role role,
                                const std::vector<std::int64_t>& groups = {},
                                const std::string& by = {});
@@ -412,20 +412,20 @@ class Store {
   Result<void> delete_person(const std::string& name);
   // Who has a role in the project beside the one they have everywhere, by name.
   Result<std::vector<Membership>> members(std::int64_t project_id);
-  // Gives the role (viewer, annotator or curator) in place of the one they had there. 404: the
-  // project or the person is not there. `by`: who asked, for the project's activity; empty: it is
-  // not told there.
+  // Gives the role (viewer, annotator or curator) in place of the one they had there. not_found:
+  // the project or the person is not there. `by`: who asked, for the project's activity; empty: it
+  // is not told there.
   Result<Membership> put_member(std::int64_t project_id, const std::string& user, Role role,
                                 const std::string& by = {});
   // How the person shows the layers of a model: `layers` of the protocol's PersonalView, with
   // layers by id, also those that are gone. Empty: as everybody sees them at first.
   Result<nlohmann::json> personal_view(const std::string& user, std::int64_t model_id);
-  // In place of what was kept. 413: more than a MiB.
+  // In place of what was kept. too_large: more than a MiB.
   Result<void> keep_personal_view(const std::string& user, std::int64_t model_id,
                                   const nlohmann::json& layers);
   // A layer that everybody else does not see at first: this person does.
   Result<void> show_layer_to(const std::string& user, std::int64_t model_id, std::int64_t layer_id);
-  // 404: the person has no role of their own there.
+  // not_found: the person has no role of their own there.
   Result<void> remove_member(std::int64_t project_id, const std::string& user,
                              const std::string& by = {});
   // The hash (store/password.h); empty where there is none, or nobody of the name who may sign in.
@@ -435,10 +435,11 @@ class Store {
   Result<void> set_password(const std::string& name, const std::string& hash,
                             std::optional<std::int64_t> kept);
 
-  // A new one of somebody who may sign in (404: there is no such person). The oldest session gives
-  // way where there are too many; tokens for scripts are refused then (409). With `hash`: only
-  // while that is the person's password (401). With `project`, for scripts: good in that one alone
-  // (404: it is not there), as viewer, annotator or curator (422).
+  // A new one of somebody who may sign in (not_found: there is no such person). The oldest session
+  // gives way where there are too many; tokens for scripts are refused then (conflict). With
+  // `hash`: only while that is the person's password (unauthenticated). With `project`, for
+  // scripts: good in that one alone (not_found: it is not there), as viewer, annotator or curator
+  // (invalid).
   Result<NewToken> create_token(TokenKind kind, const std::string& user, Role role,
                                 std::optional<std::chrono::seconds> lifetime,
                                 const std::string& label = {},
@@ -463,7 +464,7 @@ class Store {
                                                        std::chrono::seconds lifetime,
                                                        const std::string& label);
   Result<void> revoke_token(const std::string& secret);
-  // 404: the person has none of the kind with that id.
+  // not_found: the person has none of the kind with that id.
   Result<void> revoke_token(const std::string& user, TokenKind kind, std::int64_t id);
   Result<void> revoke_tokens(const std::string& user, TokenKind kind,
                              std::optional<std::int64_t> kept = {});

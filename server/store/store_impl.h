@@ -3,6 +3,7 @@
 #include <atomic>
 #include <mutex>
 
+#include "core/no_such.h"
 #include "core/slug.h"
 #include "store/bin.h"
 #include "store/comments.h"
@@ -15,7 +16,7 @@
 
 namespace strata::store {
 
-// In the transaction at hand; 409 where a call with this key was answered already.
+// In the transaction at hand; `conflict` where a call with this key was answered already.
 Result<void> insert_answer(PgConnection& connection, const std::string& key,
                            const nlohmann::json& answer);
 
@@ -46,12 +47,11 @@ Result<void> lock_project(PgConnection& connection, std::int64_t id);  // agains
 Result<void> join_groups(PgConnection& connection, std::int64_t person_id,
                          const std::vector<std::int64_t>& groups);
 
-Result<void> check_project_role(Role role);  // 422: not one that is given in projects
+Result<void> check_project_role(Role role);  // invalid: not one that is given in projects
 
 template <class T>
 Result<void> keep(PgConnection& connection, const FirstAnswer<T>& answer, const Result<T>& effect) {
-  if (answer.job != 0)
-    if (auto done = finish_job(connection, answer.job, answer.make(*effect)); !done) return done;
+  if (answer.job != 0) STRATA_TRY(finish_job(connection, answer.job, answer.make(*effect)));
   return answer.key.empty() ? Result<void>{}
                             : insert_answer(connection, answer.key, answer.make(*effect));
 }
@@ -110,12 +110,8 @@ PgArray visibilities_seen_by(Role role);
 
 inline constexpr std::size_t kLongestName = 255;
 
-inline tl::unexpected<Problem> not_found(std::string_view kind, const std::string& ref) {
-  return fail(404, "Not found",
-              "There is no " + std::string(kind) + " `" + ref.substr(0, 100) + "`.");
-}
-inline tl::unexpected<Problem> stale(std::string_view kind) {
-  return fail(412, "Changed meanwhile",
+inline tl::unexpected<Error> stale(std::string_view kind) {
+  return fail(ErrorCode::stale, "Changed meanwhile",
               "The " + std::string(kind) +
                   " was changed since you read it. Read it again and repeat your change.",
               "version");

@@ -23,7 +23,7 @@ struct RecordInput {
   std::optional<std::int64_t> key;  // none: a new record with the next key
   // by column id; a new record gets the defaults of those that are not named
   std::map<std::int64_t, nlohmann::json> values;
-  std::optional<std::int64_t> version{};  // of the record as it was read: otherwise it is 412
+  std::optional<std::int64_t> version{};  // of the record as it was read: otherwise it is stale
 };
 struct WriteRecords {
   std::vector<RecordInput> records;
@@ -34,9 +34,9 @@ struct WriteRecords {
 };
 
 // Why one of the records cannot be written.
-struct RowProblem {
+struct RowError {
   std::int64_t key = 0;
-  Problem problem;
+  Error problem;
   std::optional<std::size_t> index;  // its place in WriteRecords
 };
 
@@ -48,7 +48,7 @@ struct TableChange {
   std::vector<std::int64_t> created, changed, deleted;  // keys, ascending
   std::vector<Record> records;                          // those created or changed, by key
   nlohmann::json record;                                // what was done, as the journal keeps it
-  std::vector<RowProblem> problems;                     // not empty: nothing was written
+  std::vector<RowError> problems;                       // not empty: nothing was written
 };
 
 // What undo or redo would do, so that it can be asked first what is painted.

@@ -15,17 +15,16 @@ Cells cells_from(const nlohmann::json& json) { return json.get<Cells>(); }
 // unless what the person did after that undo is in force (as for layers, store/edits.cpp).
 Result<std::optional<std::int64_t>> edit_to_flip(PgConnection& connection, std::int64_t table_id,
                                                  const std::string& user, bool redo) {
-  auto row = connection.query(
+  auto row = STRATA_TRY(connection.query(
       redo
           ? "SELECT e.sequence FROM table_edits e WHERE e.table_id = $1 AND e.user_name = $2 AND e.writer AND NOT e.in_force "
             "AND NOT EXISTS (SELECT 1 FROM table_edits n WHERE n.table_id = $1 AND n.user_name = $2 AND n.writer AND n.in_force "
             "AND n.sequence > e.undone_by) ORDER BY e.undone_by DESC LIMIT 1"
           : "SELECT sequence FROM table_edits WHERE table_id = $1 AND user_name = $2 AND writer AND in_force "
             "ORDER BY sequence DESC LIMIT 1",
-      Params().integer(table_id).text(user));
-  if (!row) return tl::unexpected(row.error());
-  if (row->rows() == 0) return std::optional<std::int64_t>();
-  return std::optional(row->integer(0, 0));
+      Params().integer(table_id).text(user)));
+  if (row.rows() == 0) return std::optional<std::int64_t>();
+  return std::optional(row.integer(0, 0));
 }
 
 // Resolves the given cells of records or columns, as if the edit were flipped.
@@ -39,7 +38,7 @@ Result<std::map<std::int64_t, Cells>> resolve(
     ids.add(id);
     resolvers.emplace(id, CellResolver(wanted));
   }
-  auto read = connection.each_row(
+  STRATA_TRY(connection.each_row(
       "SELECT c.subject_id, c.sequence, e.writer, e.in_force, c.before, c.after FROM table_changes c "
       "JOIN table_edits e ON e.table_id = c.table_id AND e.sequence = c.sequence "
       "WHERE c.table_id = $1 AND c.subject = $2 AND c.subject_id = any($3) ORDER BY c.subject_id, c.sequence DESC",
@@ -52,8 +51,7 @@ Result<std::map<std::int64_t, Cells>> resolve(
                       sequence == flipped ? in_force : row.boolean(0, 3),
                       cells_from(row.json(0, 4)), cells_from(row.json(0, 5))});
         return {};
-      });
-  if (!read) return tl::unexpected(read.error());
+      }));
   std::map<std::int64_t, Cells> resolved;
   for (auto& [id, resolver] : resolvers) resolved[id] = std::move(resolver).finish();
   return resolved;
@@ -61,10 +59,9 @@ Result<std::map<std::int64_t, Cells>> resolve(
 
 Result<std::set<std::int64_t>> unseen_columns(PgConnection& connection, std::int64_t table_id,
                                               Role role) {
-  auto open = read_table(connection, table_id);
-  if (!open) return tl::unexpected(open.error());
+  auto open = STRATA_TRY(read_table(connection, table_id));
   std::set<std::int64_t> unseen;
-  for (const Column& column : open->all)
+  for (const Column& column : open.all)
     if (!sees(role, column.visibility)) unseen.insert(column.id);
   return unseen;
 }
@@ -96,13 +93,12 @@ void leave_out(TableEditRow& row, const std::set<std::int64_t>& columns) {
 
 Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
                                     std::int64_t sequence) {
-  auto rows = load_all_rows(connection, open.table.id, open.all);
-  if (!rows) return tl::unexpected(rows.error());
+  auto rows = STRATA_TRY(load_all_rows(connection, open.table.id, open.all));
   std::map<std::int64_t, Record> then;
   std::map<std::int64_t, bool> touched;  // by key; true: it existed then
-  for (Record& row : *rows) then[row.key] = std::move(row);
+  for (Record& row : rows) then[row.key] = std::move(row);
   std::map<std::int64_t, Cells> columns;
-  auto read = connection.each_row(
+  STRATA_TRY(connection.each_row(
       "SELECT subject = 'column', subject_id, before FROM table_changes WHERE table_id = $1 AND sequence > $2 "
       "ORDER BY sequence DESC",
       Params().integer(open.table.id).integer(sequence), [&](const PgResult& row) -> Result<void> {
@@ -123,23 +119,21 @@ Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
           else
             record.values[std::stoll(name)] = value;
         return {};
-      });
-  if (!read) return tl::unexpected(read.error());
+      }));
   PgArray keys(oid::kInt8);
   for (const auto& [key, existed] : touched) {
     if (!existed) then.erase(key);
     keys.add(key);
   }
-  auto versions = connection.query(
+  auto versions = STRATA_TRY(connection.query(
       "SELECT subject_id, max(sequence) FROM table_changes WHERE table_id = $1 AND subject = 'record' AND sequence <= $2 "
       "AND subject_id = any($3) GROUP BY subject_id",
-      Params().integer(open.table.id).integer(sequence).array(keys));
-  if (!versions) return tl::unexpected(versions.error());
+      Params().integer(open.table.id).integer(sequence).array(keys)));
   for (const auto& [key, existed] : touched)
     if (existed) then[key].version = 0;
-  for (int i = 0; i < versions->rows(); ++i)
-    if (const auto found = then.find(versions->integer(i, 0)); found != then.end())
-      found->second.version = versions->integer(i, 1);
+  for (int i = 0; i < versions.rows(); ++i)
+    if (const auto found = then.find(versions.integer(i, 0)); found != then.end())
+      found->second.version = versions.integer(i, 1);
   put_cells(open, columns);
   open.table.sequence = sequence;
   open.table.records = static_cast<std::int64_t>(then.size());
@@ -151,46 +145,42 @@ Result<std::vector<Record>> rows_at(PgConnection& connection, OpenTable& open,
 Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t table_id,
                                          Role seen_by, std::optional<std::int64_t> key, int limit,
                                          int offset, std::optional<std::int64_t> before) {
-  auto total = connection.query(
+  auto total = STRATA_TRY(connection.query(
       "SELECT count(*) FROM table_edits e WHERE table_id = $1 AND ($2::bigint IS NULL OR EXISTS (SELECT 1 FROM table_changes c "
       "WHERE c.table_id = $1 AND c.subject = 'record' AND c.subject_id = $2 AND c.sequence = e.sequence))",
-      Params().integer(table_id).optional_integer(key));
-  if (!total) return tl::unexpected(total.error());
-  auto rows = connection.query(
+      Params().integer(table_id).optional_integer(key)));
+  auto rows = STRATA_TRY(connection.query(
       "SELECT sequence, user_name, op, record, time, in_force, (SELECT count(*) FROM table_changes c WHERE c.table_id = $1 "
       "AND c.sequence = e.sequence AND ($2::bigint IS NULL OR (c.subject = 'record' AND c.subject_id = $2))) "
       "FROM table_edits e WHERE table_id = $1 AND ($2::bigint IS NULL OR EXISTS (SELECT 1 FROM table_changes c "
       "WHERE c.table_id = $1 AND c.subject = 'record' AND c.subject_id = $2 AND c.sequence = e.sequence)) "
       "AND sequence < $5 ORDER BY sequence DESC LIMIT $3 OFFSET $4",
       Params().integer(table_id).optional_integer(key).integer(limit).integer(offset).integer(
-          before.value_or(INT64_MAX)));
-  if (!rows) return tl::unexpected(rows.error());
-  auto unseen = unseen_columns(connection, table_id, seen_by);
-  if (!unseen) return tl::unexpected(unseen.error());
+          before.value_or(INT64_MAX))));
+  auto unseen = STRATA_TRY(unseen_columns(connection, table_id, seen_by));
   Store::TableHistory history;
-  history.total = total->integer(0, 0);
-  for (int i = 0; i < rows->rows(); ++i) {
-    TableEditRow row{rows->integer(i, 0),
-                     rows->text(i, 1),
-                     rows->text(i, 2),
-                     rows->json(i, 3),
-                     rows->time(i, 4),
-                     rows->boolean(i, 5),
+  history.total = total.integer(0, 0);
+  for (int i = 0; i < rows.rows(); ++i) {
+    TableEditRow row{rows.integer(i, 0),
+                     rows.text(i, 1),
+                     rows.text(i, 2),
+                     rows.json(i, 3),
+                     rows.time(i, 4),
+                     rows.boolean(i, 5),
                      {},
-                     rows->integer(i, 6)};
-    auto changes = connection.query(
+                     rows.integer(i, 6)};
+    auto changes = STRATA_TRY(connection.query(
         "SELECT subject = 'column', subject_id, before, after FROM table_changes WHERE table_id = $1 AND sequence = $2 "
         "AND ($3::bigint IS NULL OR (subject = 'record' AND subject_id = $3)) ORDER BY subject, subject_id LIMIT $4",
         Params()
             .integer(table_id)
             .integer(row.sequence)
             .optional_integer(key)
-            .integer(kMostToldChanges));
-    if (!changes) return tl::unexpected(changes.error());
-    for (int c = 0; c < changes->rows(); ++c)
-      row.changes.push_back({changes->boolean(c, 0), changes->integer(c, 1),
-                             cells_from(changes->json(c, 2)), cells_from(changes->json(c, 3))});
-    leave_out(row, *unseen);
+            .integer(kMostToldChanges)));
+    for (int c = 0; c < changes.rows(); ++c)
+      row.changes.push_back({changes.boolean(c, 0), changes.integer(c, 1),
+                             cells_from(changes.json(c, 2)), cells_from(changes.json(c, 3))});
+    leave_out(row, unseen);
     history.rows.push_back(std::move(row));
   }
   return history;
@@ -198,20 +188,19 @@ Result<Store::TableHistory> read_history(PgConnection& connection, std::int64_t 
 
 Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
                               const std::string& user, bool redo) {
-  auto edit = edit_to_flip(connection, open.table.id, user, redo);
-  if (!edit) return tl::unexpected(edit.error());
-  if (!*edit)
-    return redo ? fail(409, "Nothing to redo",
+  auto edit = STRATA_TRY(edit_to_flip(connection, open.table.id, user, redo));
+  if (!edit)
+    return redo ? fail(ErrorCode::conflict, "Nothing to redo",
                        "Nothing of yours in this table is undone, or you changed it since.")
-                : fail(409, "Nothing to undo", "Nothing of yours in this table is in force.");
+                : fail(ErrorCode::conflict, "Nothing to undo",
+                       "Nothing of yours in this table is in force.");
   std::map<std::int64_t, std::set<std::string>> records, columns;
-  auto written = connection.query(
+  auto written = STRATA_TRY(connection.query(
       "SELECT subject = 'column', subject_id, after FROM table_changes WHERE table_id = $1 AND sequence = $2",
-      Params().integer(open.table.id).integer(**edit));
-  if (!written) return tl::unexpected(written.error());
-  for (int i = 0; i < written->rows(); ++i) {
-    auto& names = (written->boolean(i, 0) ? columns : records)[written->integer(i, 1)];
-    const Cells after = cells_from(written->json(i, 2));
+      Params().integer(open.table.id).integer(*edit)));
+  for (int i = 0; i < written.rows(); ++i) {
+    auto& names = (written.boolean(i, 0) ? columns : records)[written.integer(i, 1)];
+    const Cells after = cells_from(written.json(i, 2));
     for (const auto& [name, value] : after) names.insert(name);
     // A record that comes or goes does so with all that others wrote in it.
     if (after.contains("exists"))
@@ -219,24 +208,21 @@ Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
   }
   PlannedUndo planned;
   planned.plan.table_sequence = open.table.sequence;
-  planned.plan.edit = **edit;
-  planned.edit = {user, redo ? "redo" : "undo", {{"edit", **edit}}, {}, {}, true};
+  planned.plan.edit = *edit;
+  planned.edit = {user, redo ? "redo" : "undo", {{"edit", *edit}}, {}, {}, true};
   if (!records.empty()) {
-    auto resolved = resolve(connection, open.table.id, "record", records, **edit, redo);
-    if (!resolved) return tl::unexpected(resolved.error());
-    planned.edit.records = std::move(*resolved);
+    auto resolved = STRATA_TRY(resolve(connection, open.table.id, "record", records, *edit, redo));
+    planned.edit.records = std::move(resolved);
   }
   if (!columns.empty()) {
-    auto resolved = resolve(connection, open.table.id, "column", columns, **edit, redo);
-    if (!resolved) return tl::unexpected(resolved.error());
-    planned.edit.columns = std::move(*resolved);
+    auto resolved = STRATA_TRY(resolve(connection, open.table.id, "column", columns, *edit, redo));
+    planned.edit.columns = std::move(resolved);
   }
   std::vector<std::int64_t> keys;
   for (auto& [key, cells] : planned.edit.records) keys.push_back(key);
-  auto rows = load_rows(connection, open.table.id, open.all, keys);
-  if (!rows) return tl::unexpected(rows.error());
+  auto rows = STRATA_TRY(load_rows(connection, open.table.id, open.all, keys));
   std::map<std::int64_t, const Record*> now;
-  for (const Record& row : *rows) now[row.key] = &row;
+  for (const Record& row : rows) now[row.key] = &row;
   for (auto next = planned.edit.records.begin(); next != planned.edit.records.end();) {
     auto& [key, cells] = *next;
     const bool existed = now.contains(key);

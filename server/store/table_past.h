@@ -18,7 +18,7 @@ struct PlannedUndo {
   UndoPlan plan;
   TableEdit edit;
 };
-// By the rule of core/cell_history. 409 where the person has nothing to undo or redo.
+// By the rule of core/cell_history. `conflict` where the person has nothing to undo or redo.
 Result<PlannedUndo> plan_undo(PgConnection& connection, const OpenTable& open,
                               const std::string& user, bool redo);
 

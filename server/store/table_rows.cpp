@@ -242,7 +242,7 @@ Result<void> make_rows_table(PgConnection& connection, std::int64_t table_id) {
 }
 
 Result<void> drop_rows_table(PgConnection& connection, std::int64_t table_id) {
-  if (auto free = make_way(connection, table_id); !free) return free;
+  STRATA_TRY(make_way(connection, table_id));
   // with its view (db/migrations/000011)
   return run(connection, "DROP TABLE " + table_name(table_id) + " CASCADE");
 }
@@ -250,7 +250,7 @@ Result<void> drop_rows_table(PgConnection& connection, std::int64_t table_id) {
 Result<void> add_rows_column(PgConnection& connection, std::int64_t table_id,
                              const Column& column) {
   const std::string name = column_name(column);
-  if (auto free = make_way(connection, table_id); !free) return free;
+  STRATA_TRY(make_way(connection, table_id));
   std::string sql =
       "ALTER TABLE " + table_name(table_id) + " ADD COLUMN " + name + " " + sql_type(column.kind);
   if (column.kind == ColumnKind::period)
@@ -282,10 +282,9 @@ Result<std::vector<Record>> load_rows(PgConnection& connection, std::int64_t tab
 
 Result<std::vector<Record>> load_all_rows(PgConnection& connection, std::int64_t table_id,
                                           const std::vector<Column>& columns) {
-  auto rows = connection.query_once("SELECT key, version, to_jsonb(t) FROM " +
-                                    table_name(table_id) + " t ORDER BY key");
-  if (!rows) return tl::unexpected(rows.error());
-  return read_rows(*rows, columns);
+  auto rows = STRATA_TRY(connection.query_once("SELECT key, version, to_jsonb(t) FROM " +
+                                               table_name(table_id) + " t ORDER BY key"));
+  return read_rows(rows, columns);
 }
 
 Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id,
@@ -296,14 +295,12 @@ Result<RowsPage> load_page(PgConnection& connection, std::int64_t table_id,
   const std::string from = from_rows(table_id, columns, past, params);
   std::string only = where.empty() ? "" : " WHERE (" + where + ")";
   RowsPage page;
-  auto total = connection.query_once("SELECT count(*)" + from + only, params);
-  if (!total) return tl::unexpected(total.error());
-  page.total = total->integer(0, 0);
+  auto total = STRATA_TRY(connection.query_once("SELECT count(*)" + from + only, params));
+  page.total = total.integer(0, 0);
   const auto [keys, joins] = sort_keys(columns, order, params);
   if (part.after) {
-    auto behind = stands_behind(keys, *part.after, params);
-    if (!behind) return tl::unexpected(behind.error());
-    only += (only.empty() ? " WHERE " : " AND ") + *behind;
+    auto behind = STRATA_TRY(stands_behind(keys, *part.after, params));
+    only += (only.empty() ? " WHERE " : " AND ") + behind;
   }
   // one more tells whether there is a next page
   params.integer(part.limit + 1).integer(part.offset);
@@ -334,13 +331,12 @@ Result<std::string> collation_of(PgConnection& connection, const std::string& la
   for (; !tag.empty(); tag.resize(tag.rfind('-') == std::string::npos ? 0 : tag.rfind('-')))
     wanted.add(std::string_view(tag + "-x-icu"));
   wanted.add(std::string_view("und-x-icu"));
-  auto row = connection.query(
+  auto row = STRATA_TRY(connection.query(
       "SELECT c.collname FROM unnest($1::text[]) WITH ORDINALITY AS w (name, place) JOIN pg_collation c ON "
       "lower(c.collname) = lower(w.name) AND c.collprovider = 'i' AND c.collnamespace = 'pg_catalog'::regnamespace "
       "ORDER BY w.place LIMIT 1",
-      Params().array(wanted));
-  if (!row) return tl::unexpected(row.error());
-  return row->rows() == 0 ? std::string() : row->text(0, 0);
+      Params().array(wanted)));
+  return row.rows() == 0 ? std::string() : row.text(0, 0);
 }
 
 Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::int64_t table_id,
@@ -348,11 +344,10 @@ Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::i
                                                 int depth) {
   // a table may be called by the records of another, and so on, round in circles
   constexpr int kDeepest = 3;
-  auto open = read_table(connection, table_id, seen_by);
-  if (!open) return tl::unexpected(open.error());
+  auto open = STRATA_TRY(read_table(connection, table_id, seen_by));
   std::vector<RecordOrder> order;
-  const auto terms = term_columns(open->table);
-  if (const Column* title = name_column(open->table); !terms && title) {
+  const auto terms = term_columns(open.table);
+  if (const Column* title = name_column(open.table); !terms && title) {
     order.push_back({title->id, false, collation});
     if (title->kind == ColumnKind::term) {
       auto keys = depth == kDeepest
@@ -363,7 +358,7 @@ Result<std::vector<std::int64_t>> keys_in_order(PgConnection& connection, std::i
     }
   }
   auto page =
-      load_page(connection, table_id, open->table.columns, {}, {}, Params(), order, {kMostRecords});
+      load_page(connection, table_id, open.table.columns, {}, {}, Params(), order, {kMostRecords});
   if (!page) return tl::unexpected(page.error());
   std::vector<std::int64_t> keys;
   if (terms)
@@ -378,14 +373,14 @@ Result<std::vector<KeyNumber>> load_numbers(PgConnection& connection, std::int64
                                             const std::optional<std::vector<Record>>& past,
                                             const std::string& number, Params params) {
   const std::string from = from_rows(table_id, columns, past, params);
-  auto rows = connection.query_once("SELECT key, value FROM (SELECT key, (" + number +
-                                        ")::float8 AS value" + from + ") n WHERE value IS NOT NULL",
-                                    params);
-  if (!rows) return tl::unexpected(rows.error());
+  auto rows = STRATA_TRY(connection.query_once("SELECT key, value FROM (SELECT key, (" + number +
+                                                   ")::float8 AS value" + from +
+                                                   ") n WHERE value IS NOT NULL",
+                                               params));
   std::vector<KeyNumber> numbers;
-  numbers.reserve(static_cast<std::size_t>(rows->rows()));
-  for (int i = 0; i < rows->rows(); ++i)
-    numbers.push_back({static_cast<std::uint32_t>(rows->integer(i, 0)), rows->real(i, 1)});
+  numbers.reserve(static_cast<std::size_t>(rows.rows()));
+  for (int i = 0; i < rows.rows(); ++i)
+    numbers.push_back({static_cast<std::uint32_t>(rows.integer(i, 0)), rows.real(i, 1)});
   return numbers;
 }
 
@@ -401,10 +396,9 @@ Result<void> insert_rows(PgConnection& connection, std::int64_t table_id,
   const std::string name = table_name(table_id);
   for (std::size_t begin = 0; begin < rows.size(); begin += kRowsAtOnce) {
     const auto part = rows.subspan(begin, std::min(kRowsAtOnce, rows.size() - begin));
-    auto done = connection.query_once(
+    STRATA_TRY(connection.query_once(
         "INSERT INTO " + name + " SELECT * FROM jsonb_populate_recordset(NULL::" + name + ", $1)",
-        Params().json(rows_json(columns, part)));
-    if (!done) return tl::unexpected(done.error());
+        Params().json(rows_json(columns, part))));
   }
   return {};
 }
@@ -420,38 +414,35 @@ Result<std::optional<Taken>> taken_value(PgConnection& connection, std::int64_t 
     if (!is_first) return std::optional(Taken{i, first->second, true});
   }
   if (met.empty()) return std::optional<Taken>();
-  auto row = connection.query_once(
+  auto row = STRATA_TRY(connection.query_once(
       "SELECT i.key, t.key FROM jsonb_populate_recordset(NULL::" + name + ", $1) i JOIN " + name +
           " t ON t." + of_column + " = i." + of_column + " LIMIT 1",
-      Params().json(rows_json({column}, rows)));
-  if (!row) return tl::unexpected(row.error());
-  if (row->rows() == 0) return std::optional<Taken>();
+      Params().json(rows_json({column}, rows))));
+  if (row.rows() == 0) return std::optional<Taken>();
   std::size_t at = 0;
-  while (at + 1 < rows.size() && rows[at].key != row->integer(0, 0)) ++at;
-  return std::optional(Taken{at, row->integer(0, 1)});
+  while (at + 1 < rows.size() && rows[at].key != row.integer(0, 0)) ++at;
+  return std::optional(Taken{at, row.integer(0, 1)});
 }
 
 Result<std::optional<std::pair<std::int64_t, std::int64_t>>> twins(PgConnection& connection,
                                                                    std::int64_t table_id,
                                                                    const Column& column) {
   const std::string of_column = column_name(column);
-  auto row = connection.query_once("SELECT min(key), max(key) FROM " + table_name(table_id) +
-                                   " WHERE " + of_column + " IS NOT NULL GROUP BY " + of_column +
-                                   " HAVING count(*) > 1 LIMIT 1");
-  if (!row) return tl::unexpected(row.error());
-  if (row->rows() == 0) return std::optional<std::pair<std::int64_t, std::int64_t>>();
-  return std::optional(std::pair(row->integer(0, 0), row->integer(0, 1)));
+  auto row = STRATA_TRY(connection.query_once(
+      "SELECT min(key), max(key) FROM " + table_name(table_id) + " WHERE " + of_column +
+      " IS NOT NULL GROUP BY " + of_column + " HAVING count(*) > 1 LIMIT 1"));
+  if (row.rows() == 0) return std::optional<std::pair<std::int64_t, std::int64_t>>();
+  return std::optional(std::pair(row.integer(0, 0), row.integer(0, 1)));
 }
 
 Result<std::vector<std::int64_t>> missing_rows(PgConnection& connection, std::int64_t table_id,
                                                std::span<const std::int64_t> keys) {
-  auto rows = connection.query_once(
+  auto rows = STRATA_TRY(connection.query_once(
       "SELECT DISTINCT k FROM unnest($1::bigint[]) k WHERE NOT EXISTS (SELECT 1 FROM " +
           table_name(table_id) + " t WHERE t.key = k) ORDER BY k",
-      Params().array(array_of(keys)));
-  if (!rows) return tl::unexpected(rows.error());
+      Params().array(array_of(keys))));
   std::vector<std::int64_t> missing;
-  for (int i = 0; i < rows->rows(); ++i) missing.push_back(rows->integer(i, 0));
+  for (int i = 0; i < rows.rows(); ++i) missing.push_back(rows.integer(i, 0));
   return missing;
 }
 
@@ -464,20 +455,19 @@ Result<std::optional<std::pair<std::int64_t, std::int64_t>>> row_naming(
                                     " WHERE " + name + " = any($1) LIMIT 1"
                               : "SELECT key, k FROM " + table_name(table_id) + ", unnest(" + name +
                                     ") k WHERE k = any($1) LIMIT 1";
-  auto row = connection.query_once(sql, Params().array(array_of(keys)));
-  if (!row) return tl::unexpected(row.error());
-  if (row->rows() == 0) return std::optional<std::pair<std::int64_t, std::int64_t>>();
-  return std::optional(std::pair(row->integer(0, 0), row->integer(0, 1)));
+  auto row = STRATA_TRY(connection.query_once(sql, Params().array(array_of(keys))));
+  if (row.rows() == 0) return std::optional<std::pair<std::int64_t, std::int64_t>>();
+  return std::optional(std::pair(row.integer(0, 0), row.integer(0, 1)));
 }
 
 Result<std::vector<std::int64_t>> rows_holding(PgConnection& connection, std::int64_t table_id,
                                                const Column& column, std::int64_t attachment) {
-  auto rows = connection.query_once("SELECT key FROM " + table_name(table_id) + " WHERE $1 = any(" +
-                                        column_name(column) + ") ORDER BY key",
-                                    Params().integer(attachment));
-  if (!rows) return tl::unexpected(rows.error());
+  auto rows = STRATA_TRY(connection.query_once("SELECT key FROM " + table_name(table_id) +
+                                                   " WHERE $1 = any(" + column_name(column) +
+                                                   ") ORDER BY key",
+                                               Params().integer(attachment)));
   std::vector<std::int64_t> keys;
-  for (int i = 0; i < rows->rows(); ++i) keys.push_back(rows->integer(i, 0));
+  for (int i = 0; i < rows.rows(); ++i) keys.push_back(rows.integer(i, 0));
   return keys;
 }
 

@@ -96,13 +96,13 @@ class Writer {
 
   Result<TableChange> write() {
     for (auto step : {&Writer::change_columns, &Writer::change_records, &Writer::keep_columns}) {
-      if (auto done = (this->*step)(); !done) return tl::unexpected(done.error());
+      STRATA_TRY((this->*step)());
       if (!change_.problems.empty()) {
         change_.table = open_.table;
         return std::move(change_);
       }
     }
-    if (auto kept = keep_entry(); !kept) return tl::unexpected(kept.error());
+    STRATA_TRY(keep_entry());
     change_.sequence = sequence_;
     change_.record = edit_.record;
     change_.table = open_.table;
@@ -120,21 +120,19 @@ class Writer {
         const Column& column = *column_by_id(open_, id);
         if (column.hidden != hidden) continue;
         if (column.hidden || !column.unique)
-          if (auto gone = drop_unique_index(connection_, open_.table.id, column); !gone)
-            return gone;
-        if (auto set = update_column(column); !set) return set;
+          STRATA_TRY(drop_unique_index(connection_, open_.table.id, column));
+        STRATA_TRY(update_column(column));
       }
     change_.columns_changed = !edit_.columns.empty();
     return {};
   }
 
   Result<void> update_column(const Column& column) {
-    auto slugs = connection_.query(
+    auto slugs = STRATA_TRY(connection_.query(
         "SELECT 1 FROM record_columns WHERE table_id = $1 AND id <> $2 AND NOT hidden AND properties ->> 'slug' = $3",
-        Params().integer(open_.table.id).integer(column.id).text(column.slug));
-    if (!slugs) return tl::unexpected(slugs.error());
-    if (!column.hidden && slugs->rows() > 0)
-      return fail(409, "Slug taken",
+        Params().integer(open_.table.id).integer(column.id).text(column.slug)));
+    if (!column.hidden && slugs.rows() > 0)
+      return fail(ErrorCode::conflict, "Slug taken",
                   "The table has another column `" + column.slug + "`. Rename that one first.",
                   "slug");
     auto done = connection_.query(
@@ -147,10 +145,9 @@ class Writer {
     if (edit_.records.empty()) return {};
     std::vector<std::int64_t> keys;
     for (const auto& [key, after] : edit_.records) keys.push_back(key);
-    auto rows = load_rows(connection_, open_.table.id, open_.all, keys);
-    if (!rows) return tl::unexpected(rows.error());
+    auto rows = STRATA_TRY(load_rows(connection_, open_.table.id, open_.all, keys));
     std::map<std::int64_t, Record> now;
-    for (Record& row : *rows) now[row.key] = std::move(row);
+    for (Record& row : rows) now[row.key] = std::move(row);
 
     std::vector<Record> then;
     for (auto& [key, after] : edit_.records) {
@@ -176,36 +173,31 @@ class Writer {
     records_ = open_.table.records + static_cast<std::int64_t>(change_.created.size()) -
                static_cast<std::int64_t>(change_.deleted.size());
     if (records_ > kMostRecords)
-      return fail(409, "Table full",
+      return fail(ErrorCode::conflict, "Table full",
                   "A table has at most " + std::to_string(kMostRecords) + " records.");
     for (const Record& record : then) check_record(record);
     if (!change_.problems.empty()) return {};
-    if (auto gone = delete_rows(connection_, open_.table.id, keys); !gone) return gone;
+    STRATA_TRY(delete_rows(connection_, open_.table.id, keys));
     for (const Column& column : open_.table.columns) {
       if (!column.unique) continue;
-      auto taken = taken_value(connection_, open_.table.id, column, then);
-      if (!taken) return tl::unexpected(taken.error());
-      if (*taken)
-        add_problem(then[(*taken)->row].key,
-                    {409, "Not unique",
-                     ((*taken)->by_sent ? "Another record that was sent has this value of \""
-                                        : "Record " + std::to_string((*taken)->by_key) +
-                                              " has this value of \"") +
+      auto taken = STRATA_TRY(taken_value(connection_, open_.table.id, column, then));
+      if (taken)
+        add_problem(then[taken->row].key,
+                    {ErrorCode::conflict, "Not unique",
+                     (taken->by_sent
+                          ? "Another record that was sent has this value of \""
+                          : "Record " + std::to_string(taken->by_key) + " has this value of \"") +
                          column.name + "\".",
                      field_of(column)});
     }
     if (!change_.problems.empty()) return {};
-    if (auto inserted = insert_rows(connection_, open_.table.id, open_.all, then); !inserted)
-      return inserted;
+    STRATA_TRY(insert_rows(connection_, open_.table.id, open_.all, then));
     for (const Column& column : open_.table.columns) {
-      if (column.target)
-        if (auto known = check_targets(column, then); !known) return known;
-      if (holds_attachments(column.kind))
-        if (auto known = check_attached(column, then); !known) return known;
-      if (holds_marks(column.kind))
-        if (auto known = check_marked(column, then); !known) return known;
+      if (column.target) STRATA_TRY(check_targets(column, then));
+      if (holds_attachments(column.kind)) STRATA_TRY(check_attached(column, then));
+      if (holds_marks(column.kind)) STRATA_TRY(check_marked(column, then));
     }
-    if (auto free = check_named(); !free) return free;
+    STRATA_TRY(check_named());
     change_.records = std::move(then);
     return {};
   }
@@ -219,7 +211,7 @@ class Writer {
       const nlohmann::json held = value == record.values.end() ? nlohmann::json() : value->second;
       if (column.unique && held.is_string() &&
           held.get_ref<const std::string&>().size() > kLongestUniqueText)
-        add_problem(record.key, {422, "Text too long",
+        add_problem(record.key, {ErrorCode::invalid, "Text too long",
                                  "Texts of a unique column have at most " +
                                      std::to_string(kLongestUniqueText) + " bytes.",
                                  field_of(column)});
@@ -246,7 +238,7 @@ class Writer {
         add_keys(value->second, keys);
       for (const auto key : keys)
         if (std::binary_search(missing->begin(), missing->end(), key)) {
-          add_problem(row.key, {422, "No such record",
+          add_problem(row.key, {ErrorCode::invalid, "No such record",
                                 "\"" + column.name + "\" names record " + std::to_string(key) +
                                     ", which is not there.",
                                 field_of(column)});
@@ -265,12 +257,11 @@ class Writer {
     if (listed.empty()) return {};
     PgArray ids(oid::kInt8);
     for (const auto id : listed) ids.add(id);
-    auto known = connection_.query(
+    auto known = STRATA_TRY(connection_.query(
         "SELECT id, media_type FROM attachments WHERE table_id = $1 AND id = any($2)",
-        Params().integer(open_.table.id).array(ids));
-    if (!known) return tl::unexpected(known.error());
+        Params().integer(open_.table.id).array(ids)));
     std::map<std::int64_t, std::string> types;
-    for (int i = 0; i < known->rows(); ++i) types[known->integer(i, 0)] = known->text(i, 1);
+    for (int i = 0; i < known.rows(); ++i) types[known.integer(i, 0)] = known.text(i, 1);
     for (const Record& row : rows) {
       const auto value = row.values.find(column.id);
       if (value == row.values.end() || value->second.is_null()) continue;
@@ -280,7 +271,7 @@ class Writer {
         const bool is_there = type != types.end();
         if (is_there && (column.kind == ColumnKind::document || is_raster_picture(type->second)))
           continue;
-        add_problem(row.key, {422, is_there ? "No picture" : "No such attachment",
+        add_problem(row.key, {ErrorCode::invalid, is_there ? "No picture" : "No such attachment",
                               "\"" + column.name + "\" lists attachment " + id +
                                   (is_there ? ", which is " + type->second +
                                                   ": attach it to a column of documents."
@@ -296,11 +287,10 @@ class Writer {
   // one that is gone, and undo may bring such ones back.
   Result<void> check_marked(const Column& column, std::span<const Record> rows) {
     if (edit_.checks_values) return {};
-    auto models = connection_.query("SELECT id FROM models WHERE project_id = $1",
-                                    Params().integer(open_.table.project_id));
-    if (!models) return tl::unexpected(models.error());
+    auto models = STRATA_TRY(connection_.query("SELECT id FROM models WHERE project_id = $1",
+                                               Params().integer(open_.table.project_id)));
     std::set<std::int64_t> known;
-    for (int i = 0; i < models->rows(); ++i) known.insert(models->integer(i, 0));
+    for (int i = 0; i < models.rows(); ++i) known.insert(models.integer(i, 0));
     for (const Record& row : rows) {
       const auto value = row.values.find(column.id);
       const Cells& after = edit_.records.at(row.key);
@@ -309,7 +299,7 @@ class Writer {
       for (const auto& mark : value->second) {
         const auto model = mark.at("model").get<std::int64_t>();
         if (known.contains(model)) continue;
-        add_problem(row.key, {422, "No such model",
+        add_problem(row.key, {ErrorCode::invalid, "No such model",
                               "\"" + column.name + "\" lies on model " + std::to_string(model) +
                                   ", which the project does not have.",
                               field_of(column)});
@@ -322,25 +312,24 @@ class Writer {
   // Nothing names what is deleted.
   Result<void> check_named() {
     if (change_.deleted.empty()) return {};
-    auto rows = connection_.query(
+    auto rows = STRATA_TRY(connection_.query(
         "SELECT c.id, c.kind, c.table_id, c.properties ->> 'name', t.name FROM record_columns c "
         "JOIN record_tables t ON t.id = c.table_id WHERE c.target = $1 AND NOT c.hidden ORDER BY c.id",
-        Params().integer(open_.table.id));
-    if (!rows) return tl::unexpected(rows.error());
-    for (int i = 0; i < rows->rows(); ++i) {
+        Params().integer(open_.table.id)));
+    for (int i = 0; i < rows.rows(); ++i) {
       Column column;
-      column.id = rows->integer(i, 0);
-      column.kind = rows->text(i, 1) == "term" ? ColumnKind::term : ColumnKind::relation;
-      auto naming = row_naming(connection_, rows->integer(i, 2), column, change_.deleted);
-      if (!naming) return tl::unexpected(naming.error());
-      if (!*naming) continue;
-      const auto [by, key] = **naming;
-      add_problem(key, {409,
-                        "Record in use",
-                        "Record " + std::to_string(by) + " of " + rows->text(i, 4) +
-                            " names record " + std::to_string(key) + " as \"" + rows->text(i, 3) +
-                            "\". Change that one first.",
-                        {}});
+      column.id = rows.integer(i, 0);
+      column.kind = rows.text(i, 1) == "term" ? ColumnKind::term : ColumnKind::relation;
+      auto naming =
+          STRATA_TRY(row_naming(connection_, rows.integer(i, 2), column, change_.deleted));
+      if (!naming) continue;
+      const auto [by, key] = *naming;
+      add_problem(
+          key, {ErrorCode::conflict,
+                "Record in use",
+                "Record " + std::to_string(by) + " of " + rows.text(i, 4) + " names record " +
+                    std::to_string(key) + " as \"" + rows.text(i, 3) + "\". Change that one first.",
+                {}});
     }
     return {};
   }
@@ -354,62 +343,58 @@ class Writer {
                cell.first == "choices" || cell.first == "minimum" || cell.first == "maximum";
       });
       if (column.hidden || !asks) continue;
-      auto rows = load_all_rows(connection_, open_.table.id, {column});
-      if (!rows) return tl::unexpected(rows.error());
-      for (const Record& row : *rows) {
+      auto rows = STRATA_TRY(load_all_rows(connection_, open_.table.id, {column}));
+      for (const Record& row : rows) {
         const auto value = row.values.find(id);
         const nlohmann::json held = value == row.values.end() ? nlohmann::json() : value->second;
         auto good = check_value(column, held, "column");
         if (!good)
-          return fail(409, "Values do not fit",
+          return fail(ErrorCode::conflict, "Values do not fit",
                       "Record " + std::to_string(row.key) + ": " + good.error().detail +
                           " Change the records first.",
                       "column");
         if (column.unique && held.is_string() &&
             held.get_ref<const std::string&>().size() > kLongestUniqueText)
-          return fail(409, "Values do not fit",
+          return fail(ErrorCode::conflict, "Values do not fit",
                       "Record " + std::to_string(row.key) +
                           ": texts of a unique column have at most " +
                           std::to_string(kLongestUniqueText) + " bytes.",
                       "unique");
       }
       if (column.target || holds_attachments(column.kind)) {
-        auto known = column.target ? check_targets(column, *rows) : check_attached(column, *rows);
-        if (!known) return known;
+        STRATA_TRY(column.target ? check_targets(column, rows) : check_attached(column, rows));
         if (!change_.problems.empty()) {
-          Problem problem = change_.problems.front().problem;
+          Error problem = change_.problems.front().problem;
           return fail(
-              409, "Values do not fit",
+              ErrorCode::conflict, "Values do not fit",
               "Record " + std::to_string(change_.problems.front().key) + ": " + problem.detail,
               "column");
         }
       }
       if (!column.unique) continue;
-      auto same = twins(connection_, open_.table.id, column);
-      if (!same) return tl::unexpected(same.error());
-      if (*same)
-        return fail(409, "Not unique",
-                    "Records " + std::to_string((*same)->first) + " and " +
-                        std::to_string((*same)->second) + " have the same value of \"" +
-                        column.name + "\".",
+      auto same = STRATA_TRY(twins(connection_, open_.table.id, column));
+      if (same)
+        return fail(ErrorCode::conflict, "Not unique",
+                    "Records " + std::to_string(same->first) + " and " +
+                        std::to_string(same->second) + " have the same value of \"" + column.name +
+                        "\".",
                     "unique");
-      if (auto made = make_unique_index(connection_, open_.table.id, column); !made) return made;
+      STRATA_TRY(make_unique_index(connection_, open_.table.id, column));
     }
     return {};
   }
 
   Result<void> keep_entry() {
-    auto entry = connection_.query(
+    STRATA_TRY(connection_.query(
         "INSERT INTO table_edits (table_id, sequence, user_name, op, record) VALUES ($1, $2, $3, $4, $5)",
         Params()
             .integer(open_.table.id)
             .integer(sequence_)
             .text(edit_.user)
             .text(edit_.op)
-            .json(edit_.record));
-    if (!entry) return tl::unexpected(entry.error());
-    if (auto kept = keep_cells("record", edit_.records, before_records_); !kept) return kept;
-    if (auto kept = keep_cells("column", edit_.columns, before_columns_); !kept) return kept;
+            .json(edit_.record)));
+    STRATA_TRY(keep_cells("record", edit_.records, before_records_));
+    STRATA_TRY(keep_cells("column", edit_.columns, before_columns_));
     for (const auto key : change_.created) open_.next_key = std::max(open_.next_key, key + 1);
     open_.table.sequence = sequence_;
     open_.table.records = records_;
@@ -443,7 +428,7 @@ class Writer {
         befores.add(nlohmann::json(before.at(next->first)));
         afters.add(nlohmann::json(next->second));
       }
-      auto kept = connection_.query(
+      STRATA_TRY(connection_.query(
           "INSERT INTO table_changes (table_id, sequence, subject, subject_id, before, after) "
           "SELECT $1, $2, $3, * FROM unnest($4::bigint[], $5::jsonb[], $6::jsonb[])",
           Params()
@@ -452,13 +437,12 @@ class Writer {
               .text(subject)
               .array(ids)
               .array(befores)
-              .array(afters));
-      if (!kept) return tl::unexpected(kept.error());
+              .array(afters)));
     }
     return {};
   }
 
-  void add_problem(std::int64_t key, Problem problem) {
+  void add_problem(std::int64_t key, Error problem) {
     if (change_.problems.size() < kMostRowProblems)
       change_.problems.push_back({key, std::move(problem), {}});
   }
@@ -495,42 +479,40 @@ void put_cells(OpenTable& open, const std::map<std::int64_t, Cells>& columns) {
 }
 
 Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role seen_by) {
-  auto row = connection.query(
+  auto row = STRATA_TRY(connection.query(
       "SELECT id, project_id, name, slug::text, labels, description, records, sequence, version, next_key, title_column "
       "FROM record_tables WHERE id = $1",
-      Params().integer(id));
-  if (!row) return tl::unexpected(row.error());
-  if (row->rows() == 0) return not_found("table", std::to_string(id));
+      Params().integer(id)));
+  if (row.rows() == 0) return no_such("table", std::to_string(id));
   OpenTable open;
   open.seen_by = seen_by;
-  open.table.id = row->integer(0, 0);
-  open.table.project_id = row->integer(0, 1);
-  open.table.name = row->text(0, 2);
-  open.table.slug = row->text(0, 3);
-  open.table.labels = labels_of(row->json(0, 4));
-  open.table.description = row->text(0, 5);
-  open.table.records = row->integer(0, 6);
-  open.table.sequence = row->integer(0, 7);
-  open.table.version = row->integer(0, 8);
-  open.next_key = row->integer(0, 9);
-  if (!row->null(0, 10)) open.table.title_column = row->integer(0, 10);
-  auto columns = connection.query(
+  open.table.id = row.integer(0, 0);
+  open.table.project_id = row.integer(0, 1);
+  open.table.name = row.text(0, 2);
+  open.table.slug = row.text(0, 3);
+  open.table.labels = labels_of(row.json(0, 4));
+  open.table.description = row.text(0, 5);
+  open.table.records = row.integer(0, 6);
+  open.table.sequence = row.integer(0, 7);
+  open.table.version = row.integer(0, 8);
+  open.next_key = row.integer(0, 9);
+  if (!row.null(0, 10)) open.table.title_column = row.integer(0, 10);
+  auto columns = STRATA_TRY(connection.query(
       "SELECT id, kind, target, properties, hidden, visibility FROM record_columns WHERE table_id = $1 ORDER BY id",
-      Params().integer(id));
-  if (!columns) return tl::unexpected(columns.error());
-  for (int i = 0; i < columns->rows(); ++i) {
+      Params().integer(id)));
+  for (int i = 0; i < columns.rows(); ++i) {
     Column column;
-    column.id = columns->integer(i, 0);
-    const auto kind = parse_column_kind(columns->text(i, 1));
+    column.id = columns.integer(i, 0);
+    const auto kind = parse_column_kind(columns.text(i, 1));
     if (!kind)
-      return fail(500, "Damaged table",
+      return fail(ErrorCode::internal, "Damaged table",
                   "Column " + std::to_string(column.id) + " has an unknown kind.");
     column.kind = *kind;
-    if (!columns->null(i, 2)) column.target = columns->integer(i, 2);
-    set_properties(column, columns->json(i, 3));
-    column.hidden = columns->boolean(i, 4);
+    if (!columns.null(i, 2)) column.target = columns.integer(i, 2);
+    set_properties(column, columns.json(i, 3));
+    column.hidden = columns.boolean(i, 4);
     // What cannot be told is not shown.
-    column.visibility = parse_visibility(columns->text(i, 5)).value_or(Visibility::curators);
+    column.visibility = parse_visibility(columns.text(i, 5)).value_or(Visibility::curators);
     open.all.push_back(std::move(column));
   }
   show_columns(open);
@@ -538,10 +520,9 @@ Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role see
 }
 
 Result<OpenTable> lock_table(PgConnection& connection, std::int64_t id) {
-  auto locked = connection.query(
+  STRATA_TRY(connection.query(
       "SELECT 1 FROM projects WHERE id = (SELECT project_id FROM record_tables WHERE id = $1) FOR NO KEY UPDATE",
-      Params().integer(id));
-  if (!locked) return tl::unexpected(locked.error());
+      Params().integer(id)));
   return read_table(connection, id);
 }
 
@@ -550,13 +531,13 @@ Result<TableChange> apply_edit(PgConnection& connection, OpenTable& open, TableE
 }
 
 Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column& column) {
-  if (auto good = check_column(column); !good) return good;
+  STRATA_TRY(check_column(column));
   if (column.target) {
-    auto known = connection.query("SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2",
-                                  Params().integer(*column.target).integer(open.table.project_id));
-    if (!known) return tl::unexpected(known.error());
-    if (known->rows() == 0)
-      return fail(422, "No such table",
+    auto known = STRATA_TRY(
+        connection.query("SELECT 1 FROM record_tables WHERE id = $1 AND project_id = $2",
+                         Params().integer(*column.target).integer(open.table.project_id)));
+    if (known.rows() == 0)
+      return fail(ErrorCode::invalid, "No such table",
                   "The project has no table " + std::to_string(*column.target) + ".", "target");
     std::set<std::int64_t> named;
     add_keys(column.default_value, named);
@@ -564,7 +545,7 @@ Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column&
         missing_rows(connection, *column.target, std::vector(named.begin(), named.end()));
     if (!missing) return tl::unexpected(missing.error());
     if (!missing->empty())
-      return fail(422, "No such record",
+      return fail(ErrorCode::invalid, "No such record",
                   "There is no record " + std::to_string(missing->front()) + ".", "default");
   }
   const std::string wished = make_slug(column.slug.empty() ? column.name : column.slug);
@@ -573,7 +554,8 @@ Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column&
   for (const Column& other : open.table.columns)
     if (other.id != column.id) used.insert(other.slug);
   if (!column.slug.empty() && used.contains(wished))
-    return fail(409, "Slug taken", "The table has a column `" + wished + "` already.", "slug");
+    return fail(ErrorCode::conflict, "Slug taken",
+                "The table has a column `" + wished + "` already.", "slug");
   column.slug = wished;
   for (int n = 2; used.contains(column.slug); ++n) column.slug = wished + "-" + std::to_string(n);
   return {};
@@ -581,11 +563,11 @@ Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column&
 
 Result<Column> insert_column(PgConnection& connection, const OpenTable& open, Column column) {
   if (open.all.size() >= static_cast<std::size_t>(kMostColumns))
-    return fail(409, "Too many columns",
+    return fail(ErrorCode::conflict, "Too many columns",
                 "A table has at most " + std::to_string(kMostColumns) +
                     " columns, those that were dropped among them.");
   column.hidden = true;
-  auto row = connection.query(
+  auto row = STRATA_TRY(connection.query(
       "INSERT INTO record_columns (table_id, kind, target, properties, hidden, visibility) VALUES ($1, $2, $3, $4, true, $5) "
       "RETURNING id",
       Params()
@@ -593,25 +575,22 @@ Result<Column> insert_column(PgConnection& connection, const OpenTable& open, Co
           .text(name(column.kind))
           .optional_integer(column.target)
           .json(properties_of(column))
-          .text(name(column.visibility)));
-  if (!row) return tl::unexpected(row.error());
-  column.id = row->integer(0, 0);
-  if (auto added = add_rows_column(connection, open.table.id, column); !added)
-    return tl::unexpected(added.error());
+          .text(name(column.visibility))));
+  column.id = row.integer(0, 0);
+  STRATA_TRY(add_rows_column(connection, open.table.id, column));
   return column;
 }
 
 Result<Table> insert_table(PgConnection& connection, Table table) {
-  if (auto good = check_name(table.name); !good) return tl::unexpected(good.error());
-  if (auto good = check_text(table.slug, "slug"); !good) return tl::unexpected(good.error());
-  if (auto good = check_text(table.description, "description"); !good)
-    return tl::unexpected(good.error());
-  if (auto good = check_labels(table.labels); !good) return tl::unexpected(good.error());
-  auto project = connection.query("SELECT 1 FROM projects WHERE id = $1 FOR NO KEY UPDATE",
-                                  Params().integer(table.project_id));
-  if (!project) return tl::unexpected(project.error());
-  if (project->rows() == 0) return not_found("project", std::to_string(table.project_id));
-  auto row = insert_with_slug(
+  STRATA_TRY(check_name(table.name));
+  STRATA_TRY(check_text(table.slug, "slug"));
+  STRATA_TRY(check_text(table.description, "description"));
+  STRATA_TRY(check_labels(table.labels));
+  auto project =
+      STRATA_TRY(connection.query("SELECT 1 FROM projects WHERE id = $1 FOR NO KEY UPDATE",
+                                  Params().integer(table.project_id)));
+  if (project.rows() == 0) return no_such("project", std::to_string(table.project_id));
+  auto row = STRATA_TRY(insert_with_slug(
       connection, "SELECT slug::text FROM record_tables WHERE slug LIKE $1", {},
       table.slug.empty() ? table.name : table.slug, [&](const std::string& slug) {
         return connection.query(
@@ -623,35 +602,30 @@ Result<Table> insert_table(PgConnection& connection, Table table) {
                 .text(slug)
                 .json(table.labels)
                 .text(table.description));
-      });
-  if (!row) return tl::unexpected(row.error());
-  const std::int64_t id = row->integer(0, 0);
-  if (auto made = make_rows_table(connection, id); !made) return tl::unexpected(made.error());
-  auto open = read_table(connection, id);
-  if (!open) return tl::unexpected(open.error());
+      }));
+  const std::int64_t id = row.integer(0, 0);
+  STRATA_TRY(make_rows_table(connection, id));
+  auto open = STRATA_TRY(read_table(connection, id));
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     Column column = std::move(table.columns[i]);
     column.order = static_cast<int>(i);
     if (column.target == kOwnTable) column.target = id;
-    const auto in_place = [&](Problem problem) {
+    const auto in_place = [&](Error problem) {
       problem.field =
           "columns[" + std::to_string(i) + "]" + (problem.field.empty() ? "" : "." + problem.field);
       return tl::unexpected(std::move(problem));
     };
-    if (auto fits = fit_column(connection, *open, column); !fits) return in_place(fits.error());
-    auto inserted = insert_column(connection, *open, std::move(column));
+    if (auto fits = fit_column(connection, open, column); !fits) return in_place(fits.error());
+    auto inserted = insert_column(connection, open, std::move(column));
     if (!inserted) return in_place(inserted.error());
     inserted->hidden = false;
-    auto shown = connection.query("UPDATE record_columns SET hidden = false WHERE id = $1",
-                                  Params().integer(inserted->id));
-    if (!shown) return tl::unexpected(shown.error());
-    if (inserted->unique)
-      if (auto made = make_unique_index(connection, id, *inserted); !made)
-        return tl::unexpected(made.error());
-    open->all.push_back(std::move(*inserted));
-    show_columns(*open);
+    STRATA_TRY(connection.query("UPDATE record_columns SET hidden = false WHERE id = $1",
+                                Params().integer(inserted->id)));
+    if (inserted->unique) STRATA_TRY(make_unique_index(connection, id, *inserted));
+    open.all.push_back(std::move(*inserted));
+    show_columns(open);
   }
-  return open->table;
+  return open.table;
 }
 
 }  // namespace strata::store

@@ -18,8 +18,8 @@ struct OpenTable {
   std::int64_t next_key = 1;
   Role seen_by = Role::owner;  // `table.columns` are those that it sees
 };
-// 404 where there is none. Locked: until the transaction ends nobody else changes any table of the
-// project, so that keys which other tables name stay.
+// `not_found` where there is none. Locked: until the transaction ends nobody else changes any table
+// of the project, so that keys which other tables name stay.
 Result<OpenTable> read_table(PgConnection& connection, std::int64_t id, Role seen_by = Role::owner);
 Result<OpenTable> lock_table(PgConnection& connection, std::int64_t id);
 
@@ -38,9 +38,9 @@ struct TableEdit {
   // undo and redo: values of the past must fit the columns as they are now
   bool checks_values = false;
 };
-// Does it, and refuses (409, 422) what would leave a required value empty, a unique one twice, a
-// key without its record, a value that its column does not take. Problems of single records are
-// told in the change, and then nothing may be committed.
+// Does it, and refuses (conflict, `invalid`) what would leave a required value empty, a unique one
+// twice, a key without its record, a value that its column does not take. Problems of single
+// records are told in the change, and then nothing may be committed.
 Result<TableChange> apply_edit(PgConnection& connection, OpenTable& open, TableEdit edit);
 
 // Inserts the column, hidden until an edit shows it.
@@ -52,7 +52,8 @@ Result<void> fit_column(PgConnection& connection, const OpenTable& open, Column&
 // column whose target is kOwnTable names records of the table itself.
 Result<Table> insert_table(PgConnection& connection, Table table);
 
-// The colours of the terms of a list; nothing where the table is none. 404: there is no table.
+// The colours of the terms of a list; nothing where the table is none. not_found: there is no
+// table.
 Result<std::optional<Palette>> term_palette_of(PgConnection& connection, std::int64_t table_id);
 
 }  // namespace strata::store

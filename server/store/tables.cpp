@@ -11,18 +11,17 @@ namespace strata::store {
 namespace {
 
 Result<Table> table_of(PgConnection& connection, std::int64_t id, Role seen_by = Role::owner) {
-  auto open = read_table(connection, id, seen_by);
-  if (!open) return tl::unexpected(open.error());
-  return std::move(open->table);
+  auto open = STRATA_TRY(read_table(connection, id, seen_by));
+  return std::move(open.table);
 }
 
-// Refuses a column that the table does not show, and (412) a version that is not the table's.
+// Refuses a column that the table does not show, and (stale) a version that is not the table's.
 Result<const Column*> shown_column(const OpenTable& open, std::int64_t column_id,
                                    std::optional<std::int64_t> version) {
   if (version && *version != open.table.version) return stale("table");
   for (const Column& column : open.table.columns)
     if (column.id == column_id) return &column;
-  return not_found("column", std::to_string(column_id));
+  return no_such("column", std::to_string(column_id));
 }
 
 Result<TableChange> refused_by_records(Result<TableChange> change) {
@@ -34,24 +33,22 @@ Result<TableChange> refused_by_records(Result<TableChange> change) {
 // named.
 Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Column& old,
                            Column column, const std::string& user) {
-  auto made = insert_column(connection, open, column);
-  if (!made) return tl::unexpected(made.error());
-  open.all.push_back(*made);
-  TableEdit edit{user, "retype-column", {{"column", made->id}, {"from", old.id}}, {}, {}};
+  auto made = STRATA_TRY(insert_column(connection, open, column));
+  open.all.push_back(made);
+  TableEdit edit{user, "retype-column", {{"column", made.id}, {"from", old.id}}, {}, {}};
   edit.columns[old.id] = {{"hidden", true}};
-  edit.columns[made->id] = {{"hidden", false}};
-  auto rows = load_all_rows(connection, open.table.id, {old});
-  if (!rows) return tl::unexpected(rows.error());
+  edit.columns[made.id] = {{"hidden", false}};
+  auto rows = STRATA_TRY(load_all_rows(connection, open.table.id, {old}));
   nlohmann::json lost = nlohmann::json::array();
   std::int64_t converted = 0, lost_count = 0;
-  Column lenient = *made;
+  Column lenient = made;
   lenient.required = false;
-  for (const Record& row : *rows) {
+  for (const Record& row : rows) {
     const auto value = row.values.find(old.id);
     if (value == row.values.end()) continue;
     auto then = convert_value(old, lenient, value->second, {});
     if (then && !then->is_null()) {
-      edit.records[row.key][std::to_string(made->id)] = std::move(*then);
+      edit.records[row.key][std::to_string(made.id)] = std::move(*then);
       ++converted;
     } else {
       ++lost_count;
@@ -68,14 +65,13 @@ Result<TableChange> retype(PgConnection& connection, OpenTable& open, const Colu
 
 Result<std::vector<Table>> Store::tables(std::int64_t project_id, Role seen_by) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<Table>> {
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         "SELECT id FROM record_tables WHERE project_id = $1 ORDER BY lower(name), id",
-        Params().integer(project_id));
-    if (!rows) return tl::unexpected(rows.error());
+        Params().integer(project_id)));
     std::vector<Table> tables;
-    for (int i = 0; i < rows->rows(); ++i) {
-      auto table = table_of(connection, rows->integer(i, 0), seen_by);
-      if (!table && table.error().status == 404) continue;  // deleted meanwhile
+    for (int i = 0; i < rows.rows(); ++i) {
+      auto table = table_of(connection, rows.integer(i, 0), seen_by);
+      if (!table && table.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
       if (!table) return tl::unexpected(table.error());
       tables.push_back(std::move(*table));
     }
@@ -84,13 +80,13 @@ Result<std::vector<Table>> Store::tables(std::int64_t project_id, Role seen_by) 
 }
 
 Result<Table> Store::table(const std::string& ref, Role seen_by) {
-  if (!check_text(ref, "table")) return not_found("table", ref);
+  if (!check_text(ref, "table")) return no_such("table", ref);
   return impl_->pool.read([&](PgConnection& connection) -> Result<Table> {
     if (const auto id = id_of(ref)) return table_of(connection, *id, seen_by);
-    auto row = connection.query("SELECT id FROM record_tables WHERE slug = $1", Params().text(ref));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) return not_found("table", ref);
-    return table_of(connection, row->integer(0, 0), seen_by);
+    auto row = STRATA_TRY(
+        connection.query("SELECT id FROM record_tables WHERE slug = $1", Params().text(ref)));
+    if (row.rows() == 0) return no_such("table", ref);
+    return table_of(connection, row.integer(0, 0), seen_by);
   });
 }
 
@@ -100,28 +96,26 @@ Result<Table> Store::create_table(const Table& table, const FirstAnswer<Table>& 
 }
 
 Result<Table> Store::update_table(const Table& table, const FirstAnswer<Table>& answer) {
-  if (auto good = check_name(table.name); !good) return tl::unexpected(good.error());
-  if (auto good = check_text(table.description, "description"); !good)
-    return tl::unexpected(good.error());
-  if (auto good = check_labels(table.labels); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_name(table.name));
+  STRATA_TRY(check_text(table.description, "description"));
+  STRATA_TRY(check_labels(table.labels));
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Table> {
     // As for every other change: the analysts' view of the new name is made while nobody alters the
     // rows that it reads.
-    auto open = lock_table(connection, table.id);
-    if (!open) return tl::unexpected(open.error());
-    if (table.title_column && table.title_column != open->table.title_column) {
-      const auto title = std::ranges::find(open->table.columns, *table.title_column, &Column::id);
-      if (title == open->table.columns.end())
-        return fail(422, "No such column",
+    auto open = STRATA_TRY(lock_table(connection, table.id));
+    if (table.title_column && table.title_column != open.table.title_column) {
+      const auto title = std::ranges::find(open.table.columns, *table.title_column, &Column::id);
+      if (title == open.table.columns.end())
+        return fail(ErrorCode::invalid, "No such column",
                     "The table has no column " + std::to_string(*table.title_column) + ".",
                     "title_column");
       if (!can_be_title(*title))
-        return fail(422, "No title",
+        return fail(ErrorCode::invalid, "No title",
                     "What '" + title->name +
                         "' holds cannot name a record: it is yes or no, or several things.",
                     "title_column");
     }
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "UPDATE record_tables SET name = $3, labels = $4, description = $5, title_column = $6, version = version + 1 "
         "WHERE id = $1 AND version = $2 RETURNING id",
         Params()
@@ -130,42 +124,38 @@ Result<Table> Store::update_table(const Table& table, const FirstAnswer<Table>& 
             .text(table.name)
             .json(table.labels)
             .text(table.description)
-            .optional_integer(table.title_column));
-    if (!row) return tl::unexpected(row.error());
+            .optional_integer(table.title_column)));
     auto now = table_of(connection, table.id);
     if (!now) return now;
-    return row->rows() > 0 ? now : Result<Table>(stale("table"));
+    return row.rows() > 0 ? now : Result<Table>(stale("table"));
   });
 }
 
 Result<void> Store::delete_table(std::int64_t id, const FirstAnswer<>& answer) {
   auto gone = impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
-    auto open = lock_table(connection, id);
-    if (!open) return tl::unexpected(open.error());
+    STRATA_TRY(lock_table(connection, id));
     // What is gone for ever keeps no table, though its content is not erased yet.
-    auto layers = connection.query(
+    auto layers = STRATA_TRY(connection.query(
         "SELECT l.id FROM all_layers l JOIN all_models m ON m.id = l.model_id WHERE l.table_id = $1 AND (l.erasing OR m.erasing)",
-        Params().integer(id));
-    if (!layers) return tl::unexpected(layers.error());
-    for (int i = 0; i < layers->rows(); ++i)
-      if (auto erased = erase_layer(connection, layers->integer(i, 0)); !erased) return erased;
-    auto users = connection.query(
+        Params().integer(id)));
+    for (int i = 0; i < layers.rows(); ++i)
+      STRATA_TRY(erase_layer(connection, layers.integer(i, 0)));
+    auto users = STRATA_TRY(connection.query(
         "SELECT 'the layer ' || l.name || ' of ' || m.name, coalesce(l.binned, m.binned) IS NOT NULL "
         "FROM all_layers l JOIN all_models m ON m.id = l.model_id "
         "WHERE l.table_id = $1 UNION ALL "
         "SELECT 'the column ' || (c.properties ->> 'name') || ' of ' || t.name, false FROM record_columns c "
         "JOIN record_tables t ON t.id = c.table_id WHERE c.target = $1 AND c.table_id <> $1 "
         "ORDER BY 2 LIMIT 1",
-        Params().integer(id));
-    if (!users) return tl::unexpected(users.error());
-    if (users->rows() > 0 && users->boolean(0, 1))
-      return fail(409, "Table in use",
-                  "The table is named by " + users->text(0, 0) +
+        Params().integer(id)));
+    if (users.rows() > 0 && users.boolean(0, 1))
+      return fail(ErrorCode::conflict, "Table in use",
+                  "The table is named by " + users.text(0, 0) +
                       ", which lies in the Bin. Erase that one there first.");
-    if (users->rows() > 0)
-      return fail(409, "Table in use",
-                  "The table is named by " + users->text(0, 0) + ". Delete that one first.");
-    if (auto dropped = drop_rows_table(connection, id); !dropped) return dropped;
+    if (users.rows() > 0)
+      return fail(ErrorCode::conflict, "Table in use",
+                  "The table is named by " + users.text(0, 0) + ". Delete that one first.");
+    STRATA_TRY(drop_rows_table(connection, id));
     // Its own columns may point at it.
     auto columns =
         connection.query("DELETE FROM record_columns WHERE table_id = $1", Params().integer(id));
@@ -180,16 +170,16 @@ Result<void> Store::delete_table(std::int64_t id, const FirstAnswer<>& answer) {
 }
 
 Result<std::vector<Layer>> Store::layers_of_table(std::int64_t table_id, Role seen_by) {
-  auto refs = impl_->pool.read([&](PgConnection& connection) {
+  auto refs = STRATA_TRY(impl_->pool.read([&](PgConnection& connection) {
     return connection.query(
         "SELECT model_id, id FROM layers WHERE table_id = $1 ORDER BY model_id, draw_order, id",
         Params().integer(table_id));
-  });
-  if (!refs) return tl::unexpected(refs.error());
+  }));
   std::vector<Layer> layers;
-  for (int i = 0; i < refs->rows(); ++i) {
-    auto found = layer(refs->integer(i, 0), std::to_string(refs->integer(i, 1)), seen_by);
-    if (!found && found.error().status == 404) continue;  // deleted meanwhile, or not seen
+  for (int i = 0; i < refs.rows(); ++i) {
+    auto found = layer(refs.integer(i, 0), std::to_string(refs.integer(i, 1)), seen_by);
+    if (!found && found.error().code == ErrorCode::not_found)
+      continue;  // deleted meanwhile, or not seen
     if (!found) return tl::unexpected(found.error());
     layers.push_back(std::move(*found));
   }
@@ -199,25 +189,21 @@ Result<std::vector<Layer>> Store::layers_of_table(std::int64_t table_id, Role se
 Result<TableChange> Store::create_column(std::int64_t table_id, const Column& column,
                                          const std::string& user,
                                          const FirstAnswer<TableChange>& answer) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(user, "user"));
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
-    auto open = lock_table(connection, table_id);
-    if (!open) return tl::unexpected(open.error());
+    auto open = STRATA_TRY(lock_table(connection, table_id));
     Column fresh = column;
-    if (auto fits = fit_column(connection, *open, fresh); !fits)
-      return tl::unexpected(fits.error());
-    auto made = insert_column(connection, *open, std::move(fresh));
-    if (!made) return tl::unexpected(made.error());
-    open->all.push_back(*made);
-    TableEdit edit{user, "create-column", {{"column", made->id}}, {}, {}};
-    edit.columns[made->id] = {{"hidden", false}};
-    if (!made->default_value.is_null()) {
-      auto rows = load_all_rows(connection, table_id, {});
-      if (!rows) return tl::unexpected(rows.error());
-      for (const Record& row : *rows)
-        edit.records[row.key][std::to_string(made->id)] = made->default_value;
+    STRATA_TRY(fit_column(connection, open, fresh));
+    auto made = STRATA_TRY(insert_column(connection, open, std::move(fresh)));
+    open.all.push_back(made);
+    TableEdit edit{user, "create-column", {{"column", made.id}}, {}, {}};
+    edit.columns[made.id] = {{"hidden", false}};
+    if (!made.default_value.is_null()) {
+      auto rows = STRATA_TRY(load_all_rows(connection, table_id, {}));
+      for (const Record& row : rows)
+        edit.records[row.key][std::to_string(made.id)] = made.default_value;
     }
-    return refused_by_records(apply_edit(connection, *open, std::move(edit)));
+    return refused_by_records(apply_edit(connection, open, std::move(edit)));
   };
   return impl_->change(answer, work, kBulkLimits);
 }
@@ -226,28 +212,25 @@ Result<TableChange> Store::update_column(std::int64_t table_id, const Column& co
                                          std::optional<std::int64_t> version,
                                          const std::string& user,
                                          const FirstAnswer<TableChange>& answer) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(user, "user"));
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
-    auto open = lock_table(connection, table_id);
-    if (!open) return tl::unexpected(open.error());
-    auto found = shown_column(*open, column.id, version);
-    if (!found) return tl::unexpected(found.error());
-    const Column old = **found;
+    auto open = STRATA_TRY(lock_table(connection, table_id));
+    auto found = STRATA_TRY(shown_column(open, column.id, version));
+    const Column old = *found;
     Column wished = column;
-    if (auto fits = fit_column(connection, *open, wished); !fits)
-      return tl::unexpected(fits.error());
+    STRATA_TRY(fit_column(connection, open, wished));
     if (wished.kind != old.kind || wished.target != old.target)
-      return retype(connection, *open, old, std::move(wished), user);
+      return retype(connection, open, old, std::move(wished), user);
     TableEdit edit{user, "change-column", {{"column", old.id}}, {}, {}};
     const Cells now = cells_of(old);
     for (auto& [name, value] : cells_of(wished))
       if (now.at(name) != value) edit.columns[old.id][name] = value;
     if (edit.columns.empty()) {
       TableChange nothing;
-      nothing.table = std::move(open->table);
+      nothing.table = std::move(open.table);
       return nothing;
     }
-    return refused_by_records(apply_edit(connection, *open, std::move(edit)));
+    return refused_by_records(apply_edit(connection, open, std::move(edit)));
   };
   return impl_->change(answer, work, kBulkLimits);
 }
@@ -256,28 +239,24 @@ Result<Table> Store::show_column(std::int64_t table_id, std::int64_t column_id,
                                  Visibility visibility, std::int64_t version,
                                  const FirstAnswer<Table>& answer) {
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Table> {
-    auto open = lock_table(connection, table_id);
-    if (!open) return tl::unexpected(open.error());
-    auto found = shown_column(*open, column_id, version);
-    if (!found) return tl::unexpected(found.error());
-    Column column = **found;
+    auto open = STRATA_TRY(lock_table(connection, table_id));
+    auto found = STRATA_TRY(shown_column(open, column_id, version));
+    Column column = *found;
     column.visibility = visibility;
-    if (auto good = check_column(column); !good) return tl::unexpected(good.error());
-    if (const auto terms = term_columns(open->table); terms && visibility != Visibility::everyone) {
+    STRATA_TRY(check_column(column));
+    if (const auto terms = term_columns(open.table); terms && visibility != Visibility::everyone) {
       std::set<const Column*> used{terms->code, terms->label, terms->parent, terms->definition,
                                    terms->uri,  terms->color, terms->pattern};
       for (const auto& [language, label] : terms->labels) used.insert(label);
-      if (used.contains(*found))
-        return fail(422, "Column of a list of terms",
+      if (used.contains(found))
+        return fail(ErrorCode::invalid, "Column of a list of terms",
                     "What terms are is seen by everybody who sees records that name them.",
                     "visibility");
     }
-    auto row = connection.query("UPDATE record_columns SET visibility = $2 WHERE id = $1",
-                                Params().integer(column_id).text(name(visibility)));
-    if (!row) return tl::unexpected(row.error());
-    auto counted = connection.query("UPDATE record_tables SET version = version + 1 WHERE id = $1",
-                                    Params().integer(table_id));
-    if (!counted) return tl::unexpected(counted.error());
+    STRATA_TRY(connection.query("UPDATE record_columns SET visibility = $2 WHERE id = $1",
+                                Params().integer(column_id).text(name(visibility))));
+    STRATA_TRY(connection.query("UPDATE record_tables SET version = version + 1 WHERE id = $1",
+                                Params().integer(table_id)));
     return table_of(connection, table_id);
   });
 }
@@ -285,15 +264,13 @@ Result<Table> Store::show_column(std::int64_t table_id, std::int64_t column_id,
 Result<TableChange> Store::drop_column(std::int64_t table_id, std::int64_t column_id,
                                        std::optional<std::int64_t> version, const std::string& user,
                                        const FirstAnswer<TableChange>& answer) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(user, "user"));
   return impl_->change(answer, [&](PgConnection& connection) -> Result<TableChange> {
-    auto open = lock_table(connection, table_id);
-    if (!open) return tl::unexpected(open.error());
-    if (auto found = shown_column(*open, column_id, version); !found)
-      return tl::unexpected(found.error());
+    auto open = STRATA_TRY(lock_table(connection, table_id));
+    STRATA_TRY(shown_column(open, column_id, version));
     TableEdit edit{user, "drop-column", {{"column", column_id}}, {}, {}};
     edit.columns[column_id] = {{"hidden", true}};
-    return apply_edit(connection, *open, std::move(edit));
+    return apply_edit(connection, open, std::move(edit));
   });
 }
 

@@ -23,8 +23,8 @@ class TermIntake {
   Result<TableChange> take(const std::string& user, const std::string& op) {
     edit_.user = user;
     edit_.op = op;
-    if (auto added = add_columns(); !added) return tl::unexpected(added.error());
-    if (auto found = find_keys(); !found) return tl::unexpected(found.error());
+    STRATA_TRY(add_columns());
+    STRATA_TRY(find_keys());
     for (std::size_t i = 0; i < list_.terms.size(); ++i)
       if (auto good = add_cells(i); !good) add_problem(i, good.error());
     refuse_circles();
@@ -35,9 +35,8 @@ class TermIntake {
     std::erase_if(edit_.records, [](const auto& record) { return record.second.empty(); });
     if (edit_.records.empty() && edit_.columns.empty()) return change;
     edit_.record = {{"records", edit_.records.size()}, {"terms", list_.terms.size()}};
-    auto done = apply_edit(connection_, open_, std::move(edit_));
-    if (!done) return done;
-    for (RowProblem& problem : done->problems)
+    auto done = STRATA_TRY(apply_edit(connection_, open_, std::move(edit_)));
+    for (RowError& problem : done.problems)
       if (const auto index = index_of_.find(problem.key); index != index_of_.end())
         problem.index = index->second;
     return done;
@@ -52,14 +51,13 @@ class TermIntake {
     for (const std::string& slug : list_.columns) {
       if (columns_.contains(slug)) continue;
       Column column = new_term_column(slug);
-      if (auto fits = fit_column(connection_, open_, column); !fits) return fits;
+      STRATA_TRY(fit_column(connection_, open_, column));
       for (const auto& [other, known] : columns_)
         column.order = std::max(column.order, known.order + 1);
-      auto made = insert_column(connection_, open_, std::move(column));
-      if (!made) return tl::unexpected(made.error());
-      open_.all.push_back(*made);
-      edit_.columns[made->id] = {{"hidden", false}};
-      columns_[slug] = std::move(*made);
+      auto made = STRATA_TRY(insert_column(connection_, open_, std::move(column)));
+      open_.all.push_back(made);
+      edit_.columns[made.id] = {{"hidden", false}};
+      columns_[slug] = std::move(made);
     }
     return {};
   }
@@ -67,9 +65,8 @@ class TermIntake {
   // The records that the terms are: those of their URI, otherwise of their code, otherwise new
   // ones.
   Result<void> find_keys() {
-    auto rows = load_all_rows(connection_, open_.table.id, open_.all);
-    if (!rows) return tl::unexpected(rows.error());
-    for (Record& row : *rows) {
+    auto rows = STRATA_TRY(load_all_rows(connection_, open_.table.id, open_.all));
+    for (Record& row : rows) {
       if (const std::string code = held_text(row, "code"); !code.empty())
         key_of_code_[code] = row.key;
       if (const std::string uri = held_text(row, "uri"); !uri.empty())
@@ -88,17 +85,18 @@ class TermIntake {
       else if (by_code != key_of_code_.end())
         key = by_code->second;
       else if (next > kHighestKey)
-        return fail(409, "No keys left", "All keys up to 4294967295 were given.", "key");
+        return fail(ErrorCode::conflict, "No keys left", "All keys up to 4294967295 were given.",
+                    "key");
       else
         key = next++;
       if (const auto [first, is_new] = index_of_.emplace(key, i); !is_new)
-        add_problem(i, {422, "Term twice",
+        add_problem(i, {ErrorCode::invalid, "Term twice",
                         "\"" + term.code + "\" and \"" + list_.terms[first->second].code +
                             "\" are the same term of the list, by URI and by code.",
                         "uri"});
       keys_.push_back(key);
       if (!term.uri.empty() && !uris.insert(term.uri).second)
-        add_problem(i, {422, "URI twice",
+        add_problem(i, {ErrorCode::invalid, "URI twice",
                         "Two terms have this URI: " + term.uri.substr(0, 300) + ".", "uri"});
     }
     // From here on codes and URIs mean what they will mean then: a code that a term gives up may be
@@ -129,17 +127,15 @@ class TermIntake {
         if (!column.default_value.is_null())
           cells[std::to_string(column.id)] = column.default_value;
     for (const std::string& slug : list_.columns) {
-      auto value = value_of(term, slug);
-      if (!value) return tl::unexpected(value.error());
+      auto value = STRATA_TRY(value_of(term, slug));
       const Column& column = columns_.at(slug);
-      if (auto checked = check_value(column, *value, slug); !checked)
-        return tl::unexpected(checked.error());
+      STRATA_TRY(check_value(column, value, slug));
       nlohmann::json now;
       if (exists)
         if (const auto cell = held->second.values.find(column.id);
             cell != held->second.values.end())
           now = cell->second;
-      if (*value != now || !exists) cells[std::to_string(column.id)] = std::move(*value);
+      if (value != now || !exists) cells[std::to_string(column.id)] = std::move(value);
     }
     return {};
   }
@@ -158,7 +154,7 @@ class TermIntake {
     if (!term.parent.empty()) {
       const auto parent = key_of_code_.find(term.parent);
       if (parent == key_of_code_.end())
-        return fail(422, "No such parent",
+        return fail(ErrorCode::invalid, "No such parent",
                     "Neither the list nor the text has a term \"" + term.parent + "\".", "parent");
       return nlohmann::json(parent->second);
     }
@@ -190,7 +186,7 @@ class TermIntake {
       const auto sent = std::find_if(circle.begin(), circle.end(),
                                      [&](auto key) { return index_of_.contains(key); });
       if (sent == circle.end()) continue;
-      add_problem(index_of_.at(*sent), {422, "Terms in a circle",
+      add_problem(index_of_.at(*sent), {ErrorCode::invalid, "Terms in a circle",
                                         path + "\"" + code_of(circle.front()) + "\".", "parent"});
     }
   }
@@ -210,7 +206,7 @@ class TermIntake {
                                                                   : std::string();
   }
 
-  void add_problem(std::size_t index, const Problem& problem) {
+  void add_problem(std::size_t index, const Error& problem) {
     if (problems_.size() < kMostRowProblems)
       problems_.push_back({keys_.size() > index ? keys_[index] : 0, problem, index});
   }
@@ -224,29 +220,26 @@ class TermIntake {
   std::map<std::string, std::int64_t> key_of_code_, key_of_uri_;
   std::vector<std::int64_t> keys_;                // of the terms
   std::map<std::int64_t, std::size_t> index_of_;  // of the term that a record is
-  std::vector<RowProblem> problems_;
+  std::vector<RowError> problems_;
 };
 
 // The table with its terms, or (`told`) why they cannot be in it.
 Result<TableChange> insert_with_terms(PgConnection& connection, Table table, const TermList* terms,
                                       const std::string& user, const std::string& op) {
-  auto taken = connection.query(
+  auto taken = STRATA_TRY(connection.query(
       "SELECT slug::text FROM record_tables WHERE project_id = $1 AND lower(name) = lower($2)",
-      Params().integer(table.project_id).text(table.name));
-  if (!taken) return tl::unexpected(taken.error());
-  if (taken->rows() > 0)
-    return fail(409, "Name taken",
-                "The project has a table \"" + table.name + "\" already (`" + taken->text(0, 0) +
+      Params().integer(table.project_id).text(table.name)));
+  if (taken.rows() > 0)
+    return fail(ErrorCode::conflict, "Name taken",
+                "The project has a table \"" + table.name + "\" already (`" + taken.text(0, 0) +
                     "`). Rename or delete it first, or go on with that one.",
                 "name");
-  auto made = insert_table(connection, std::move(table));
-  if (!made) return tl::unexpected(made.error());
+  auto made = STRATA_TRY(insert_table(connection, std::move(table)));
   TableChange change;
-  change.table = *made;
+  change.table = made;
   if (!terms) return change;
-  auto open = read_table(connection, made->id);
-  if (!open) return tl::unexpected(open.error());
-  return TermIntake(connection, *open, *terms).take(user, op);
+  auto open = STRATA_TRY(read_table(connection, made.id));
+  return TermIntake(connection, open, *terms).take(user, op);
 }
 
 }  // namespace
@@ -254,26 +247,25 @@ Result<TableChange> insert_with_terms(PgConnection& connection, Table table, con
 Result<std::vector<TableChange>> Store::create_tables(
     const std::vector<NewTable>& tables, bool dry_run, const std::string& user,
     const std::string& op, const FirstAnswer<std::vector<TableChange>>& answer) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(user, "user"));
   std::optional<std::vector<TableChange>> told;
   const auto work = [&](PgConnection& connection) -> Result<std::vector<TableChange>> {
     std::vector<TableChange> made;
     bool refused = false;
     for (const NewTable& wished : tables) {
       Table table = wished.table;
-      if (auto good = check_text(table.name, "name"); !good) return tl::unexpected(good.error());
+      STRATA_TRY(check_text(table.name, "name"));
       // The tables before it, by their places; then they have ids.
       for (const auto& [column, place] : wished.targets)
         table.columns.at(column).target = made.at(place).table.id;
-      auto change = insert_with_terms(connection, std::move(table),
-                                      wished.terms ? &*wished.terms : nullptr, user, op);
-      if (!change) return tl::unexpected(change.error());
-      refused = refused || !change->problems.empty();
-      made.push_back(std::move(*change));
+      auto change = STRATA_TRY(insert_with_terms(
+          connection, std::move(table), wished.terms ? &*wished.terms : nullptr, user, op));
+      refused = refused || !change.problems.empty();
+      made.push_back(std::move(change));
     }
     if (!refused && !dry_run) return made;
     told = std::move(made);
-    return fail(409, "Not kept", "Nothing was written.");
+    return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
   };
   auto done = impl_->change(answer, work, kBulkLimits);
   if (told) return std::move(*told);
@@ -283,21 +275,20 @@ Result<std::vector<TableChange>> Store::create_tables(
 Result<TableChange> Store::import_terms(std::int64_t table_id, const TermList& list, bool dry_run,
                                         const std::string& user,
                                         const FirstAnswer<TableChange>& answer) {
-  if (auto good = check_text(user, "user"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_text(user, "user"));
   std::optional<TableChange> told;
   const auto work = [&](PgConnection& connection) -> Result<TableChange> {
-    auto open = lock_table(connection, table_id);
-    if (!open) return tl::unexpected(open.error());
-    if (!term_columns(open->table))
+    auto open = STRATA_TRY(lock_table(connection, table_id));
+    if (!term_columns(open.table))
       return fail(
-          409, "No list of terms",
-          open->table.name +
+          ErrorCode::conflict, "No list of terms",
+          open.table.name +
               " is no list of terms: that has `code`, a text that is required and unique, `label`, a text, and `parent`, a "
               "term of the table itself.");
-    auto change = TermIntake(connection, *open, list).take(user, "import");
+    auto change = TermIntake(connection, open, list).take(user, "import");
     if (!change || (change->problems.empty() && !dry_run)) return change;
     told = std::move(*change);
-    return fail(409, "Not kept", "Nothing was written.");
+    return fail(ErrorCode::conflict, "Not kept", "Nothing was written.");
   };
   auto done = impl_->change(answer, work, kBulkLimits);
   if (told) return std::move(*told);
@@ -306,15 +297,13 @@ Result<TableChange> Store::import_terms(std::int64_t table_id, const TermList& l
 
 Result<std::optional<Palette>> term_palette_of(PgConnection& connection, std::int64_t table_id) {
   // Everybody who sees the layer sees its palette.
-  auto open = read_table(connection, table_id, least_role(Visibility::everyone));
-  if (!open) return tl::unexpected(open.error());
-  const auto columns = term_columns(open->table);
+  auto open = STRATA_TRY(read_table(connection, table_id, least_role(Visibility::everyone)));
+  const auto columns = term_columns(open.table);
   if (!columns) return std::optional<Palette>();
   const RecordOrder by_key[] = {{0, false}};
-  auto page = load_page(connection, table_id, open->table.columns, {}, {}, Params(), by_key,
-                        {static_cast<std::int64_t>(kMostTermColors)});
-  if (!page) return tl::unexpected(page.error());
-  return std::optional(terms_palette(list_terms(*columns, page->rows)));
+  auto page = STRATA_TRY(load_page(connection, table_id, open.table.columns, {}, {}, Params(),
+                                   by_key, {static_cast<std::int64_t>(kMostTermColors)}));
+  return std::optional(terms_palette(list_terms(*columns, page.rows)));
 }
 
 }  // namespace strata::store

@@ -116,8 +116,7 @@ Result<void> Store::keep_sums(std::int64_t layer_id, std::vector<TileKeys> tiles
     write_tile_sums(by_place, statements);
     statements.push_back({"UPDATE layers SET summed = true WHERE id = $1", {}});
     statements.back().params.integer(layer_id);
-    auto done = connection.pipeline(statements);
-    if (!done) return tl::unexpected(done.error());
+    STRATA_TRY(connection.pipeline(statements));
     return {};
   });
 }

@@ -24,14 +24,12 @@ Result<Decoded> decode(std::vector<StoredTile> tiles, ValueType type) {
   for (const StoredTile& stored : tiles) {
     TileData tile(type);
     if (!stored.key.empty()) {
-      auto key = decode_tile(type, stored.key);
-      if (!key) return tl::unexpected(key.error());
-      tile = std::move(*key);
+      auto key = STRATA_TRY(decode_tile(type, stored.key));
+      tile = std::move(key);
     }
     for (const auto& bytes : stored.differences) {
-      auto revision = decode_revision(stored.address, type, bytes);
-      if (!revision) return tl::unexpected(revision.error());
-      apply(*revision, tile);
+      auto revision = STRATA_TRY(decode_revision(stored.address, type, bytes));
+      apply(revision, tile);
     }
     if (tile.valid.any())
       decoded.emplace_back(stored.address, std::make_shared<const TileData>(std::move(tile)));
@@ -50,12 +48,11 @@ class TileLoader {
   Result<void> add(TileAddress address, std::int64_t sequence, bool key, Bytes bytes) {
     const auto place = std::tuple(address.y, address.x, sequence);
     if (place <= last_)
-      return fail(500, "Revisions out of order",
+      return fail(ErrorCode::internal, "Revisions out of order",
                   "The database gave a layer's revisions in another order than asked for.");
     last_ = place;
     if (batch_.empty() || batch_.back().address != address) {
-      if (batch_bytes_ >= kBatchBytes)
-        if (auto sent = flush(); !sent) return sent;
+      if (batch_bytes_ >= kBatchBytes) STRATA_TRY(flush());
       batch_.push_back({address, {}, {}});
     }
     if (key)
@@ -129,32 +126,29 @@ constexpr const char* kLoadTiles =
 Result<TileMirror::Snapshot> Store::load_tiles(const Layer& layer,
                                                std::optional<std::int64_t> at_sequence) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<TileMirror::Snapshot> {
-    auto last = connection.query(
+    auto last = STRATA_TRY(connection.query(
         "SELECT (SELECT coalesce(max(sequence), 0) FROM edits WHERE layer_id = l.id AND sequence <= $2) "
         "FROM layers l WHERE id = $1",
         Params().integer(layer.id).integer(
-            at_sequence.value_or(std::numeric_limits<std::int64_t>::max())));
-    if (!last) return tl::unexpected(last.error());
-    if (last->rows() == 0) return not_found("layer", std::to_string(layer.id));
+            at_sequence.value_or(std::numeric_limits<std::int64_t>::max()))));
+    if (last.rows() == 0) return no_such("layer", std::to_string(layer.id));
     // The journal only grows, so everything up to this sequence is one consistent state.
-    const std::int64_t sequence = last->integer(0, 0);
+    const std::int64_t sequence = last.integer(0, 0);
     TileLoader loader(layer.type);
-    auto read = connection.each_row(
+    STRATA_TRY(connection.each_row(
         kLoadTiles, Params().integer(layer.id).integer(sequence), [&](const PgResult& row) {
           return loader.add(read_address(row, 0), row.integer(0, 2),
                             !row.null(0, 3) && row.boolean(0, 3), row.bytes(0, 4));
-        });
-    if (!read) return tl::unexpected(read.error());
-    auto tiles = loader.finish();
-    if (!tiles) return tl::unexpected(tiles.error());
-    return TileMirror::Snapshot{std::move(*tiles), sequence};
+        }));
+    auto tiles = STRATA_TRY(loader.finish());
+    return TileMirror::Snapshot{std::move(tiles), sequence};
   });
 }
 
 Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAddress tile,
                                                       std::int64_t before, int limit) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<PastRevision>> {
-    auto rows = connection.query(
+    auto rows = STRATA_TRY(connection.query(
         "SELECT r.sequence, e.writer, e.in_force, coalesce(e.review = 'pending', false), r.difference FROM tile_revisions r "
         "JOIN edits e ON e.model_id = $2 AND e.sequence = r.sequence "
         "WHERE r.layer_id = $1 AND r.tile_y = $3 AND r.tile_x = $4 AND r.sequence < $5 ORDER BY r.sequence DESC LIMIT $6",
@@ -164,14 +158,12 @@ Result<std::vector<PastRevision>> Store::tile_history(const Layer& layer, TileAd
             .integer(tile.y)
             .integer(tile.x)
             .integer(before)
-            .integer(limit));
-    if (!rows) return tl::unexpected(rows.error());
+            .integer(limit)));
     std::vector<PastRevision> revisions;
-    for (int i = 0; i < rows->rows(); ++i) {
-      auto revision = decode_revision(tile, layer.type, rows->bytes(i, 4));
-      if (!revision) return tl::unexpected(revision.error());
-      revisions.push_back({rows->integer(i, 0), rows->boolean(i, 1), rows->boolean(i, 2),
-                           rows->boolean(i, 3), std::move(*revision)});
+    for (int i = 0; i < rows.rows(); ++i) {
+      auto revision = STRATA_TRY(decode_revision(tile, layer.type, rows.bytes(i, 4)));
+      revisions.push_back({rows.integer(i, 0), rows.boolean(i, 1), rows.boolean(i, 2),
+                           rows.boolean(i, 3), std::move(revision)});
     }
     return revisions;
   });
@@ -183,7 +175,7 @@ Result<std::vector<Store::WrittenTiles>> Store::written_by(
   for (const std::int64_t sequence : sequences) list.add(sequence);
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::vector<WrittenTiles>> {
     std::vector<WrittenTiles> written;
-    auto read = connection.each_row(
+    STRATA_TRY(connection.each_row(
         "SELECT tile_y, tile_x, difference FROM tile_revisions WHERE layer_id = $1 AND sequence = any($2) "
         "ORDER BY tile_y, tile_x",
         Params().integer(layer.id).array(list), [&](const PgResult& row) -> Result<void> {
@@ -194,20 +186,18 @@ Result<std::vector<Store::WrittenTiles>> Store::written_by(
           for (int w = 0; w < kMaskWords; ++w)
             written.back().written.words[w] |= revision->written.words[w];
           return {};
-        });
-    if (!read) return tl::unexpected(read.error());
+        }));
     return written;
   });
 }
 
 Result<std::uint64_t> Store::revision_bytes(std::int64_t model_id) {
   return impl_->pool.read([&](PgConnection& connection) -> Result<std::uint64_t> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "SELECT coalesce(sum(octet_length(r.difference) + coalesce(octet_length(r.key_tile), 0)), 0)::bigint "
         "FROM layers l JOIN tile_revisions r ON r.layer_id = l.id WHERE l.model_id = $1",
-        Params().integer(model_id));
-    if (!row) return tl::unexpected(row.error());
-    return static_cast<std::uint64_t>(row->integer(0, 0));
+        Params().integer(model_id)));
+    return static_cast<std::uint64_t>(row.integer(0, 0));
   });
 }
 

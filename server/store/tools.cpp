@@ -41,7 +41,7 @@ Result<std::vector<Tool>> Store::tools() {
 }
 
 Result<Tool> Store::tool(const std::string& ref) {
-  if (!check_text(ref, "tool")) return not_found("tool", ref);
+  if (!check_text(ref, "tool")) return no_such("tool", ref);
   return impl_->pool.read([&](PgConnection& connection) -> Result<Tool> {
     const auto id = id_of(ref);
     auto rows =
@@ -51,26 +51,25 @@ Result<Tool> Store::tool(const std::string& ref) {
                               " FROM tool_shapes WHERE slug = $1 AND deleted IS NULL",
                               Params().text(ref));
     if (!rows) return tl::unexpected(rows.error());
-    if (rows->rows() == 0) return not_found("tool", ref);
+    if (rows->rows() == 0) return no_such("tool", ref);
     return read_tool(*rows, 0);
   });
 }
 
 Result<Tool> Store::create_tool(const Tool& tool, const ShapeBits& shape,
                                 const FirstAnswer<Tool>& answer) {
-  if (auto good = check_name(tool.name); !good) return tl::unexpected(good.error());
-  if (auto good = check_text(tool.slug, "slug"); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_name(tool.name));
+  STRATA_TRY(check_text(tool.slug, "slug"));
   const auto cells = bytes_of(shape);
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Tool> {
     // Locked, so that of two at once the later one counts the earlier; reading goes on.
-    auto locked = connection.query("LOCK TABLE tool_shapes IN SHARE ROW EXCLUSIVE MODE");
-    if (!locked) return tl::unexpected(locked.error());
-    auto count = connection.query("SELECT count(*) FROM tool_shapes WHERE deleted IS NULL");
-    if (!count) return tl::unexpected(count.error());
-    if (count->integer(0, 0) >= kMostTools)
-      return fail(409, "Too many tools",
+    STRATA_TRY(connection.query("LOCK TABLE tool_shapes IN SHARE ROW EXCLUSIVE MODE"));
+    auto count =
+        STRATA_TRY(connection.query("SELECT count(*) FROM tool_shapes WHERE deleted IS NULL"));
+    if (count.integer(0, 0) >= kMostTools)
+      return fail(ErrorCode::conflict, "Too many tools",
                   "A site has at most " + std::to_string(kMostTools) + " tools. Delete one first.");
-    auto row = insert_with_slug(
+    auto row = STRATA_TRY(insert_with_slug(
         connection,
         "SELECT slug::text FROM tool_shapes WHERE slug LIKE $1 AND deleted IS NULL "
         "UNION ALL SELECT unnest(ARRAY['disc', 'square'])",
@@ -79,36 +78,32 @@ Result<Tool> Store::create_tool(const Tool& tool, const ShapeBits& shape,
               "INSERT INTO tool_shapes (name, slug, cells) VALUES ($1, $2, $3) "
               "ON CONFLICT (slug) WHERE deleted IS NULL DO NOTHING RETURNING " STRATA_TOOL_COLUMNS,
               Params().text(tool.name).text(slug).bytes(cells));
-        });
-    if (!row) return tl::unexpected(row.error());
-    return read_tool(*row, 0);
+        }));
+    return read_tool(row, 0);
   });
 }
 
 Result<Tool> Store::update_tool(const Tool& tool, const FirstAnswer<Tool>& answer) {
-  if (auto good = check_name(tool.name); !good) return tl::unexpected(good.error());
+  STRATA_TRY(check_name(tool.name));
   return impl_->change(answer, [&](PgConnection& connection) -> Result<Tool> {
-    auto row = connection.query(
+    auto row = STRATA_TRY(connection.query(
         "UPDATE tool_shapes SET name = $3, version = version + 1 WHERE id = $1 AND version = $2 AND deleted IS NULL "
         "RETURNING " STRATA_TOOL_COLUMNS,
-        Params().integer(tool.id).integer(tool.version).text(tool.name));
-    if (!row) return tl::unexpected(row.error());
-    if (row->rows() > 0) return read_tool(*row, 0);
-    auto known = connection.query("SELECT 1 FROM tool_shapes WHERE id = $1 AND deleted IS NULL",
-                                  Params().integer(tool.id));
-    if (!known) return tl::unexpected(known.error());
-    if (known->rows() == 0) return not_found("tool", std::to_string(tool.id));
+        Params().integer(tool.id).integer(tool.version).text(tool.name)));
+    if (row.rows() > 0) return read_tool(row, 0);
+    auto known = STRATA_TRY(connection.query(
+        "SELECT 1 FROM tool_shapes WHERE id = $1 AND deleted IS NULL", Params().integer(tool.id)));
+    if (known.rows() == 0) return no_such("tool", std::to_string(tool.id));
     return stale("tool");
   });
 }
 
 Result<void> Store::delete_tool(std::int64_t id, const FirstAnswer<>& answer) {
   return impl_->change(answer, [&](PgConnection& connection) -> Result<void> {
-    auto done = connection.query(
+    auto done = STRATA_TRY(connection.query(
         "UPDATE tool_shapes SET deleted = now(), version = version + 1 WHERE id = $1 AND deleted IS NULL RETURNING id",
-        Params().integer(id));
-    if (!done) return tl::unexpected(done.error());
-    if (done->rows() == 0) return not_found("tool", std::to_string(id));
+        Params().integer(id)));
+    if (done.rows() == 0) return no_such("tool", std::to_string(id));
     return {};
   });
 }
@@ -118,7 +113,7 @@ Result<ShapeBits> Store::tool_shape(std::int64_t id) {
     auto row =
         connection.query("SELECT cells FROM tool_shapes WHERE id = $1", Params().integer(id));
     if (!row) return tl::unexpected(row.error());
-    if (row->rows() == 0) return not_found("tool", std::to_string(id));
+    if (row->rows() == 0) return no_such("tool", std::to_string(id));
     return bits_of(row->bytes(0, 0));
   });
 }

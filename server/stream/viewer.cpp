@@ -31,9 +31,9 @@ constexpr auto kLastRetry = 5000ms;
 // would show as patches.
 constexpr JpegSettings kStillPicture{90, true};
 
-bool is_superseded(const Problem& problem) { return problem.status == 409; }
+bool is_superseded(const Error& problem) { return problem.code == ErrorCode::superseded; }
 // Of what was asked for, not of the state of the GPU: the same again has the same answer.
-bool is_refusal(const Problem& problem) { return problem.status == 422; }
+bool is_refusal(const Error& problem) { return problem.code == ErrorCode::invalid; }
 
 }  // namespace
 
@@ -367,7 +367,7 @@ void Viewer::on_drawn(const FlowControl::Draw& draw, JpegSettings jpeg, render::
   step();
 }
 
-void Viewer::on_failed(std::uint64_t ticket, const Problem& problem) {
+void Viewer::on_failed(std::uint64_t ticket, const Error& problem) {
   const bool refused = is_refusal(problem);
   {
     std::lock_guard lock(impl_->mutex);
@@ -384,7 +384,7 @@ void Viewer::on_failed(std::uint64_t ticket, const Problem& problem) {
   retry_later([](Viewer& viewer) { viewer.step(); });
 }
 
-void Viewer::tell(const Problem& why) {
+void Viewer::tell(const Error& why) {
   std::lock_guard sending(impl_->send_mutex);
   {
     std::lock_guard lock(impl_->mutex);

@@ -42,9 +42,9 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     std::int64_t sequence = 0;  // of the scene at the start
   };
   using Send = std::function<void(FrameMessages)>;
-  // Why nothing can be drawn as asked for (422). Told once; the next camera, layers or edit are
+  // Why nothing can be drawn as asked for (invalid). Told once; the next camera, layers or edit are
   // tried again.
-  using Refused = std::function<void(const Problem&)>;
+  using Refused = std::function<void(const Error&)>;
 
   static std::shared_ptr<Viewer> create(StreamContext context, render::ModelHandle model,
                                         Options options, Send send, Refused refused = {});
@@ -74,8 +74,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
                const Result<render::ViewHandle>& view);  // false: the view is not wanted any more
   void step();
   void on_drawn(const FlowControl::Draw& draw, JpegSettings jpeg, render::SharedFrame frame);
-  void on_failed(std::uint64_t ticket, const Problem& problem);
-  void tell(const Problem& why);
+  void on_failed(std::uint64_t ticket, const Error& problem);
+  void tell(const Error& why);
   void encode_next();
   void on_encoded(const Jpegs& jpegs, double encode_ms);
   void wait_for_quiet();

@@ -42,7 +42,7 @@ nlohmann::json facts(const std::string& name, const Options& options) {
       watch.run("read", progress, [&] { return load_named_mesh(name, options.cache, progress); });
   if (!loaded) return {{"mesh", title}, {"refused", loaded.error().detail}};
   const mesh::TriangleMesh& mesh = loaded->mesh;
-  Result<mesh::Atlas> atlas = fail(0, "", "not tried");
+  Result<mesh::Atlas> atlas = fail(ErrorCode::invalid, "", "not tried");
   if (!options.make_always && !mesh.corner_uvs.empty())
     atlas = watch.run("keep", progress, [&] { return mesh::keep_uvs(mesh, kLowest, progress); });
   if (!atlas)

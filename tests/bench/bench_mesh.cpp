@@ -35,7 +35,7 @@ Result<fs::path> made_by(const std::string& command, const fs::path& file,
   if (std::system(command.c_str()) == 0) return file;
   std::error_code ignored;
   fs::remove(file, ignored);
-  return fail(500, "Mesh not made", advice);
+  return fail(ErrorCode::internal, "Mesh not made", advice);
 }
 
 std::string plain_name(const fs::path& file) {
@@ -56,7 +56,7 @@ Result<fs::path> unpacked(const fs::path& file, const fs::path& cache) {
 Result<fs::path> mesh_file(const std::string& name, const fs::path& cache) {
   if (!is_preset(name)) {
     if (fs::exists(name)) return unpacked(name, cache);
-    return fail(404, "No such mesh",
+    return fail(ErrorCode::not_found, "No such mesh",
                 "There is no file or model " + name +
                     " (pot, pot:N, vessel, excavation, amazon, thai, textured10m, or a file).");
   }
@@ -65,7 +65,7 @@ Result<fs::path> mesh_file(const std::string& name, const fs::path& cache) {
   const fs::path maker = fs::path(STRATA_TEST_DATA) / "make_big_mesh.py";
   if (!fs::exists(maker))
     return fail(
-        404, "No such mesh",
+        ErrorCode::not_found, "No such mesh",
         "The preset " + name + " needs " + maker.string() + "; use pot:N or a file instead.");
   return made_by(
       "python3 '" + maker.string() + "' --preset " + name + " -o '" + file.string() + "' >&2", file,
@@ -99,7 +99,8 @@ Result<std::vector<std::string>> all_meshes() {
         mesh::input_kind(plain_name(entry.path())) != mesh::InputKind::companion)
       names.push_back(entry.path().string());
   if (error)
-    return fail(404, "No data folder", "There is no data folder at " + data.string() + ".");
+    return fail(ErrorCode::not_found, "No data folder",
+                "There is no data folder at " + data.string() + ".");
   // The scans first, the presets, then the broken ones.
   std::sort(names.begin(), names.end());
   const auto nasty = std::stable_partition(names.begin(), names.end(), [](const std::string& name) {
@@ -122,7 +123,7 @@ Result<BenchMesh> load_bench_mesh(const std::string& name, const BenchMeshOption
   auto loaded = load_named_mesh(name, options.cache, progress);
   if (!loaded) return tl::unexpected(loaded.error());
   const mesh::TriangleMesh& mesh = loaded->mesh;
-  Result<mesh::Atlas> atlas = fail(0, "", "");
+  Result<mesh::Atlas> atlas = fail(ErrorCode::invalid, "", "");
   if (!mesh.corner_uvs.empty() && !options.make_always)
     atlas = mesh::keep_uvs(mesh, kLowestResolution, progress);
   if (!atlas) atlas = mesh::make_atlas(mesh, kLowestResolution, progress);

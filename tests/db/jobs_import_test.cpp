@@ -191,8 +191,8 @@ TEST_F(Import, a_bad_file_is_refused_and_leaves_nothing_behind) {
                                                         {"picture.jpg", "JFIF"}}) {
     const auto model = import_model(*store_, request(filename, content), progress_);
     ASSERT_FALSE(model) << filename;
-    EXPECT_GE(model.error().status, 400) << filename;
-    EXPECT_LT(model.error().status, 500) << filename;
+    EXPECT_GE(model.error().code, ErrorCode::malformed) << filename;
+    EXPECT_LT(model.error().code, ErrorCode::internal) << filename;
     EXPECT_FALSE(model.error().detail.empty()) << filename;
   }
   expect_nothing_left();
@@ -210,7 +210,7 @@ TEST_F(Import, strict_refuses_a_file_that_needs_repair_and_says_which) {
   asked.strict = true;
   const auto refused = import_model(*store_, asked, progress_);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 422);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid);
   EXPECT_THAT(refused.error().detail, ::testing::HasSubstr("degenerate"));
   expect_nothing_left();
   asked.strict = false;
@@ -235,7 +235,7 @@ TEST_F(Import, options_that_mean_nothing_are_refused_with_their_field) {
   EXPECT_EQ(field_of([](auto& r) { r.files[0].filename = "folder/"; }), "filename");
   ImportRequest lost = good;
   lost.project = "nowhere";
-  EXPECT_EQ(import_model(*store_, lost, progress_).error().status, 404);
+  EXPECT_EQ(import_model(*store_, lost, progress_).error().code, ErrorCode::not_found);
   expect_nothing_left();
 }
 
@@ -261,7 +261,7 @@ TEST_F(Import, a_cancel_at_any_time_leaves_nothing_behind) {
       EXPECT_TRUE(store_->delete_model(model->id));
       continue;
     }
-    EXPECT_EQ(model.error().status, 499);
+    EXPECT_EQ(model.error().code, ErrorCode::cancelled);
     EXPECT_EQ(count("models"), 0);
     EXPECT_EQ(count("model_sources"), 0);
   }

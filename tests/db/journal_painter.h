@@ -118,7 +118,7 @@ inline Result<void> save(store::JournalWriter& writer, store::JournalEntry entry
   auto future = answer->get_future();
   if (!writer.submit(std::move(entry),
                      [answer](Result<void> result) { answer->set_value(std::move(result)); }))
-    return fail(503, "Not accepted", "The writer takes no edits now.");
+    return fail(ErrorCode::unavailable, "Not accepted", "The writer takes no edits now.");
   return future.get();
 }
 

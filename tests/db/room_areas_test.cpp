@@ -145,7 +145,7 @@ TEST_F(RoomAreas, a_fill_over_a_layer_that_is_not_there_is_refused_and_paints_no
   fill.region = FillEdit::Where{valid("salt")};
   const auto answer = send(request(marks_, fill));
   ASSERT_FALSE(answer);
-  EXPECT_EQ(answer.error().status, 422);
+  EXPECT_EQ(answer.error().code, ErrorCode::invalid);
   EXPECT_EQ(answer.error().field, "where");
   EXPECT_EQ(room()->sequence(), 0);
   EXPECT_TRUE(tiles("marks").empty());
@@ -216,7 +216,7 @@ TEST_F(RoomAreas, a_place_beside_the_model_is_refused) {
   fill.region = FillEdit::Island{room::PixelPlace{view(), 2, 2}};
   const auto answer = send(request(marks_, fill));
   ASSERT_FALSE(answer);
-  EXPECT_EQ(answer.error().status, 422);
+  EXPECT_EQ(answer.error().code, ErrorCode::invalid);
   EXPECT_EQ(answer.error().field, "at");
   EXPECT_EQ(room()->sequence(), 0);
 }

@@ -28,10 +28,10 @@ TEST_F(LayersInTheBin, come_back_with_texels_history_and_undo_while_others_go_on
   ASSERT_TRUE(send(stroke(layer, 8, {{300, 240}}, 20)));
   const TileMap before = room()->tiles(layer.slug, {})->tiles;
   put(layer);
-  EXPECT_EQ(room()->layer(layer.slug).error().status, 404);
+  EXPECT_EQ(room()->layer(layer.slug).error().code, ErrorCode::not_found);
   EXPECT_EQ(room()->layers().size(), 1u);
-  EXPECT_EQ(send(stroke(layer, 1, {{320, 240}}, 20)).error().status, 404);
-  EXPECT_EQ(send(request(layer, room::UndoEdit{})).error().status, 404);
+  EXPECT_EQ(send(stroke(layer, 1, {{320, 240}}, 20)).error().code, ErrorCode::not_found);
+  EXPECT_EQ(send(request(layer, room::UndoEdit{})).error().code, ErrorCode::not_found);
   ASSERT_TRUE(send(stroke(other, 5, {{320, 240}}, 20)));
   const auto back = restore(layer);
   ASSERT_TRUE(back) << back.error().detail;
@@ -44,7 +44,7 @@ TEST_F(LayersInTheBin, come_back_with_texels_history_and_undo_while_others_go_on
   expect_room_equals_journal(layer);
   expect_room_equals_journal(other);
   expect_picture_of_journal();
-  EXPECT_EQ(restore(layer).error().status, 404);
+  EXPECT_EQ(restore(layer).error().code, ErrorCode::not_found);
 }
 
 TEST_F(LayersInTheBin, stay_there_over_a_restart_and_a_lost_context) {
@@ -74,14 +74,16 @@ TEST_F(LayersInTheBin, are_not_deleted_with_a_room_that_takes_them_back) {
   put(layer);
   ASSERT_TRUE(store_->bin().put_model(model_.id, {.key = {}, .make = {}, .user = "carl"}));
   rooms_->forget(model_.id);
-  EXPECT_EQ(held->picture({}, camera()).error().status, 410) << "who holds the room is told why";
-  EXPECT_EQ(rooms_->open(std::to_string(model_.id), Role::owner).error().status, 404);
+  EXPECT_EQ(held->picture({}, camera()).error().code, ErrorCode::gone)
+      << "who holds the room is told why";
+  EXPECT_EQ(rooms_->open(std::to_string(model_.id), Role::owner).error().code,
+            ErrorCode::not_found);
   EXPECT_EQ(
       store_->bin()
           .entry(model_.project_id, store::BinEntry::Kind::layer, layer.id, 0, {Role::owner, {}})
           .error()
-          .status,
-      404);
+          .code,
+      ErrorCode::not_found);
   const auto model = store_->bin().entry(model_.project_id, store::BinEntry::Kind::model, model_.id,
                                          0, {Role::owner, {}});
   ASSERT_TRUE(model);

@@ -140,7 +140,7 @@ TEST_F(RoomTest, a_lost_context_comes_back_with_every_layer) {
   ASSERT_TRUE(before);
   renderer_->lose_context_for_test();
   // The room refuses while the GPU is rebuilt; then the picture is the same.
-  Result<render::Frame> after = fail(503, "", "");
+  Result<render::Frame> after = fail(ErrorCode::unavailable, "", "");
   for (int i = 0; i < 3000 && !after; ++i) {
     after = room()->picture({}, camera({0.3, -1, 0.4}));
     if (!after) std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -159,7 +159,7 @@ struct UnsavedEars : room::Listener {
   std::mutex mutex;
   std::vector<Uuid> unsaved;
   void edit_applied(const Edit&) override {}
-  void edits_unsaved(const std::vector<Edit>& edits, const Problem&) override {
+  void edits_unsaved(const std::vector<Edit>& edits, const Error&) override {
     std::lock_guard lock(mutex);
     for (const auto& edit : edits) unsaved.push_back(edit.id);
   }
@@ -168,7 +168,7 @@ struct UnsavedEars : room::Listener {
   void look_changed(LayerChange, const Look&) override {}
   void model_deleted() override {}
   void presence_changed() override {}
-  void view_refused(std::uint32_t, const Problem&) override {}
+  void view_refused(std::uint32_t, const Error&) override {}
 };
 
 void execute(const std::string& dsn, const char* sql) {
@@ -225,7 +225,7 @@ TEST_F(RoomTest, with_the_database_gone_edits_are_refused_and_viewing_goes_on) {
   EXPECT_EQ(room()->durable_sequence(), 1);
 
   ASSERT_TRUE(cluster.ensure_running());
-  Result<room::EditAnswer> resent = fail(503, "", "");
+  Result<room::EditAnswer> resent = fail(ErrorCode::unavailable, "", "");
   for (int i = 0; i < 600 && !resent; ++i) {
     resent = send(edit);
     if (!resent) std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -64,7 +64,7 @@ TEST_F(LockedLayers, no_edit_below_curator_touches_a_locked_layer) {
   for (const auto& [what, edit] : edits) {
     const auto refused = send(request(layer, edit));
     ASSERT_FALSE(refused) << what;
-    EXPECT_EQ(refused.error().status, 403) << what;
+    EXPECT_EQ(refused.error().code, ErrorCode::forbidden) << what;
     EXPECT_EQ(refused.error().detail, "The layer Layer is locked: a curator can unlock it.")
         << what;
     EXPECT_EQ(refused.error().field, "layer") << what;
@@ -72,7 +72,7 @@ TEST_F(LockedLayers, no_edit_below_curator_touches_a_locked_layer) {
   EXPECT_TRUE(test::equal(tiles(layer), before));
   EXPECT_EQ(room()->sequence(), sequence);
   restart();
-  EXPECT_EQ(send(stroke(layer, 1, {{320, 240}}, 20)).error().status, 403)
+  EXPECT_EQ(send(stroke(layer, 1, {{320, 240}}, 20)).error().code, ErrorCode::forbidden)
       << "the lock was forgotten";
   for (const auto& [what, edit] : edits) {
     const TileMap then = tiles(layer);
@@ -122,7 +122,7 @@ TEST_F(LockedLayers, once_a_lock_is_answered_nothing_is_painted_any_more) {
     if (told)
       EXPECT_LE(told->sequence, sequence);
     else
-      EXPECT_EQ(told.error().status, 403) << told.error().detail;
+      EXPECT_EQ(told.error().code, ErrorCode::forbidden) << told.error().detail;
   }
   EXPECT_TRUE(test::equal(tiles(layer), then));
   EXPECT_EQ(room()->sequence(), sequence);
@@ -146,7 +146,7 @@ TEST_F(LockedLayers, a_locked_computed_layer_is_computed_by_the_server_itself_on
   room::ComputeEdit compute;
   compute.expression = query::parse_number("source * 2", "expression").value();
   auto edit = request(*made, std::move(compute));
-  EXPECT_EQ(send(edit).error().status, 403);
+  EXPECT_EQ(send(edit).error().code, ErrorCode::forbidden);
   edit.id = random_uuid();
   edit.author = {"Strata", Role::owner};
   const auto done = send(edit);

@@ -55,7 +55,7 @@ TEST_F(RoomMaps, a_reading_too_far_from_the_surface_is_refused_with_its_line) {
   const auto tiles =
       room()->dabs(layer_, {{a.position, 1, 2}, {a.position + glm::dvec3(0, -500, 0), 2, 7}}, 3, 1);
   ASSERT_FALSE(tiles);
-  EXPECT_EQ(tiles.error().status, 422);
+  EXPECT_EQ(tiles.error().code, ErrorCode::invalid);
   EXPECT_NE(tiles.error().detail.find("Line 7"), std::string::npos);
 }
 

@@ -47,7 +47,7 @@ TEST_F(RoomMemory, that_a_model_does_not_fit_into_is_a_refusal_that_says_what_to
   restart_with(100'000);
   const auto room = rooms_->open("pot", Role::owner);
   ASSERT_FALSE(room);
-  EXPECT_TRUE(is_used_up(room.error()));
+  EXPECT_EQ(room.error().code, ErrorCode::out_of_memory);
   EXPECT_NE(room.error().detail.find("--memory"), std::string::npos) << room.error().detail;
   EXPECT_EQ(rooms_->memory_bytes_used(), 0u) << "nothing of it is left";
 }
@@ -77,7 +77,7 @@ TEST_F(RoomMemory, that_is_used_up_refuses_edits_until_something_is_given_back) 
       send_until_taken(request(first, room::FillEdit{false, 9})));
   const auto refused = send(request(second, room::FillEdit{false, 9}));
   ASSERT_FALSE(refused);
-  EXPECT_TRUE(is_used_up(refused.error()));
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
   expect_room_equals_journal(first);
   ASSERT_TRUE(room()->delete_layer(first.id, {}));
   EXPECT_TRUE(send_until_taken(stroke(second, 1, {{320, 240}}, 20)));
@@ -99,7 +99,7 @@ TEST_F(RoomMemory, of_a_model_that_nobody_is_in_serves_another) {
   const auto held = rooms_->open("copy", Role::owner);
   const auto refused = rooms_->open("pot", Role::owner);
   ASSERT_FALSE(refused) << "the other is in use";
-  EXPECT_TRUE(is_used_up(refused.error()));
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST_F(RoomQueries, every_question_can_be_asked_of_the_past) {
   EXPECT_FALSE(room()->pick(view(), 320, 240, {"marks"}, 0)->values[0].valid);
   const auto never = room()->statistics("marks", {.at = room()->sequence() + 1});
   ASSERT_FALSE(never);
-  EXPECT_EQ(never.error().status, 422);
+  EXPECT_EQ(never.error().code, ErrorCode::invalid);
   EXPECT_EQ(never.error().field, "at");
 }
 
@@ -191,7 +191,7 @@ TEST_F(RoomQueries, records_decide_what_their_keys_cover) {
           {"peaces.thickness > 1", "no layer 'peaces'"}}) {
     const auto refused = room()->select(where(text), {});
     ASSERT_FALSE(refused) << text;
-    EXPECT_EQ(refused.error().status, 422);
+    EXPECT_EQ(refused.error().code, ErrorCode::invalid);
     EXPECT_NE(refused.error().detail.find(says), std::string::npos) << refused.error().detail;
   }
 }

@@ -151,13 +151,13 @@ TEST_F(Reviews, annotators_undo_only_what_waits_and_redo_nothing_that_was_reject
   ASSERT_TRUE(send(request(layer_, room::UndoEdit{})));
   const auto accepted_stays = send(request(layer_, room::UndoEdit{}));
   ASSERT_FALSE(accepted_stays);
-  EXPECT_EQ(accepted_stays.error().status, 409);
+  EXPECT_EQ(accepted_stays.error().code, ErrorCode::conflict);
   EXPECT_THAT(accepted_stays.error().detail, ::testing::HasSubstr("waits for review"));
 
   ASSERT_TRUE(send(request(layer_, room::RedoEdit{})));
   ASSERT_TRUE(send(review(Decision::reject)));
-  EXPECT_EQ(send(request(layer_, room::RedoEdit{})).error().status, 409);
-  EXPECT_EQ(send(as_curator(request(layer_, room::RedoEdit{}))).error().status, 409)
+  EXPECT_EQ(send(request(layer_, room::RedoEdit{})).error().code, ErrorCode::conflict);
+  EXPECT_EQ(send(as_curator(request(layer_, room::RedoEdit{}))).error().code, ErrorCode::conflict)
       << "anna as a curator, too";
   // Without review, and as a curator, what was accepted is one's own as ever.
   EXPECT_TRUE(send(as_curator(request(layer_, room::UndoEdit{}))));
@@ -193,7 +193,7 @@ TEST_F(Reviews, a_batch_stands_for_its_stroke_and_what_does_not_wait_is_refused)
   const TileMap then = tiles();
   const auto is_refused = [&](const room::EditRequest& asked) {
     const auto answer = send(asked);
-    return !answer && answer.error().status == 409;
+    return !answer && answer.error().code == ErrorCode::conflict;
   };
   EXPECT_TRUE(is_refused(review(Decision::accept, {{1}, {}})));
   EXPECT_TRUE(is_refused(review(Decision::accept, {{3, 1}, {}}))) << "of which one is decided";
@@ -239,7 +239,7 @@ TEST_F(Reviews, what_waits_keeps_waiting_when_the_layer_asks_for_no_review_any_m
   EXPECT_FALSE(room()->layer(layer_.slug)->review);
   ASSERT_TRUE(send(review(Decision::accept)));
   EXPECT_EQ(texels_waiting(), 0u);
-  EXPECT_EQ(send(review(Decision::accept)).error().status, 409);
+  EXPECT_EQ(send(review(Decision::accept)).error().code, ErrorCode::conflict);
 }
 
 TEST_F(Reviews, marks_are_taken_back_with_edits_that_cannot_be_saved_and_come_back_with_the_gpu) {

@@ -136,15 +136,14 @@ TEST_F(Attachments, files_go_to_the_first_column_that_takes_them_all) {
 TEST_F(Attachments, what_does_not_fit_is_refused_and_leaves_nothing) {
   const auto svg = attach(1, {file("a.jpg", "<svg/>", "image/svg+xml")}, column_id("photos"));
   ASSERT_FALSE(svg);
-  EXPECT_EQ(svg.error().status, 422);
+  EXPECT_EQ(svg.error().code, ErrorCode::invalid);
   EXPECT_EQ(svg.error().field, "values.photos");
   EXPECT_EQ(attach(1, {file("a.jpg", "a")}, column_id("code")).error().field, "column");
-  EXPECT_EQ(attach(9, {file("a.jpg", "a")}).error().status, 404);
-  EXPECT_EQ(attach(1, {file("", "a")}).error().status, 400);
-  EXPECT_EQ(store_->attach(table_.id, 1, {}, {file("a.jpg", "a")}, 77, {"ana", Role::owner})
-                .error()
-                .status,
-            412);
+  EXPECT_EQ(attach(9, {file("a.jpg", "a")}).error().code, ErrorCode::not_found);
+  EXPECT_EQ(attach(1, {file("", "a")}).error().code, ErrorCode::malformed);
+  EXPECT_EQ(
+      store_->attach(table_.id, 1, {}, {file("a.jpg", "a")}, 77, {"ana", Role::owner}).error().code,
+      ErrorCode::stale);
   EXPECT_EQ(count("attachments") + count("blobs") + count("blob_chunks"), 0);
   EXPECT_EQ(cell(1, "photos"), json());
 }
@@ -162,7 +161,7 @@ TEST_F(Attachments, undo_and_the_past_have_them_as_they_were) {
   EXPECT_EQ(cell(1, "photos"), json({b}));
   EXPECT_EQ(cell(1, "photos", first->change.sequence), json({a}));
   EXPECT_EQ(content(*store_->attachment(a, {"", Role::owner})), "a") << "the past shows it";
-  EXPECT_EQ(store_->detach(a, "ana").error().status, 404);
+  EXPECT_EQ(store_->detach(a, "ana").error().code, ErrorCode::not_found);
   undo();
   EXPECT_EQ(cell(1, "photos"), json({a, b}));
 }
@@ -182,15 +181,16 @@ TEST_F(Attachments, a_file_is_taken_out_of_all_records_that_have_it) {
 TEST_F(Attachments, cells_list_the_tables_own_files_and_pictures_only) {
   const auto paper = attach(1, {file("a.pdf", "a", "application/pdf")});
   const json id = paper->attachments[0].id;
-  EXPECT_EQ(patch(2, "photos", json({id})).error().status, 422) << "a PDF is no picture";
-  EXPECT_EQ(patch(2, "papers", json({4711})).error().status, 422);
-  EXPECT_EQ(patch(2, "papers", json({0})).error().status, 422);
-  EXPECT_EQ(patch(2, "papers", json("a.pdf")).error().status, 422);
+  EXPECT_EQ(patch(2, "photos", json({id})).error().code, ErrorCode::invalid)
+      << "a PDF is no picture";
+  EXPECT_EQ(patch(2, "papers", json({4711})).error().code, ErrorCode::invalid);
+  EXPECT_EQ(patch(2, "papers", json({0})).error().code, ErrorCode::invalid);
+  EXPECT_EQ(patch(2, "papers", json("a.pdf")).error().code, ErrorCode::invalid);
   ASSERT_TRUE(patch(2, "papers", json({id, id})));
   EXPECT_EQ(cell(2, "papers"), json({id})) << "once";
   const Table units = table_;
   table_ = make("Finds");
-  EXPECT_EQ(patch(1, "papers", json({id})).error().status, 422) << "another table's";
+  EXPECT_EQ(patch(1, "papers", json({id})).error().code, ErrorCode::invalid) << "another table's";
   table_ = units;
 }
 
@@ -246,7 +246,7 @@ TEST_F(Attachments, those_who_attach_and_delete_at_once_leave_nothing_half) {
       for (int n = 0; n < 5; ++n) {
         const auto done = store_->attach(units.id, 1 + n % 2, {}, {each}, {}, {"ana", Role::owner});
         if (!done) {
-          EXPECT_EQ(done.error().status, 404) << done.error().detail;
+          EXPECT_EQ(done.error().code, ErrorCode::not_found) << done.error().detail;
         }
       }
     });

@@ -78,14 +78,15 @@ TEST_F(BinOfAProject, a_layer_in_the_bin_is_there_for_nobody_and_comes_back_as_i
   const auto tiles = store_->load_tiles(layer)->tiles;
   const auto history = store_->history(layer.id, 100, 0).value();
   ASSERT_TRUE(bin_.put_layer(layer.id, by<>("ada")));
-  EXPECT_EQ(store_->layer(model_.id, "cracks", Role::owner).error().status, 404);
-  EXPECT_EQ(store_->layer(model_.id, std::to_string(layer.id), Role::owner).error().status, 404);
+  EXPECT_EQ(store_->layer(model_.id, "cracks", Role::owner).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->layer(model_.id, std::to_string(layer.id), Role::owner).error().code,
+            ErrorCode::not_found);
   EXPECT_TRUE(store_->layers(model_.id, Role::owner)->empty());
-  EXPECT_EQ(store_->load_tiles(layer).error().status, 404);
-  EXPECT_EQ(store_->history(layer.id, 100, 0).error().status, 404);
-  EXPECT_EQ(store_->update_layer(layer).error().status, 404);
-  EXPECT_EQ(store_->delete_layer(layer.id).error().status, 404);
-  EXPECT_EQ(bin_.put_layer(layer.id, by<>("ada")).error().status, 404);
+  EXPECT_EQ(store_->load_tiles(layer).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->history(layer.id, 100, 0).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->update_layer(layer).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->delete_layer(layer.id).error().code, ErrorCode::not_found);
+  EXPECT_EQ(bin_.put_layer(layer.id, by<>("ada")).error().code, ErrorCode::not_found);
   for (const char* view : {"layers", "analysis.layers", "analysis.areas", "analysis.edits"})
     EXPECT_EQ(count(view), 0) << view;
   const BinEntry in_bin = entry(Kind::layer, layer.id);
@@ -106,7 +107,7 @@ TEST_F(BinOfAProject, a_layer_in_the_bin_is_there_for_nobody_and_comes_back_as_i
   EXPECT_EQ(test::content_of({again, 0}), test::content_of({tiles, 0}));
   EXPECT_EQ(store_->history(layer.id, 100, 0)->total, history.total);
   EXPECT_THAT(listed(), ::testing::IsEmpty());
-  EXPECT_EQ(bin_.restore(in_bin, by<BinRestored>("carl")).error().status, 404)
+  EXPECT_EQ(bin_.restore(in_bin, by<BinRestored>("carl")).error().code, ErrorCode::not_found)
       << "it was restored already";
   paint(now, 1);  // the journal goes on where it was
 }
@@ -128,14 +129,14 @@ TEST_F(BinOfAProject, a_model_takes_all_along_and_brings_it_back) {
   comment.user = "ada";
   const Comment written = store_->comments().create(comment).value();
   ASSERT_TRUE(bin_.put_model(model_.id, by<>("ada")));
-  EXPECT_EQ(store_->model("pot").error().status, 404);
-  EXPECT_EQ(store_->model(std::to_string(model_.id)).error().status, 404);
+  EXPECT_EQ(store_->model("pot").error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->model(std::to_string(model_.id)).error().code, ErrorCode::not_found);
   EXPECT_TRUE(store_->models()->empty());
-  EXPECT_EQ(store_->layers(model_.id, Role::owner).error().status, 404);
-  EXPECT_EQ(store_->layer(model_.id, "cracks", Role::owner).error().status, 404);
-  EXPECT_EQ(store_->geometry(model_.id).error().status, 404);
-  EXPECT_EQ(store_->comments().comment(written.id, Role::owner).error().status, 404);
-  EXPECT_EQ(store_->last_sequence(model_.id).error().status, 404);
+  EXPECT_EQ(store_->layers(model_.id, Role::owner).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->layer(model_.id, "cracks", Role::owner).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->geometry(model_.id).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->comments().comment(written.id, Role::owner).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->last_sequence(model_.id).error().code, ErrorCode::not_found);
   for (const char* what :
        {"models", "layers", "analysis.models", "analysis.layers", "analysis.edits"})
     EXPECT_EQ(count(what), 0) << what;
@@ -169,9 +170,10 @@ TEST_F(BinOfAProject, who_does_not_see_a_layer_sees_it_in_neither_bin_nor_activi
   ASSERT_TRUE(bin_.put_layer(secret.id, by<>("carl")));
   EXPECT_THAT(listed(), ::testing::ElementsAre("Graves", "Cracks"));
   EXPECT_THAT(listed(Role::annotator), ::testing::IsEmpty()) << "layers are for curators";
-  EXPECT_EQ(bin_.entry(1, Kind::layer, secret.id, 0, {Role::annotator, days(30)}).error().status,
-            404);
-  EXPECT_EQ(bin_.entry(2, Kind::layer, secret.id, 0, {Role::owner, days(30)}).error().status, 404)
+  EXPECT_EQ(bin_.entry(1, Kind::layer, secret.id, 0, {Role::annotator, days(30)}).error().code,
+            ErrorCode::not_found);
+  EXPECT_EQ(bin_.entry(2, Kind::layer, secret.id, 0, {Role::owner, days(30)}).error().code,
+            ErrorCode::not_found)
       << "of another project";
   const auto tells = [&](const std::string& name) {
     const auto page = store_->activity(1, Role::viewer, {}).value();
@@ -243,8 +245,8 @@ TEST_F(BinOfAProject, what_is_being_erased_is_not_restored) {
   ASSERT_TRUE(bin_.put_layer(layer.id, by<>("ada")));
   const BinEntry known = entry(Kind::layer, layer.id);
   ASSERT_TRUE(bin_.erase(known, by<>("carl")));
-  EXPECT_EQ(bin_.erase(known, by<>("carl")).error().status, 404);
-  EXPECT_EQ(bin_.restore(known, by<BinRestored>("carl")).error().status, 404);
+  EXPECT_EQ(bin_.erase(known, by<>("carl")).error().code, ErrorCode::not_found);
+  EXPECT_EQ(bin_.restore(known, by<BinRestored>("carl")).error().code, ErrorCode::not_found);
   EXPECT_THAT(listed(), ::testing::IsEmpty());
 }
 
@@ -321,16 +323,17 @@ TEST_F(BinOfAProject, a_record_comes_back_with_its_key_and_values_once_they_fit)
   const BinEntry gone = bin_.entry(1, Kind::record, key, table.id, sight).value();
   EXPECT_EQ(gone.user, "bob");
   EXPECT_EQ(gone.table_name, "Finds");
-  EXPECT_EQ(bin_.erase(gone, by<>("carl")).error().status, 409);
+  EXPECT_EQ(bin_.erase(gone, by<>("carl")).error().code, ErrorCode::conflict);
   const std::int64_t other = write("SU 1").created.at(0);
   EXPECT_GT(other, key + 1) << "keys are not given again";
-  EXPECT_EQ(bin_.restore_record(gone, "carl", {}).error().status, 409) << "its name is taken";
+  EXPECT_EQ(bin_.restore_record(gone, "carl", {}).error().code, ErrorCode::conflict)
+      << "its name is taken";
   ASSERT_TRUE(store_->delete_record(table.id, other, {}, "bob", false));
   const TableChange back = bin_.restore_record(gone, "carl", {}).value();
   EXPECT_THAT(back.created, ::testing::ElementsAre(key));
   EXPECT_EQ(back.records.at(0).values.at(weight_id), 7);
-  EXPECT_EQ(bin_.restore_record(gone, "carl", {}).error().status, 404);
-  EXPECT_EQ(bin_.entry(1, Kind::record, key, table.id, sight).error().status, 404);
+  EXPECT_EQ(bin_.restore_record(gone, "carl", {}).error().code, ErrorCode::not_found);
+  EXPECT_EQ(bin_.entry(1, Kind::record, key, table.id, sight).error().code, ErrorCode::not_found);
   EXPECT_THAT(listed(), ::testing::ElementsAre("SU 1")) << "the other one";
   EXPECT_EQ(store_->activity(1, Role::viewer, {})->lines[0].op, "restore");
   run("UPDATE table_edits SET time = now() - interval '31 days' WHERE op = 'delete'");

@@ -52,7 +52,7 @@ TEST(Cluster, a_second_server_on_the_same_folder_is_refused) {
   ASSERT_TRUE(first) << first.error().detail;
   auto second = Cluster::start(folder.path());
   ASSERT_FALSE(second);
-  EXPECT_EQ(second.error().status, 409);
+  EXPECT_EQ(second.error().code, ErrorCode::conflict);
   EXPECT_EQ(ask((*first)->dsn(), "SELECT 1"), "1");
 }
 

@@ -67,31 +67,31 @@ TEST_F(CommentsOfAModel, what_was_written_comes_back) {
   ASSERT_EQ(second.comments.size(), 1u);
   EXPECT_EQ(second.comments[0].id, answer.id);
   EXPECT_EQ(comments_.replies(first.id, Role::owner, 10, 0)->comments.at(0).id, answer.id);
-  EXPECT_EQ(comments_.replies(answer.id, Role::owner, 10, 0).error().status, 422);
-  EXPECT_EQ(comments_.comment(answer.id + 1, Role::owner).error().status, 404);
+  EXPECT_EQ(comments_.replies(answer.id, Role::owner, 10, 0).error().code, ErrorCode::invalid);
+  EXPECT_EQ(comments_.comment(answer.id + 1, Role::owner).error().code, ErrorCode::not_found);
   EXPECT_EQ(comments_.of_model(model_ + 1, Role::owner, {})->total, 0);
 }
 
 TEST_F(CommentsOfAModel, texts_that_are_none_are_refused) {
-  EXPECT_EQ(comments_.create(thread("")).error().status, 422);
-  EXPECT_EQ(comments_.create(thread(" \n\t ")).error().status, 422);
-  EXPECT_EQ(comments_.create(thread("\xff")).error().status, 400);
-  EXPECT_EQ(comments_.create(thread(std::string("a\0b", 3))).error().status, 400);
+  EXPECT_EQ(comments_.create(thread("")).error().code, ErrorCode::invalid);
+  EXPECT_EQ(comments_.create(thread(" \n\t ")).error().code, ErrorCode::invalid);
+  EXPECT_EQ(comments_.create(thread("\xff")).error().code, ErrorCode::malformed);
+  EXPECT_EQ(comments_.create(thread(std::string("a\0b", 3))).error().code, ErrorCode::malformed);
   std::string long_text;
   for (int i = 0; i < 10'000; ++i) long_text += "δ";
   EXPECT_TRUE(comments_.create(thread(long_text)));
   EXPECT_EQ(comments_.create(thread(long_text + "x")).error().field, "text");
   auto nowhere = thread("Where?");
   nowhere.model_id = model_ + 1;
-  EXPECT_EQ(comments_.create(nowhere).error().status, 404);
-  EXPECT_EQ(comments_.create(reply(999, "To whom?")).error().status, 404);
+  EXPECT_EQ(comments_.create(nowhere).error().code, ErrorCode::not_found);
+  EXPECT_EQ(comments_.create(reply(999, "To whom?")).error().code, ErrorCode::not_found);
   EXPECT_EQ(count(), 1);
 }
 
 TEST_F(CommentsOfAModel, replies_are_to_the_first_one_of_a_thread) {
   const auto first = comments_.create(thread("Look")).value();
   const auto answer = comments_.create(reply(first.id, "Yes")).value();
-  EXPECT_EQ(comments_.create(reply(answer.id, "No")).error().status, 422);
+  EXPECT_EQ(comments_.create(reply(answer.id, "No")).error().code, ErrorCode::invalid);
 }
 
 TEST_F(CommentsOfAModel, a_changed_text_is_marked_and_a_stale_change_refused) {
@@ -103,9 +103,9 @@ TEST_F(CommentsOfAModel, a_changed_text_is_marked_and_a_stale_change_refused) {
   EXPECT_EQ(changed.version, 2);
   ASSERT_TRUE(changed.edited);
   EXPECT_GE(*changed.edited, first.time);
-  EXPECT_EQ(comments_.update(better).error().status, 412);
+  EXPECT_EQ(comments_.update(better).error().code, ErrorCode::stale);
   better.id += 1;
-  EXPECT_EQ(comments_.update(better).error().status, 404);
+  EXPECT_EQ(comments_.update(better).error().code, ErrorCode::not_found);
 }
 
 TEST_F(CommentsOfAModel, a_thread_is_resolved_by_the_first_who_says_so_until_it_is_opened_again) {
@@ -160,8 +160,8 @@ TEST_F(CommentsOfAModel, the_first_one_stays_without_its_text_while_there_are_re
   EXPECT_EQ(
       connection_->query("SELECT count(*) FROM comments c WHERE c::text ~ 'secret'")->integer(0, 0),
       0);
-  EXPECT_EQ(comments_.remove(first).error().status, 412);
-  EXPECT_EQ(comments_.remove(*removal.left).error().status, 409);
+  EXPECT_EQ(comments_.remove(first).error().code, ErrorCode::stale);
+  EXPECT_EQ(comments_.remove(*removal.left).error().code, ErrorCode::conflict);
   EXPECT_TRUE(comments_.create(reply(first.id, "Three"))) << "it can be talked about";
   const auto three = comments_.replies(first.id, Role::owner, 10, 2)->comments.at(0);
   EXPECT_EQ(comments_.remove(one)->gone, std::vector{one.id});
@@ -169,7 +169,7 @@ TEST_F(CommentsOfAModel, the_first_one_stays_without_its_text_while_there_are_re
   EXPECT_EQ(comments_.remove(two)->gone, (std::vector{two.id, first.id}))
       << "nothing is left of the thread";
   EXPECT_EQ(count(), 0);
-  EXPECT_EQ(comments_.remove(two).error().status, 404);
+  EXPECT_EQ(comments_.remove(two).error().code, ErrorCode::not_found);
 }
 
 TEST_F(CommentsOfAModel, a_deleted_thread_that_stays_can_be_resolved) {
@@ -204,7 +204,7 @@ TEST_F(CommentsOfAModel, an_answer_is_kept_with_the_comment) {
                                     }};
   const auto first = comments_.create(thread("Look"), answer).value();
   EXPECT_EQ(store_->find_answer("k").value()->at("id"), first.id);
-  EXPECT_EQ(comments_.create(thread("Look"), answer).error().status, 409);
+  EXPECT_EQ(comments_.create(thread("Look"), answer).error().code, ErrorCode::conflict);
   EXPECT_EQ(count(), 1);
 }
 

@@ -460,7 +460,7 @@ TEST_F(Filter, what_the_columns_do_not_fit_is_refused_at_its_character) {
     SCOPED_TRACE(bad.text);
     const auto found = keys(table, bad.text);
     ASSERT_FALSE(found);
-    EXPECT_EQ(found.error().status, 422) << found.error().detail;
+    EXPECT_EQ(found.error().code, ErrorCode::invalid) << found.error().detail;
     EXPECT_EQ(found.error().field, "filter");
     if (bad.says.empty()) {
       EXPECT_EQ(found.error().title, "Number out of range");

@@ -41,25 +41,25 @@ TEST(Groups, are_told_apart_by_their_names_in_any_case) {
   auto store = test::fresh_store();
   Groups& groups = store->groups();
   const auto students = groups.create("Ärzte 2026", {}).value().group;
-  EXPECT_EQ(groups.create("äRZTE 2026", {}).error().status, 409);
+  EXPECT_EQ(groups.create("äRZTE 2026", {}).error().code, ErrorCode::conflict);
   for (const std::string& name :
        {std::string(), std::string(" x"), std::string("x "), std::string(101, 'x'),
         std::string("\xff"), std::string("a\0b", 3), std::string("x\n")}) {
-    EXPECT_GE(groups.create(name, {}).error().status, 400) << name;
-    EXPECT_LT(groups.create(name, {}).error().status, 500) << name;
+    EXPECT_GE(groups.create(name, {}).error().code, ErrorCode::malformed) << name;
+    EXPECT_LT(groups.create(name, {}).error().code, ErrorCode::internal) << name;
   }
   std::string hundred;
   for (int i = 0; i < 100; ++i) hundred += "ü";
   const auto longest = groups.create(hundred, {}).value().group;
   ASSERT_TRUE(groups.change(students.id, {"Ärzte 2027"}, {}));
   ASSERT_TRUE(groups.change(students.id, {"ärzte 2027"}, {})) << "its own name, spelled otherwise";
-  EXPECT_EQ(groups.change(longest.id, {"ÄRZTE 2027"}, {}).error().status, 409);
+  EXPECT_EQ(groups.change(longest.id, {"ÄRZTE 2027"}, {}).error().code, ErrorCode::conflict);
   const auto all = groups.all().value();
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0].name, "ärzte 2027");
-  EXPECT_EQ(groups.group(longest.id + 1).error().status, 404);
-  EXPECT_EQ(groups.change(longest.id + 1, {"x"}, {}).error().status, 404);
-  EXPECT_EQ(groups.remove(longest.id + 1, {}).error().status, 404);
+  EXPECT_EQ(groups.group(longest.id + 1).error().code, ErrorCode::not_found);
+  EXPECT_EQ(groups.change(longest.id + 1, {"x"}, {}).error().code, ErrorCode::not_found);
+  EXPECT_EQ(groups.remove(longest.id + 1, {}).error().code, ErrorCode::not_found);
 }
 
 TEST(Groups, the_database_itself_refuses_what_is_no_group) {
@@ -106,7 +106,7 @@ TEST(Groups, the_highest_of_ones_own_role_and_those_of_ones_groups_counts) {
   ASSERT_TRUE(groups.put(villa, diggers, Role::annotator, {}));
   EXPECT_EQ(roles_of(*store, gus).in(villa), Role::annotator);
   ASSERT_TRUE(groups.take(villa, diggers, {}));
-  EXPECT_EQ(groups.take(villa, diggers, {}).error().status, 404);
+  EXPECT_EQ(groups.take(villa, diggers, {}).error().code, ErrorCode::not_found);
   EXPECT_EQ(roles_of(*store, gus).in(villa), Role::annotator) << "by the students";
   EXPECT_EQ(groups.change(students, {.remove = {"GUS"}}, {}).value().people, Names{"Gus"});
   EXPECT_EQ(roles_of(*store, gus).in(villa), Role::viewer) << "their own";
@@ -125,10 +125,10 @@ TEST(Groups, only_roles_of_projects_are_given_and_to_what_is_there) {
   const auto villa = project(*store, "Villa");
   const auto students = groups.create("Students", {}).value().group.id;
   for (const Role role : {Role::guest, Role::administrator, Role::owner})
-    EXPECT_EQ(groups.put(villa, students, role, {}).error().status, 422);
-  EXPECT_EQ(groups.put(villa, students + 1, Role::viewer, {}).error().status, 404);
-  EXPECT_EQ(groups.put(villa + 1, students, Role::viewer, {}).error().status, 404);
-  EXPECT_EQ(groups.take(villa, students, {}).error().status, 404);
+    EXPECT_EQ(groups.put(villa, students, role, {}).error().code, ErrorCode::invalid);
+  EXPECT_EQ(groups.put(villa, students + 1, Role::viewer, {}).error().code, ErrorCode::not_found);
+  EXPECT_EQ(groups.put(villa + 1, students, Role::viewer, {}).error().code, ErrorCode::not_found);
+  EXPECT_EQ(groups.take(villa, students, {}).error().code, ErrorCode::not_found);
   const auto put = groups.put(villa, students, Role::viewer, {}).value();
   EXPECT_EQ(put.now.role, Role::viewer);
   EXPECT_EQ(put.now.group.name, "Students");
@@ -141,7 +141,7 @@ TEST(Groups, people_are_put_in_and_taken_out_all_or_none) {
   Groups& groups = store->groups();
   for (const char* name : {"Ada", "Bob", "Cyd"})
     ASSERT_TRUE(store->create_person(name, "", Role::viewer));
-  EXPECT_EQ(groups.create("Students", {"Ada", "nobody"}).error().status, 422);
+  EXPECT_EQ(groups.create("Students", {"Ada", "nobody"}).error().code, ErrorCode::invalid);
   EXPECT_TRUE(groups.all()->empty()) << "nothing is left of what was refused";
   const auto students = groups.create("Students", {"bob", "Ada", "Ada"}).value();
   EXPECT_EQ(names_of(students.members), (Names{"Ada", "Bob"}));
@@ -149,8 +149,8 @@ TEST(Groups, people_are_put_in_and_taken_out_all_or_none) {
   for (const char* nobody : {"nobody", "", "\xff",
                              "\xc3\x84"
                              "da"}) {
-    EXPECT_EQ(groups.change(id, {.name = "Changed", .add = {"Cyd", nobody}}, {}).error().status,
-              422)
+    EXPECT_EQ(groups.change(id, {.name = "Changed", .add = {"Cyd", nobody}}, {}).error().code,
+              ErrorCode::invalid)
         << nobody;
     EXPECT_EQ(groups.change(id, {.remove = {"Ada", nobody}}, {}).error().field, "remove") << nobody;
   }
@@ -165,8 +165,9 @@ TEST(Groups, people_are_put_in_and_taken_out_all_or_none) {
   EXPECT_EQ(names_of(groups.group(id)->members), Names{"Cyd"});
   EXPECT_EQ(store->create_person("Dan", "", Role::guest, {id, id}).value().groups,
             Names{"Students"});
-  EXPECT_EQ(store->create_person("Eve", "", Role::guest, {id, id + 1}).error().status, 422);
-  EXPECT_EQ(store->person("Eve").error().status, 404);
+  EXPECT_EQ(store->create_person("Eve", "", Role::guest, {id, id + 1}).error().code,
+            ErrorCode::invalid);
+  EXPECT_EQ(store->person("Eve").error().code, ErrorCode::not_found);
 }
 
 TEST(Groups, it_is_told_who_could_do_less_without_one) {
@@ -205,10 +206,12 @@ TEST(Groups, there_are_not_too_many_and_none_is_too_large) {
       "INSERT INTO users (name, role) SELECT 'p' || i, 'viewer' FROM generate_series(1, 1001) i;"
       "INSERT INTO group_people SELECT g.id, u.id FROM groups g, users u WHERE u.name LIKE 'p%' AND u.name <> 'p1001' AND u.name <> 'p1000';"
       "INSERT INTO groups (name) SELECT 'g' || i FROM generate_series(1, 198) i"));
-  EXPECT_EQ(groups.change(students, {.add = {"p1000", "p1001"}}, {}).error().status, 409);
+  EXPECT_EQ(groups.change(students, {.add = {"p1000", "p1001"}}, {}).error().code,
+            ErrorCode::conflict);
   ASSERT_TRUE(groups.change(students, {.add = {"p1000"}}, {}));
-  EXPECT_EQ(groups.change(students, {.add = {"p1001"}}, {}).error().status, 409);
-  EXPECT_EQ(store->create_person("New", "", Role::viewer, {students}).error().status, 409);
+  EXPECT_EQ(groups.change(students, {.add = {"p1001"}}, {}).error().code, ErrorCode::conflict);
+  EXPECT_EQ(store->create_person("New", "", Role::viewer, {students}).error().code,
+            ErrorCode::conflict);
   ASSERT_TRUE(groups.change(students, {.add = {"p1001"}, .remove = {"p1"}}, {}))
       << "who leaves makes room";
   EXPECT_EQ(groups.group(students)->members.size(), 1000u);

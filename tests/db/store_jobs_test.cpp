@@ -35,7 +35,7 @@ TEST(Jobs, those_that_did_not_end_are_lost_with_the_server_and_others_are_as_the
   ASSERT_TRUE(store->jobs().end(done));
   StoredJob failed = job_of(13, project);
   failed.state = "failed";
-  failed.problem = {{"status", 422},
+  failed.problem = {{"code", "invalid"},
                     {"title", "Mesh file refused"},
                     {"detail", "No triangle."},
                     {"field", "file"}};
@@ -119,7 +119,7 @@ TEST(Jobs, go_after_seven_days_and_with_their_project) {
   const auto left = store->jobs().take_over(10);
   ASSERT_EQ(left->size(), 1u);
   EXPECT_EQ(left->front().id, 3);
-  EXPECT_EQ(store->jobs().begin(job_of(4, 999999)).error().status, 404);
+  EXPECT_EQ(store->jobs().begin(job_of(4, 999999)).error().code, ErrorCode::not_found);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST_F(Journal, layers_of_a_model_share_its_sequence_and_keep_their_own_state) {
   EXPECT_EQ(store_->load_tiles(two.layer())->sequence, 18);
   Layer gone = one.layer();
   gone.id = 999;
-  EXPECT_EQ(store_->load_tiles(gone).error().status, 404);
+  EXPECT_EQ(store_->load_tiles(gone).error().code, ErrorCode::not_found);
 }
 
 TEST_F(Journal, damaged_revisions_are_a_problem_and_not_a_crash) {
@@ -81,9 +81,9 @@ TEST_F(Journal, damaged_revisions_are_a_problem_and_not_a_crash) {
   ASSERT_TRUE(save(writer, painter.paint(1, 2, 4)));
   ASSERT_TRUE(PgConnection::connect(dsn_)->script(
       "UPDATE tile_revisions SET difference = '\\x0102030405'"));
-  EXPECT_EQ(store_->load_tiles(painter.layer()).error().status, 500);
+  EXPECT_EQ(store_->load_tiles(painter.layer()).error().code, ErrorCode::internal);
   const std::vector<std::int64_t> first{1};
-  EXPECT_EQ(store_->written_by(painter.layer(), first).error().status, 500);
+  EXPECT_EQ(store_->written_by(painter.layer(), first).error().code, ErrorCode::internal);
 }
 
 TEST_F(Journal, opening_a_layer_reads_nothing_older_than_the_last_whole_tiles) {
@@ -95,7 +95,7 @@ TEST_F(Journal, opening_a_layer_reads_nothing_older_than_the_last_whole_tiles) {
       "UPDATE tile_revisions r SET difference = '\\x00' WHERE sequence < (SELECT max(sequence) FROM tile_revisions k "
       "WHERE k.tile_x = r.tile_x AND k.tile_y = r.tile_y AND k.key_tile IS NOT NULL)"));
   EXPECT_TRUE(content_of(store_->load_tiles(painter.layer()).value()) == painter.content());
-  EXPECT_EQ(store_->load_tiles(painter.layer(), 5).error().status, 500);
+  EXPECT_EQ(store_->load_tiles(painter.layer(), 5).error().code, ErrorCode::internal);
 }
 
 TEST_F(Journal, deleting_the_layer_of_the_newest_edit_leaves_a_gap_and_the_journal_goes_on) {

@@ -57,12 +57,13 @@ TEST_F(KiosksOfATour, a_tour_comes_back_and_is_changed_where_its_version_equals)
   const auto changed = tours_.update(tour).value();
   EXPECT_EQ(changed.version, 2);
   EXPECT_EQ(changed.slug, "once-around");
-  EXPECT_EQ(tours_.update(tour).error().status, 412);
-  EXPECT_EQ(tours_.remove(tour).error().status, 412);
-  EXPECT_EQ(store_->views().find(model_, "once-around").error().status, 404) << "it is no view";
+  EXPECT_EQ(tours_.update(tour).error().code, ErrorCode::stale);
+  EXPECT_EQ(tours_.remove(tour).error().code, ErrorCode::stale);
+  EXPECT_EQ(store_->views().find(model_, "once-around").error().code, ErrorCode::not_found)
+      << "it is no view";
   ASSERT_TRUE(tours_.remove(changed));
-  EXPECT_EQ(tours_.find(model_, "once-around").error().status, 404);
-  EXPECT_EQ(tours_.update(changed).error().status, 404);
+  EXPECT_EQ(tours_.find(model_, "once-around").error().code, ErrorCode::not_found);
+  EXPECT_EQ(tours_.update(changed).error().code, ErrorCode::not_found);
 }
 
 TEST_F(KiosksOfATour, a_model_has_a_bounded_number_of_tours) {
@@ -72,11 +73,11 @@ TEST_F(KiosksOfATour, a_model_has_a_bounded_number_of_tours) {
   more.name = "More";
   more.content = nlohmann::json::object();
   more.user = "carl";
-  EXPECT_EQ(tours_.create(more).error().status, 409);
+  EXPECT_EQ(tours_.create(more).error().code, ErrorCode::conflict);
   more.model_id = new_model(1, "vase");
   EXPECT_TRUE(tours_.create(more));
   more.name.clear();
-  EXPECT_EQ(tours_.create(more).error().status, 400);
+  EXPECT_EQ(tours_.create(more).error().code, ErrorCode::malformed);
 }
 
 TEST_F(KiosksOfATour, a_link_leads_to_its_kiosk_and_only_its_hash_is_kept) {
@@ -106,19 +107,19 @@ TEST_F(KiosksOfATour, a_revoked_or_expired_link_leads_nowhere_and_is_listed_for_
   EXPECT_TRUE(short_lived.kiosk.expires);
   ASSERT_TRUE(kiosks_.revoke(revoked.kiosk.id));
   ASSERT_TRUE(kiosks_.revoke(revoked.kiosk.id)) << "again is the same";
-  EXPECT_EQ(kiosks_.revoke(999).error().status, 404);
+  EXPECT_EQ(kiosks_.revoke(999).error().code, ErrorCode::not_found);
   EXPECT_TRUE(kiosks_.find(short_lived.secret).value());
   run("UPDATE kiosks SET expires = now() - interval '1 second' WHERE expires IS NOT NULL");
   EXPECT_TRUE(kiosks_.find(kept.secret).value());
   EXPECT_FALSE(kiosks_.find(revoked.secret).value());
   EXPECT_FALSE(kiosks_.find(short_lived.secret).value());
-  EXPECT_EQ(kiosks_.ask_reload(revoked.kiosk.id).error().status, 409);
+  EXPECT_EQ(kiosks_.ask_reload(revoked.kiosk.id).error().code, ErrorCode::conflict);
   EXPECT_EQ(kiosks_.all({}, 10, 0)->total, 3);
   EXPECT_TRUE(kiosks_.kiosk(revoked.kiosk.id)->revoked);
   run("UPDATE kiosks SET revoked = now() - interval '31 days' WHERE revoked IS NOT NULL");
   EXPECT_EQ(kiosks_.all({}, 10, 0)->total, 2);
   made("New");
-  EXPECT_EQ(kiosks_.kiosk(revoked.kiosk.id).error().status, 404) << "cleared away";
+  EXPECT_EQ(kiosks_.kiosk(revoked.kiosk.id).error().code, ErrorCode::not_found) << "cleared away";
 }
 
 TEST_F(KiosksOfATour, a_kiosk_is_seen_to_a_minute_and_is_asked_to_reload_until_it_did) {
@@ -137,7 +138,7 @@ TEST_F(KiosksOfATour, a_kiosk_is_seen_to_a_minute_and_is_asked_to_reload_until_i
   EXPECT_TRUE(now().wants_reload) << "that it asked is not that it did";
   ASSERT_TRUE(kiosks_.seen(made.kiosk.id, true));
   EXPECT_FALSE(now().wants_reload);
-  EXPECT_EQ(kiosks_.ask_reload(999).error().status, 404);
+  EXPECT_EQ(kiosks_.ask_reload(999).error().code, ErrorCode::not_found);
 }
 
 TEST_F(KiosksOfATour, those_of_some_projects_are_listed) {
@@ -168,16 +169,16 @@ TEST_F(KiosksOfATour, links_go_with_their_tour_and_names_with_their_person) {
   EXPECT_EQ(kiosks_.of_tour(tour_).value(), std::vector{made.kiosk.id});
   ASSERT_TRUE(tours_.remove(tours_.find(model_, "once-around").value()));
   EXPECT_FALSE(kiosks_.find(made.secret).value());
-  EXPECT_EQ(kiosks_.create(tour_, "Late", "carl", {}).error().status, 404);
+  EXPECT_EQ(kiosks_.create(tour_, "Late", "carl", {}).error().code, ErrorCode::not_found);
 }
 
 TEST_F(KiosksOfATour, a_tour_has_a_bounded_number_of_good_links) {
   const auto first = made("First");
   for (int i = 1; i < Kiosks::kMostKiosks; ++i) made("More");
-  EXPECT_EQ(kiosks_.create(tour_, "Too many", "carl", {}).error().status, 409);
+  EXPECT_EQ(kiosks_.create(tour_, "Too many", "carl", {}).error().code, ErrorCode::conflict);
   ASSERT_TRUE(kiosks_.revoke(first.kiosk.id));
   EXPECT_TRUE(kiosks_.create(tour_, "In its place", "carl", {}));
-  EXPECT_EQ(kiosks_.create(tour_, "", "carl", {}).error().status, 400);
+  EXPECT_EQ(kiosks_.create(tour_, "", "carl", {}).error().code, ErrorCode::malformed);
 }
 
 }  // namespace

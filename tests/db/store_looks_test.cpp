@@ -78,9 +78,9 @@ TEST_F(Looks, they_are_added_changed_and_found_like_layers) {
   changed.visible = false;
   changed.opacity = 1;
   EXPECT_EQ(store_->update_look(changed)->name, "UV");
-  EXPECT_EQ(store_->update_look(changed).error().status, 412);
-  EXPECT_EQ(store_->look(model.id + 1, "uv-light").error().status, 404);
-  EXPECT_EQ(store_->looks(model.id + 1).error().status, 404);
+  EXPECT_EQ(store_->update_look(changed).error().code, ErrorCode::stale);
+  EXPECT_EQ(store_->look(model.id + 1, "uv-light").error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->looks(model.id + 1).error().code, ErrorCode::not_found);
   EXPECT_EQ(store_->looks(model.id)->front().slug, "uv-light-2") << "drawn below, by its order";
 }
 
@@ -97,23 +97,24 @@ TEST_F(Looks, a_picture_goes_with_the_last_that_uses_it) {
   EXPECT_TRUE(store_->look_picture(look.id).value() == picture);
   ASSERT_TRUE(store_->delete_look(look.id));
   EXPECT_EQ(count("SELECT count(*) FROM blobs"), 1);
-  EXPECT_EQ(store_->delete_look(look.id).error().status, 404);
-  EXPECT_EQ(store_->look_picture(look.id).error().status, 404);
+  EXPECT_EQ(store_->delete_look(look.id).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->look_picture(look.id).error().code, ErrorCode::not_found);
 }
 
 TEST_F(Looks, what_cannot_be_a_look_is_refused_and_nothing_is_kept) {
   const auto bad = store_->create_model(model_with({{"x", "text/html", {1}, 1, 1}}), {});
-  EXPECT_EQ(bad.error().status, 415);
-  EXPECT_EQ(store_->create_model(model_with({{"", "image/png", {1}, 1, 1}}), {}).error().status,
-            400);
-  EXPECT_EQ(store_->create_model(model_with({{"x", "image/png", {1}, 0, 1}}), {}).error().status,
-            422);
+  EXPECT_EQ(bad.error().code, ErrorCode::unsupported);
+  EXPECT_EQ(store_->create_model(model_with({{"", "image/png", {1}, 1, 1}}), {}).error().code,
+            ErrorCode::malformed);
+  EXPECT_EQ(store_->create_model(model_with({{"x", "image/png", {1}, 0, 1}}), {}).error().code,
+            ErrorCode::invalid);
   EXPECT_EQ(count("SELECT count(*) FROM blobs"), 0);
-  EXPECT_EQ(store_->create_look(look_named(77, "x"), Picture{1}).error().status, 404);
+  EXPECT_EQ(store_->create_look(look_named(77, "x"), Picture{1}).error().code,
+            ErrorCode::not_found);
   const auto model = store_->create_model(model_with({}), {}).value();
   auto look = look_named(model.id, "x");
   look.opacity = 1.5;
-  EXPECT_EQ(store_->create_look(look, Picture{1}).error().status, 400);
+  EXPECT_EQ(store_->create_look(look, Picture{1}).error().code, ErrorCode::malformed);
   EXPECT_EQ(count("SELECT count(*) FROM blobs"), 1);
 }
 
@@ -127,7 +128,8 @@ TEST_F(Looks, a_model_holds_no_more_than_its_limit_however_many_ask_at_once) {
         [&] { (void)store_->create_look(look_named(model.id, "late"), Picture{1}); });
   for (auto& person : people) person.join();
   EXPECT_EQ(store_->looks(model.id)->size(), static_cast<std::size_t>(Store::kMostLooks));
-  EXPECT_EQ(store_->create_look(look_named(model.id, "x"), Picture{1}).error().status, 409);
+  EXPECT_EQ(store_->create_look(look_named(model.id, "x"), Picture{1}).error().code,
+            ErrorCode::conflict);
 }
 
 }  // namespace

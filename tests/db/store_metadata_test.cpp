@@ -32,7 +32,7 @@ TEST(Projects, the_default_project_exists_and_stays) {
   auto store = test::fresh_store();
   const auto project = store->project("default").value();
   EXPECT_EQ(store->project(std::to_string(project.id))->slug, "default");
-  EXPECT_EQ(store->delete_project(project.id).error().status, 409);
+  EXPECT_EQ(store->delete_project(project.id).error().code, ErrorCode::conflict);
   EXPECT_EQ(store->projects()->size(), 1u);
 }
 
@@ -60,15 +60,15 @@ TEST(Projects, changes_need_the_current_version_and_a_free_slug) {
   const auto changed = store->update_project(made).value();
   EXPECT_EQ(changed.version, made.version + 1);
   EXPECT_EQ(changed.description, "new");
-  EXPECT_EQ(store->update_project(made).error().status, 412);
+  EXPECT_EQ(store->update_project(made).error().code, ErrorCode::stale);
   Project taken = changed;
   taken.slug = "default";
-  EXPECT_EQ(store->update_project(taken).error().status, 409);
+  EXPECT_EQ(store->update_project(taken).error().code, ErrorCode::conflict);
   taken.slug = "12";
-  EXPECT_EQ(store->update_project(taken).error().status, 409);
+  EXPECT_EQ(store->update_project(taken).error().code, ErrorCode::conflict);
   taken.id = 12345;
   taken.slug = "free";
-  EXPECT_EQ(store->update_project(taken).error().status, 404);
+  EXPECT_EQ(store->update_project(taken).error().code, ErrorCode::not_found);
 }
 
 TEST(Projects, one_with_models_is_not_deleted) {
@@ -77,18 +77,18 @@ TEST(Projects, one_with_models_is_not_deleted) {
   made.name = "Site";
   made = store->create_project(made).value();
   const auto model = store->create_model(small_model("pot", made.id), {}).value();
-  EXPECT_EQ(store->delete_project(made.id).error().status, 409);
+  EXPECT_EQ(store->delete_project(made.id).error().code, ErrorCode::conflict);
   ASSERT_TRUE(store->delete_model(model.id));
   EXPECT_TRUE(store->delete_project(made.id));
-  EXPECT_EQ(store->delete_project(made.id).error().status, 404);
+  EXPECT_EQ(store->delete_project(made.id).error().code, ErrorCode::not_found);
 }
 
 TEST(Projects, unknown_and_unstorable_references_are_not_found) {
   auto store = test::fresh_store();
   for (const std::string ref :
        {"nothing", "99", "99999999999999999999999999", "", "a\xff", "'; DROP TABLE projects --"})
-    EXPECT_EQ(store->project(ref).error().status, 404) << ref;
-  EXPECT_EQ(store->project(std::string("a\0b", 3)).error().status, 404);
+    EXPECT_EQ(store->project(ref).error().code, ErrorCode::not_found) << ref;
+  EXPECT_EQ(store->project(std::string("a\0b", 3)).error().code, ErrorCode::not_found);
 }
 
 TEST(Projects, text_that_cannot_be_stored_is_the_callers_mistake) {
@@ -98,16 +98,16 @@ TEST(Projects, text_that_cannot_be_stored_is_the_callers_mistake) {
                                  std::string("\xf4\x90\x80\x80"), std::string("cut \xe2\x82")}) {
     Project project;
     project.name = bad;
-    EXPECT_EQ(store->create_project(project).error().status, 400);
+    EXPECT_EQ(store->create_project(project).error().code, ErrorCode::malformed);
     EXPECT_EQ(store->create_project(project).error().field, "name");
     project.name = "good";
     project.description = bad;
     EXPECT_EQ(store->create_project(project).error().field, "description");
   }
   Project nameless;
-  EXPECT_EQ(store->create_project(nameless).error().status, 400);
+  EXPECT_EQ(store->create_project(nameless).error().code, ErrorCode::malformed);
   nameless.name = std::string(256, 'x');
-  EXPECT_EQ(store->create_project(nameless).error().status, 400);
+  EXPECT_EQ(store->create_project(nameless).error().code, ErrorCode::malformed);
   nameless.name = "𝕊𝕚𝕥𝕖 ☃ é";
   EXPECT_EQ(store->create_project(nameless)->name, nameless.name);
 }
@@ -168,20 +168,20 @@ TEST(Models, slugs_are_unique_among_all_models_and_changes_need_the_version) {
   EXPECT_EQ(changed.version, 2);
   EXPECT_EQ(changed.credit, "someone");
   EXPECT_EQ(changed.unit, Unit::cm);
-  EXPECT_EQ(store->update_model(second).error().status, 412);
+  EXPECT_EQ(store->update_model(second).error().code, ErrorCode::stale);
   second.version = 2;
   second.slug = "pot";
-  EXPECT_EQ(store->update_model(second).error().status, 409);
+  EXPECT_EQ(store->update_model(second).error().code, ErrorCode::conflict);
   second.slug = "pot-2";
   second.project_id = 77;
-  EXPECT_EQ(store->update_model(second).error().status, 409);
+  EXPECT_EQ(store->update_model(second).error().code, ErrorCode::conflict);
   second.project_id = 1;
   second.id = 77;
-  EXPECT_EQ(store->update_model(second).error().status, 404);
+  EXPECT_EQ(store->update_model(second).error().code, ErrorCode::not_found);
   EXPECT_EQ(store->models()->size(), 2u);
   EXPECT_EQ(store->models(1)->size(), 2u);
   EXPECT_EQ(store->models(2)->size(), 0u);
-  EXPECT_EQ(store->create_model(small_model("x", 99), {}).error().status, 409);
+  EXPECT_EQ(store->create_model(small_model("x", 99), {}).error().code, ErrorCode::conflict);
 }
 
 TEST(Layers, they_come_in_drawing_order_with_every_field) {
@@ -209,7 +209,7 @@ TEST(Layers, they_come_in_drawing_order_with_every_field) {
   EXPECT_EQ(list[1].opacity, 0.3);
   EXPECT_EQ(store->layer(model.id, "top", Role::owner)->id, top.id);
   EXPECT_EQ(store->layer(model.id, std::to_string(top.id), Role::owner)->slug, "top");
-  EXPECT_EQ(store->layer(model.id + 1, "top", Role::owner).error().status, 404);
+  EXPECT_EQ(store->layer(model.id + 1, "top", Role::owner).error().code, ErrorCode::not_found);
 }
 
 TEST(Layers, slugs_are_unique_in_their_model_only) {
@@ -219,8 +219,8 @@ TEST(Layers, slugs_are_unique_in_their_model_only) {
   EXPECT_EQ(store->create_layer(new_layer(one.id, "Cracks"))->slug, "cracks");
   EXPECT_EQ(store->create_layer(new_layer(one.id, "Cracks"))->slug, "cracks-2");
   EXPECT_EQ(store->create_layer(new_layer(two.id, "Cracks"))->slug, "cracks");
-  EXPECT_EQ(store->create_layer(new_layer(99, "Cracks")).error().status, 404);
-  EXPECT_EQ(store->layers(99, Role::owner).error().status, 404);
+  EXPECT_EQ(store->create_layer(new_layer(99, "Cracks")).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->layers(99, Role::owner).error().code, ErrorCode::not_found);
 }
 
 TEST(Layers, changes_need_the_version_and_keep_to_the_rules) {
@@ -233,7 +233,7 @@ TEST(Layers, changes_need_the_version_and_keep_to_the_rules) {
   const auto changed = store->update_layer(layer).value();
   EXPECT_EQ(changed.name, "Salts");
   EXPECT_EQ(changed.version, 2);
-  EXPECT_EQ(store->update_layer(layer).error().status, 412);
+  EXPECT_EQ(store->update_layer(layer).error().code, ErrorCode::stale);
   auto named = changed;
   named.labels = {{"de", "Salze"}};
   named.descriptions = {{"pt-BR", "Brancos"}};
@@ -243,7 +243,7 @@ TEST(Layers, changes_need_the_version_and_keep_to_the_rules) {
             (Labels{{"pt-BR", "Brancos"}}));
   auto bad = named;
   bad.slug = "other";
-  EXPECT_EQ(store->update_layer(bad).error().status, 409);
+  EXPECT_EQ(store->update_layer(bad).error().code, ErrorCode::conflict);
   bad = named;
   bad.labels = {{"es_MX", "Sales"}};
   EXPECT_EQ(store->update_layer(bad).error().field, "labels");
@@ -254,10 +254,10 @@ TEST(Layers, changes_need_the_version_and_keep_to_the_rules) {
   EXPECT_EQ(store->update_layer(bad).error().field, "opacity");
   auto odd = new_layer(model.id, "odd");
   odd.resolution = 1000;
-  EXPECT_EQ(store->create_layer(odd).error().status, 409);
+  EXPECT_EQ(store->create_layer(odd).error().code, ErrorCode::conflict);
   EXPECT_TRUE(store->delete_layer(changed.id));
-  EXPECT_EQ(store->delete_layer(changed.id).error().status, 404);
-  EXPECT_EQ(store->update_layer(changed).error().status, 404);
+  EXPECT_EQ(store->delete_layer(changed.id).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->update_layer(changed).error().code, ErrorCode::not_found);
 }
 
 TEST(Layers, a_lock_is_kept_until_it_is_taken_away) {

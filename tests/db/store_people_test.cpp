@@ -16,7 +16,8 @@ using std::chrono::seconds;
 
 TEST(Tokens, a_token_is_found_until_it_is_revoked_or_expires) {
   auto store = test::fresh_store();
-  EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::owner, {}).error().status, 404);
+  EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::owner, {}).error().code,
+            ErrorCode::not_found);
   ASSERT_TRUE(store->create_person("Ada", "", Role::owner));
   const auto token = store->create_token(TokenKind::script, "Ada", Role::owner, {}).value().secret;
   EXPECT_EQ(token.size(), 43u);
@@ -46,7 +47,8 @@ TEST(Tokens, guesses_and_oddities_are_nobody) {
   for (const std::string guess : {"", "x", "' OR 1=1 --", "\xff\xff"})
     EXPECT_FALSE(store->find_token(guess).value()) << guess;
   for (const char* nobody : {"", "x", "\xff", "' OR 1=1 --"})
-    EXPECT_EQ(store->create_token(TokenKind::script, nobody, Role::owner, {}).error().status, 404);
+    EXPECT_EQ(store->create_token(TokenKind::script, nobody, Role::owner, {}).error().code,
+              ErrorCode::not_found);
 }
 
 TEST(Tokens, secrets_are_not_in_the_database) {
@@ -83,10 +85,10 @@ TEST(Tokens, an_owner_link_opens_sessions_until_it_is_revoked) {
 TEST(People, names_are_one_persons_in_any_case) {
   auto store = test::fresh_store();
   const Person ada = store->create_person("Ada", "Ada L.", Role::annotator).value();
-  EXPECT_EQ(store->create_person("aDA", "", Role::viewer).error().status, 409);
+  EXPECT_EQ(store->create_person("aDA", "", Role::viewer).error().code, ErrorCode::conflict);
   EXPECT_EQ(store->person("ADA").value().id, ada.id);
-  EXPECT_EQ(store->person("nobody").error().status, 404);
-  EXPECT_EQ(store->person("\xff").error().status, 404);
+  EXPECT_EQ(store->person("nobody").error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->person("\xff").error().code, ErrorCode::not_found);
   EXPECT_EQ(store->password_of("ada").value(), "");
   ASSERT_TRUE(store->set_password("ada", "a hash", {}));
   EXPECT_EQ(store->password_of("ADA").value(), "a hash");
@@ -103,8 +105,10 @@ TEST(People, names_for_signing_in_are_plain) {
                                  "\xc3\xa4"
                                  "da",
                                  "\xe2\x84\xaairk", "\xff"})
-    EXPECT_EQ(store->create_person(name, "", Role::viewer).error().status, 422) << name;
-  EXPECT_EQ(store->create_person(std::string(65, 'x'), "", Role::viewer).error().status, 422);
+    EXPECT_EQ(store->create_person(name, "", Role::viewer).error().code, ErrorCode::invalid)
+        << name;
+  EXPECT_EQ(store->create_person(std::string(65, 'x'), "", Role::viewer).error().code,
+            ErrorCode::invalid);
   ASSERT_TRUE(store->create_person("kirk", "", Role::viewer));
   ASSERT_TRUE(store->set_password("kirk", "a hash", {}));
   EXPECT_EQ(store->password_of("\xe2\x84\xaairk").value(), "")
@@ -119,7 +123,7 @@ TEST(People, a_session_is_opened_only_by_the_password_that_holds) {
   const auto open = [&](const std::string& hash) {
     return store->create_token(TokenKind::session, "ada", Role::viewer, seconds(60), "", hash);
   };
-  EXPECT_EQ(open("old").error().status, 401);
+  EXPECT_EQ(open("old").error().code, ErrorCode::unauthenticated);
   const auto first = open("new").value().secret;
   EXPECT_EQ(store->find_token(first).value()->roles.everywhere, Role::annotator);
   for (std::size_t i = 0; i < kMostTokens; ++i) ASSERT_TRUE(open("new"));
@@ -158,7 +162,8 @@ TEST(People, a_token_does_no_more_than_its_person_and_a_session_the_same) {
   const auto invitation =
       store->create_link(TokenKind::invitation, "Ada", seconds(60)).value().secret;
   ASSERT_TRUE(store->change_person(ada.id, {{}, {}, true}));
-  EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::viewer, {}).error().status, 404);
+  EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::viewer, {}).error().code,
+            ErrorCode::not_found);
   for (const auto& secret : {session, weak, strong})
     EXPECT_FALSE(store->find_token(secret).value());
   // What somebody says of themselves at the same time takes nothing of it back.
@@ -214,12 +219,12 @@ TEST(People, in_a_project_somebody_may_do_more) {
   EXPECT_EQ(members[0].person.name, "Gus");
   EXPECT_EQ(members[0].role, Role::curator);
   for (const Role role : {Role::guest, Role::administrator, Role::owner})
-    EXPECT_EQ(store->put_member(project, "Gus", role).error().status, 422);
-  EXPECT_EQ(store->put_member(project, "nobody", Role::viewer).error().status, 404);
-  EXPECT_EQ(store->put_member(project + 1, "Gus", Role::viewer).error().status, 404);
-  EXPECT_EQ(store->remove_member(project + 1, "Gus").error().status, 404);
+    EXPECT_EQ(store->put_member(project, "Gus", role).error().code, ErrorCode::invalid);
+  EXPECT_EQ(store->put_member(project, "nobody", Role::viewer).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->put_member(project + 1, "Gus", Role::viewer).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store->remove_member(project + 1, "Gus").error().code, ErrorCode::not_found);
   ASSERT_TRUE(store->remove_member(project, "GUS"));
-  EXPECT_EQ(store->remove_member(project, "Gus").error().status, 404);
+  EXPECT_EQ(store->remove_member(project, "Gus").error().code, ErrorCode::not_found);
   EXPECT_EQ(roles_of(session), Roles{});
   // With the project, and with the person, it is gone.
   ASSERT_TRUE(store->put_member(project, "Gus", Role::viewer));
@@ -258,11 +263,11 @@ TEST(Tokens, of_one_project_are_good_there_alone_and_go_with_it) {
   EXPECT_EQ(roles_of(of_guest), (Roles{Role::guest, {{project, Role::viewer}}}));
   EXPECT_EQ(store->tokens("Ada", TokenKind::script)->at(0).project, "villa");
   for (const Role role : {Role::guest, Role::administrator, Role::owner})
-    EXPECT_EQ(token_of("root", role).error().status, 422);
+    EXPECT_EQ(token_of("root", role).error().code, ErrorCode::invalid);
   EXPECT_EQ(store->create_token(TokenKind::script, "Ada", Role::viewer, {}, "", {}, project + 1)
                 .error()
-                .status,
-            404);
+                .code,
+            ErrorCode::not_found);
   const auto everywhere =
       store->create_token(TokenKind::script, "Ada", Role::viewer, {}).value().secret;
   ASSERT_TRUE(store->delete_project(project));
@@ -330,7 +335,7 @@ TEST(People, of_who_is_deleted_no_name_is_left_anywhere) {
                                          Params().text(former));
   EXPECT_EQ(history->integer(0, 0), 1);
   for (const char* taken : {"former-7", "Former-8"})
-    EXPECT_EQ(store->create_person(taken, "", Role::viewer).error().status, 409);
+    EXPECT_EQ(store->create_person(taken, "", Role::viewer).error().code, ErrorCode::conflict);
   EXPECT_TRUE(store->create_person("Ada.Lovelace", "", Role::viewer));
 }
 
@@ -379,7 +384,7 @@ TEST(Answers, of_two_calls_with_one_key_only_one_changes_anything) {
   ASSERT_TRUE(store->create_project(named("Villa"), answer_of("k")));
   const auto second = store->create_project(named("Villa"), answer_of("k"));
   ASSERT_FALSE(second);
-  EXPECT_EQ(second.error().status, 409);
+  EXPECT_EQ(second.error().code, ErrorCode::conflict);
   EXPECT_EQ(store->projects()->size(), 2u) << "`default` and the first";
 }
 
@@ -393,11 +398,11 @@ TEST(Answers, what_changes_nothing_keeps_no_answer) {
 
 TEST(Answers, bad_keys_are_the_callers_mistake) {
   auto store = test::fresh_store();
-  EXPECT_EQ(store->find_answer("").error().status, 400);
+  EXPECT_EQ(store->find_answer("").error().code, ErrorCode::malformed);
   for (const std::string& key :
        {std::string(256, 'k'), std::string("a\0b", 3), std::string("\xff")}) {
-    EXPECT_EQ(store->find_answer(key).error().status, 400);
-    EXPECT_EQ(store->create_project(named("x"), answer_of(key)).error().status, 400);
+    EXPECT_EQ(store->find_answer(key).error().code, ErrorCode::malformed);
+    EXPECT_EQ(store->create_project(named("x"), answer_of(key)).error().code, ErrorCode::malformed);
   }
   EXPECT_EQ(store->projects()->size(), 1u);
 }

@@ -74,11 +74,12 @@ TEST_F(Sources, a_reader_may_stop_and_unknown_files_are_not_found) {
   int chunks = 0;
   EXPECT_TRUE(store_->read_source(model.id, "größe 1.ply", [&](auto) { return ++chunks < 2; }));
   EXPECT_EQ(chunks, 2);
-  EXPECT_EQ(store_->read_source(model.id, "other", [](auto) { return true; }).error().status, 404);
+  EXPECT_EQ(store_->read_source(model.id, "other", [](auto) { return true; }).error().code,
+            ErrorCode::not_found);
   EXPECT_EQ(
-      store_->read_source(model.id + 1, "größe 1.ply", [](auto) { return true; }).error().status,
-      404);
-  EXPECT_EQ(store_->geometry(model.id + 1).error().status, 404);
+      store_->read_source(model.id + 1, "größe 1.ply", [](auto) { return true; }).error().code,
+      ErrorCode::not_found);
+  EXPECT_EQ(store_->geometry(model.id + 1).error().code, ErrorCode::not_found);
 }
 
 TEST_F(Sources, the_same_file_is_kept_once_and_goes_with_its_last_model) {
@@ -92,7 +93,7 @@ TEST_F(Sources, the_same_file_is_kept_once_and_goes_with_its_last_model) {
   ASSERT_TRUE(store_->delete_model(second.id));
   EXPECT_EQ(count(dsn_, "SELECT count(*) FROM blobs"), 0);
   EXPECT_EQ(count(dsn_, "SELECT count(*) FROM blob_chunks"), 0);
-  EXPECT_EQ(store_->delete_model(second.id).error().status, 404);
+  EXPECT_EQ(store_->delete_model(second.id).error().code, ErrorCode::not_found);
 }
 
 TEST_F(Sources, coarser_copies_are_kept_in_their_order_and_go_with_the_model) {
@@ -137,15 +138,15 @@ TEST_F(Sources, a_cancelled_or_unreadable_import_leaves_nothing_behind) {
   const auto cancelled =
       store_->create_model(model_of(folder_.path() / "scan", {1}), [&] { return ++asked > 12; });
   ASSERT_FALSE(cancelled);
-  EXPECT_EQ(cancelled.error().status, 499);
+  EXPECT_EQ(cancelled.error().code, ErrorCode::cancelled);
   EXPECT_EQ(store_->create_model(model_of(folder_.path() / "missing", {1}), {}).error().title,
             "File not readable");
   auto twice = model_of(folder_.path() / "scan", {1});
   twice.sources.push_back(twice.sources[0]);
-  EXPECT_EQ(store_->create_model(twice, {}).error().status, 409);
+  EXPECT_EQ(store_->create_model(twice, {}).error().code, ErrorCode::conflict);
   auto nameless = model_of(folder_.path() / "scan", {1});
   nameless.sources[0].name = "";
-  EXPECT_EQ(store_->create_model(nameless, {}).error().status, 400);
+  EXPECT_EQ(store_->create_model(nameless, {}).error().code, ErrorCode::malformed);
   EXPECT_EQ(
       count(
           dsn_,

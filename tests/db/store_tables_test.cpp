@@ -135,9 +135,9 @@ TEST_F(Tables, a_catalogue_keeps_names_in_any_language) {
   ASSERT_TRUE(renamed) << renamed.error().detail;
   EXPECT_EQ(renamed->version, made->version + 1);
   EXPECT_EQ(renamed->labels.at("de"), "Einheiten");
-  EXPECT_EQ(store_->update_table(*made).error().status, 412);
+  EXPECT_EQ(store_->update_table(*made).error().code, ErrorCode::stale);
   EXPECT_EQ(store_->tables(1, Role::owner)->size(), 1u);
-  EXPECT_EQ(store_->table("units", Role::owner).error().status, 404);
+  EXPECT_EQ(store_->table("units", Role::owner).error().code, ErrorCode::not_found);
 }
 
 TEST_F(Tables, keys_are_never_given_again) {
@@ -157,8 +157,8 @@ TEST_F(Tables, of_two_who_change_a_record_the_second_is_told) {
   const Table table = make("Units", {column("Name")});
   const auto first = put(table, 1, {{"name", "a"}})->records.at(0).version;
   ASSERT_TRUE(put(table, 1, {{"name", "b"}}, "ana", first));
-  EXPECT_EQ(put(table, 1, {{"name", "c"}}, "ben", first).error().status, 412);
-  EXPECT_EQ(store_->delete_record(table.id, 1, first, "ben").error().status, 412);
+  EXPECT_EQ(put(table, 1, {{"name", "c"}}, "ben", first).error().code, ErrorCode::stale);
+  EXPECT_EQ(store_->delete_record(table.id, 1, first, "ben").error().code, ErrorCode::stale);
   EXPECT_EQ(content(table)["1"]["name"], "b");
 }
 
@@ -176,9 +176,9 @@ TEST_F(Tables, required_and_unique_columns_hold_for_every_way_in) {
   EXPECT_EQ(put(table, 1, {{"name", "a"}}).error().field, "values.code");
   ASSERT_TRUE(put(table, 1, {{"code", "A"}}));
   const auto twice = put(table, 2, {{"code", "A"}});
-  EXPECT_EQ(twice.error().status, 409);
+  EXPECT_EQ(twice.error().code, ErrorCode::conflict);
   EXPECT_NE(twice.error().detail.find("Record 1"), std::string::npos);
-  EXPECT_EQ(put(table, 1, {{"code", nullptr}}).error().status, 422);
+  EXPECT_EQ(put(table, 1, {{"code", nullptr}}).error().code, ErrorCode::invalid);
   EXPECT_EQ(put(table, 2, {{"code", std::string(kLongestUniqueText + 1, 'x')}}).error().field,
             "values.code");
   // Two in one call, and a swap, which is only right as a whole.
@@ -216,7 +216,7 @@ TEST_F(Tables, terms_and_relations_name_records_that_are_there) {
   ASSERT_TRUE(put(units, 2, {{"above", {1, 2}}}));  // itself, which comes with it
   EXPECT_EQ(store_->delete_record(terms.id, 1, {}, "ana").error().title, "Record in use");
   EXPECT_EQ(store_->delete_record(units.id, 1, {}, "ana").error().title, "Record in use");
-  EXPECT_EQ(undo(terms).error().status, 409);
+  EXPECT_EQ(undo(terms).error().code, ErrorCode::conflict);
   ASSERT_TRUE(store_->delete_record(units.id, 2, {}, "ana"));
   ASSERT_TRUE(store_->delete_record(units.id, 1, {}, "ana"));
   ASSERT_TRUE(store_->delete_record(terms.id, 1, {}, "ana"));
@@ -241,7 +241,7 @@ TEST_F(Tables, undo_takes_back_what_one_person_did_and_leaves_what_others_did) {
   EXPECT_EQ(plan.vanishing, std::vector<std::int64_t>{1});
   ASSERT_TRUE(undo(table, "ana"));
   EXPECT_EQ(content(table), json::object());
-  EXPECT_EQ(undo(table, "ana").error().status, 409);
+  EXPECT_EQ(undo(table, "ana").error().code, ErrorCode::conflict);
   ASSERT_TRUE(undo(table, "ana", true));
   EXPECT_EQ(content(table)["1"], (json{{"name", "b"}, {"depth", 1.5}}));  // with what Ben wrote
   ASSERT_TRUE(undo(table, "ana", true));
@@ -250,7 +250,8 @@ TEST_F(Tables, undo_takes_back_what_one_person_did_and_leaves_what_others_did) {
   // A plan is of its moment.
   const auto old = store_->plan_table_undo(table.id, "ana", false).value();
   ASSERT_TRUE(put(table, 2, {}, "ben"));
-  EXPECT_EQ(store_->undo_table(table.id, "ana", false, old.table_sequence).error().status, 412);
+  EXPECT_EQ(store_->undo_table(table.id, "ana", false, old.table_sequence).error().code,
+            ErrorCode::stale);
 }
 
 TEST_F(Tables, the_past_is_read_with_the_columns_of_then) {
@@ -290,7 +291,8 @@ TEST_F(Tables, a_dropped_column_comes_back_with_its_values) {
   ASSERT_TRUE(put(table, 1, {{"code", "A"}}));
   ASSERT_TRUE(store_->drop_column(table.id, table.columns[0].id, {}, "ana"));
   EXPECT_EQ(now(table).columns.size(), 0u);
-  EXPECT_EQ(store_->drop_column(table.id, table.columns[0].id, {}, "ana").error().status, 404);
+  EXPECT_EQ(store_->drop_column(table.id, table.columns[0].id, {}, "ana").error().code,
+            ErrorCode::not_found);
   ASSERT_TRUE(put(table, 2, {}, "ben"));
   // Its slug is free for another one, and taken again when it comes back.
   ASSERT_TRUE(store_->create_column(table.id, column("Code"), "ben"));
@@ -317,8 +319,8 @@ TEST_F(Tables, retyping_keeps_what_can_be_kept_and_tells_what_cannot) {
             (json{{"1", {{"depth", 1.5}}}, {"2", json::object()}, {"3", json::object()}}));
   EXPECT_NE(now(table).columns[0].id, table.columns[0].id);
   EXPECT_EQ(
-      store_->update_column(table.id, now(table).columns[0], table.version, "ana").error().status,
-      412);
+      store_->update_column(table.id, now(table).columns[0], table.version, "ana").error().code,
+      ErrorCode::stale);
   ASSERT_TRUE(undo(table));
   EXPECT_EQ(content(table)["2"]["depth"], "deep");
   ASSERT_TRUE(undo(table, "ana", true));

@@ -163,7 +163,7 @@ TEST_F(Terms, only_a_list_takes_terms_and_names_are_not_given_twice) {
   auto made = store_->create_table(plain);
   ASSERT_TRUE(made);
   EXPECT_EQ(import(*made, "code\na\n").error().title, "No list of terms");
-  EXPECT_EQ(create(*read_terms_csv("code\na\n"), "UNITS").error().status, 409);
+  EXPECT_EQ(create(*read_terms_csv("code\na\n"), "UNITS").error().code, ErrorCode::conflict);
   EXPECT_EQ(store_->tables(1, Role::owner)->size(), 1u);
 }
 
@@ -191,7 +191,8 @@ TEST_F(Terms, tables_come_all_or_none_and_name_each_other) {
   EXPECT_EQ((*made)[0].created.size(), 2u);
 
   terms.table.name = "Other kinds";
-  EXPECT_EQ(store_->create_tables({terms, units}, false, "ana", "template").error().status, 409);
+  EXPECT_EQ(store_->create_tables({terms, units}, false, "ana", "template").error().code,
+            ErrorCode::conflict);
   terms.terms = *read_terms_csv("code,parent\npit,nothing\n");
   units.table.name = "Other units";
   auto refused = store_->create_tables({terms, units}, false, "ana", "template");

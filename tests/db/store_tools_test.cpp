@@ -45,7 +45,7 @@ TEST_F(Tools, are_renamed_and_keep_slug_and_shape) {
   EXPECT_EQ(changed.name, "Fähnchen");
   EXPECT_EQ(changed.slug, "flag");
   EXPECT_EQ(changed.version, tool.version + 1);
-  EXPECT_EQ(store_->update_tool(tool).error().status, 412);
+  EXPECT_EQ(store_->update_tool(tool).error().code, ErrorCode::stale);
   EXPECT_EQ(store_->tool_shape(tool.id).value(), flag_);
 }
 
@@ -53,12 +53,12 @@ TEST_F(Tools, a_deleted_one_is_found_by_its_id_alone_and_its_slug_is_free_again)
   const auto tool = store_->create_tool(named("Flag"), flag_).value();
   ASSERT_TRUE(store_->delete_tool(tool.id));
   EXPECT_TRUE(store_->tools()->empty());
-  EXPECT_EQ(store_->tool("flag").error().status, 404);
+  EXPECT_EQ(store_->tool("flag").error().code, ErrorCode::not_found);
   EXPECT_TRUE(store_->tool(std::to_string(tool.id))->deleted);
   EXPECT_EQ(store_->tool_shape(tool.id).value(), flag_);
-  EXPECT_EQ(store_->delete_tool(tool.id).error().status, 404);
+  EXPECT_EQ(store_->delete_tool(tool.id).error().code, ErrorCode::not_found);
   auto renamed = store_->tool(std::to_string(tool.id)).value();
-  EXPECT_EQ(store_->update_tool(renamed).error().status, 404);
+  EXPECT_EQ(store_->update_tool(renamed).error().code, ErrorCode::not_found);
   const auto next = store_->create_tool(named("Flag"), dots_).value();
   EXPECT_EQ(next.slug, "flag");
   EXPECT_NE(next.id, tool.id);
@@ -72,12 +72,13 @@ TEST_F(Tools, no_slug_is_that_of_a_shape_that_is_always_there) {
 }
 
 TEST_F(Tools, bad_names_and_unknown_ids_are_refused) {
-  EXPECT_EQ(store_->create_tool(named(""), flag_).error().status, 400);
-  EXPECT_EQ(store_->create_tool(named(std::string("a\0b", 3)), flag_).error().status, 400);
-  EXPECT_EQ(store_->tool("none").error().status, 404);
-  EXPECT_EQ(store_->tool("99999999999999999999").error().status, 404);
-  EXPECT_EQ(store_->tool_shape(77).error().status, 404);
-  EXPECT_EQ(store_->delete_tool(77).error().status, 404);
+  EXPECT_EQ(store_->create_tool(named(""), flag_).error().code, ErrorCode::malformed);
+  EXPECT_EQ(store_->create_tool(named(std::string("a\0b", 3)), flag_).error().code,
+            ErrorCode::malformed);
+  EXPECT_EQ(store_->tool("none").error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->tool("99999999999999999999").error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->tool_shape(77).error().code, ErrorCode::not_found);
+  EXPECT_EQ(store_->delete_tool(77).error().code, ErrorCode::not_found);
 }
 
 TEST_F(Tools, a_site_has_no_more_than_its_limit_however_many_ask_at_once) {
@@ -88,7 +89,7 @@ TEST_F(Tools, a_site_has_no_more_than_its_limit_however_many_ask_at_once) {
     people.emplace_back([&] { (void)store_->create_tool(named("n"), flag_); });
   for (auto& person : people) person.join();
   EXPECT_EQ(store_->tools()->size(), std::size_t{Store::kMostTools});
-  EXPECT_EQ(store_->create_tool(named("n"), flag_).error().status, 409);
+  EXPECT_EQ(store_->create_tool(named("n"), flag_).error().code, ErrorCode::conflict);
   ASSERT_TRUE(store_->delete_tool(store_->tools()->front().id));
   EXPECT_TRUE(store_->create_tool(named("n"), flag_)) << "deleted ones do not count";
 }
@@ -97,7 +98,7 @@ TEST_F(Tools, the_answer_is_kept_with_what_it_answers_for) {
   const FirstAnswer<Tool> answer{"key", [](const Tool& made) { return to_json(made); }};
   const auto tool = store_->create_tool(named("Flag"), flag_, answer).value();
   EXPECT_EQ(store_->find_answer("key").value().value()["id"], tool.id);
-  EXPECT_EQ(store_->create_tool(named("Flag"), flag_, answer).error().status, 409);
+  EXPECT_EQ(store_->create_tool(named("Flag"), flag_, answer).error().code, ErrorCode::conflict);
   EXPECT_EQ(store_->tools()->size(), 1u);
 }
 

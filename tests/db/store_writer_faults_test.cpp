@@ -123,7 +123,7 @@ TEST_F(WriterFaults, commits_that_keep_failing_answer_everyone_and_then_it_start
     for (int i = 2; i <= 30; ++i)
       ASSERT_TRUE(writer.submit(painter.paint(i, 2, 4), [&answered, i](Result<void> result) {
         ASSERT_FALSE(result);
-        EXPECT_EQ(result.error().status, 503) << result.error().detail;
+        EXPECT_EQ(result.error().code, ErrorCode::unavailable) << result.error().detail;
         answered.push_back(i);
       }));
     hang.kill();
@@ -132,7 +132,7 @@ TEST_F(WriterFaults, commits_that_keep_failing_answer_everyone_and_then_it_start
     EXPECT_TRUE(std::is_sorted(answered.begin(), answered.end()));
   }
   EXPECT_TRUE(writer.accepting());
-  EXPECT_EQ(store_->project("default").error().status, 503);
+  EXPECT_EQ(store_->project("default").error().code, ErrorCode::unavailable);
   EXPECT_FALSE(store_->ready());
   ASSERT_TRUE(cluster_->ensure_running());
   EXPECT_TRUE(store_->ready());
@@ -157,7 +157,7 @@ TEST_F(WriterFaults, a_database_that_hangs_fails_commits_and_reads_in_time_and_t
     for (int i = 2; i <= 30; ++i)
       ASSERT_TRUE(writer.submit(painter.paint(i, 2, 4), [&unsaved](Result<void> result) {
         ASSERT_FALSE(result);
-        EXPECT_EQ(result.error().status, 503) << result.error().detail;
+        EXPECT_EQ(result.error().code, ErrorCode::unavailable) << result.error().detail;
         ++unsaved;
       }));
     while (writer.accepting()) std::this_thread::sleep_for(milliseconds(1));
@@ -165,7 +165,7 @@ TEST_F(WriterFaults, a_database_that_hangs_fails_commits_and_reads_in_time_and_t
     EXPECT_FALSE(store_->ready());
     const auto read = quick_store->project("default");
     ASSERT_FALSE(read);
-    EXPECT_EQ(read.error().status, 503);
+    EXPECT_EQ(read.error().code, ErrorCode::unavailable);
     writer.drain();
     EXPECT_EQ(unsaved, 29);
     EXPECT_TRUE(writer.accepting());
@@ -193,7 +193,7 @@ TEST_F(WriterFaults, a_caller_waits_for_a_busy_pool_only_so_long) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));  // until it has the connection
   const auto refused = narrow->project("default");
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_EQ(refused.error().code, ErrorCode::busy);
   EXPECT_EQ(refused.error().title, "Database busy");
   EXPECT_TRUE(narrow->ready()) << "busy is not away";
   ASSERT_TRUE(holder->script("COMMIT"));
@@ -209,7 +209,7 @@ TEST_F(WriterFaults, a_commit_without_an_answer_is_said_to_be_of_unknown_outcome
   const test::Hang hang(*cluster_);
   const auto committed = transaction->commit();
   ASSERT_FALSE(committed);
-  EXPECT_EQ(committed.error().status, 503);
+  EXPECT_EQ(committed.error().code, ErrorCode::unavailable);
   EXPECT_EQ(committed.error().title, "Outcome unknown");
   EXPECT_FALSE(connection->alive());
 }

@@ -16,14 +16,17 @@ using test::Painter;
 using test::save;
 using ::testing::ElementsAre;
 
+using Answer = std::optional<ErrorCode>;
+constexpr Answer kSaved = std::nullopt;
+
 class Writer : public ::testing::Test {
  protected:
-  // Submits and notes the answer's status: 0 is saved.
+  // Submits and notes the answer: nothing, or the code of its error.
   void submit(JournalWriter& writer, JournalEntry entry) {
     ASSERT_TRUE(writer.submit(std::move(entry), [this](Result<void> result) {
       std::lock_guard lock(mutex_);
-      answers_.push_back(result ? 0 : result.error().status);
-      last_problem_ = result ? Problem{} : result.error();
+      answers_.push_back(result ? kSaved : Answer(result.error().code));
+      last_problem_ = result ? Error{} : result.error();
     }));
   }
   std::int64_t count(const char* sql) {
@@ -36,8 +39,8 @@ class Writer : public ::testing::Test {
   Layer layer_ = test::make_layer(*store_, model_.id);
   Painter painter_{layer_, 5};
   std::mutex mutex_;
-  std::vector<int> answers_;
-  Problem last_problem_;
+  std::vector<Answer> answers_;
+  Error last_problem_;
 };
 
 // Keeps the writer waiting at its next transaction on a model, so that what is submitted meanwhile
@@ -83,7 +86,7 @@ TEST_F(Writer, destruction_writes_what_waits) {
     JournalWriter writer(*store_, {});
     for (int i = 1; i <= 100; ++i) submit(writer, painter_.paint(i, 1, 4));
   }
-  EXPECT_EQ(answers_, std::vector<int>(100, 0));
+  EXPECT_EQ(answers_, std::vector<Answer>(100, kSaved));
   EXPECT_EQ(store_->last_sequence(model_.id).value(), 100);
 }
 
@@ -98,7 +101,7 @@ TEST_F(Writer, an_entry_that_an_earlier_try_committed_counts_as_saved) {
   submit(second, entry);  // as after a commit whose answer was lost
   submit(second, next);
   second.drain();
-  EXPECT_THAT(answers_, ElementsAre(0, 0, 0));
+  EXPECT_THAT(answers_, ElementsAre(kSaved, kSaved, kSaved));
   EXPECT_EQ(count("SELECT count(*) FROM edits"), 2);
   EXPECT_TRUE(test::content_of(store_->load_tiles(layer_).value()) == painter_.content());
 }
@@ -121,7 +124,8 @@ TEST_F(Writer, an_edit_made_on_top_of_one_that_was_not_saved_is_refused_while_ot
   submit(writer, painter_.paint(4, 1, 4));  // still of the state that is gone
   submit(writer, painter_.entry(2));        // the room has gone back and starts anew
   writer.drain();
-  EXPECT_THAT(answers_, ElementsAre(0, 400, 0, 400, 0, 409, 0));
+  EXPECT_THAT(answers_, ElementsAre(kSaved, ErrorCode::malformed, kSaved, ErrorCode::malformed,
+                                    kSaved, ErrorCode::conflict, kSaved));
   EXPECT_EQ(store_->last_sequence(model_.id).value(), 2);
   EXPECT_EQ(store_->last_sequence(other_model.id).value(), 2);
   EXPECT_TRUE(test::content_of(store_->load_tiles(other.layer()).value()) == other.content());
@@ -156,7 +160,10 @@ TEST_F(Writer, entries_that_can_never_be_written_fail_at_once) {
   submit(writer, same_id);
   submit(writer, painter_.entry(2));
   writer.drain();
-  EXPECT_THAT(answers_, ElementsAre(409, 409, 409, 400, 400, 400, 409, 0, 409, 0));
+  EXPECT_THAT(answers_,
+              ElementsAre(ErrorCode::conflict, ErrorCode::conflict, ErrorCode::conflict,
+                          ErrorCode::malformed, ErrorCode::malformed, ErrorCode::malformed,
+                          ErrorCode::conflict, kSaved, ErrorCode::conflict, kSaved));
   EXPECT_EQ(count("SELECT count(*) FROM edits"), 2);
   EXPECT_EQ(count("SELECT count(*) FROM tile_revisions"), 0);
 }
@@ -172,7 +179,7 @@ TEST_F(Writer, a_layer_deleted_under_a_waiting_edit_fails_that_edit_only) {
   writer.drain();
   submit(writer, painter_.paint(2, 1, 2));
   writer.drain();
-  EXPECT_THAT(answers_, ElementsAre(0, 409, 0));
+  EXPECT_THAT(answers_, ElementsAre(kSaved, ErrorCode::conflict, kSaved));
 }
 
 TEST_F(Writer, a_full_disk_is_waited_for_and_then_told) {
@@ -183,7 +190,7 @@ TEST_F(Writer, a_full_disk_is_waited_for_and_then_told) {
   JournalWriter writer(*store_, {.retry_for = std::chrono::milliseconds(400)});
   submit(writer, painter_.paint(1, 1, 2));
   writer.drain();
-  EXPECT_THAT(answers_, ElementsAre(507));
+  EXPECT_THAT(answers_, ElementsAre(ErrorCode::storage_full));
   EXPECT_NE(last_problem_.detail.find("disk is full"), std::string::npos) << last_problem_.detail;
 
   JournalWriter patient(*store_, {});
@@ -194,7 +201,7 @@ TEST_F(Writer, a_full_disk_is_waited_for_and_then_told) {
   ASSERT_TRUE(PgConnection::connect(dsn_)->script("DROP TRIGGER full_disk ON edits"));
   patient.drain();
   EXPECT_TRUE(patient.accepting());
-  EXPECT_THAT(answers_, ElementsAre(507, 0));
+  EXPECT_THAT(answers_, ElementsAre(ErrorCode::storage_full, kSaved));
 }
 
 TEST_F(Writer, a_full_queue_refuses_but_one_large_entry_passes) {
@@ -211,7 +218,7 @@ TEST_F(Writer, a_full_queue_refuses_but_one_large_entry_passes) {
   EXPECT_TRUE(writer.accepting());
   submit(writer, painter_.entry(2));
   writer.drain();
-  EXPECT_THAT(answers_, ElementsAre(0, 0));
+  EXPECT_THAT(answers_, ElementsAre(kSaved, kSaved));
 }
 
 TEST_F(Writer, a_very_large_edit_is_one_transaction) {
@@ -223,7 +230,7 @@ TEST_F(Writer, a_very_large_edit_is_one_transaction) {
   JournalWriter writer(*store_, {});
   submit(writer, import);
   writer.drain();
-  EXPECT_THAT(answers_, ElementsAre(0));
+  EXPECT_THAT(answers_, ElementsAre(kSaved));
   EXPECT_EQ(store_->revision_bytes(model_.id).value(), 40'960'000u);
 }
 
@@ -241,7 +248,7 @@ TEST_F(Writer, durable_edits_per_second) {
   for (int i = 300; i < 3300; ++i) submit(writer, std::move(entries[i]));
   writer.drain();
   const double grouped = 3000 / seconds_of(start);
-  EXPECT_EQ(answers_, std::vector<int>(3000, 0));
+  EXPECT_EQ(answers_, std::vector<Answer>(3000, kSaved));
   std::printf(
       "[ figure   ] single-tile edits: %.2f ms each, one after the other (%.0f/s); %.0f/s grouped; %.0f bytes each\n",
       one_ms, 1000 / one_ms, grouped,

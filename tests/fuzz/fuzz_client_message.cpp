@@ -25,7 +25,7 @@ void read_client_message(std::string_view text) {
   const auto message = parse_client_message(text, &ref);
   demand(ref.size() <= 64);
   if (!message) {
-    demand(message.error().status >= 400 && !message.error().title.empty());
+    demand(!is_server_failure(message.error().code) && !message.error().title.empty());
     return;
   }
   const auto again = parse_client_message(to_text(*message));

@@ -35,7 +35,7 @@ Column column_of(int kind, bool required) {
 
 void check(const Column& column, const Result<nlohmann::json>& value) {
   if (!value) {
-    demand(value.error().status == 422 && value.error().field == "field" &&
+    demand(value.error().code == ErrorCode::invalid && value.error().field == "field" &&
            is_utf8(value.error().detail));
     return;
   }

@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const CsvLimits limits{200, 50};
   const auto csv = parse_csv(text, limits);
   if (!csv) {
-    demand(csv.error().status == 422 && is_utf8(csv.error().detail));
+    demand(csv.error().code == ErrorCode::invalid && is_utf8(csv.error().detail));
     return 0;
   }
   demand(csv->rows.size() <= limits.rows);

@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   const auto period = parse_edtf(text);
   if (!period) {
-    demand(period.error().status == 422 && is_utf8(period.error().detail));
+    demand(period.error().code == ErrorCode::invalid && is_utf8(period.error().detail));
     return 0;
   }
   demand(text.size() <= kLongestPeriod && is_utf8(text));

@@ -125,7 +125,7 @@ std::string text_of(const Expression& expression) {
 }
 
 // The text made of an expression has more brackets than that which it was read from.
-bool is_beyond_limits(const strata::Problem& problem) {
+bool is_beyond_limits(const strata::Error& problem) {
   return problem.title == "Expression too long" ||
          problem.detail.find("nested too deeply") != std::string::npos ||
          problem.detail.find("too much at once") != std::string::npos;

@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                          body = text.substr(std::min(line_end + 1, size));
   const auto files = strata::net::files_of_form(type, body);
   if (!files) {
-    demand(files.error().status >= 400 && files.error().status < 500);
+    demand(!is_server_failure(files.error().code));
     return 0;
   }
   demand(files->size() <= strata::net::kMostFormFiles);

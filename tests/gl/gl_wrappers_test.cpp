@@ -126,7 +126,7 @@ TEST_F(GlWrapper, a_framebuffer_moves_and_is_complete) {
   auto small = Texture::create_array(GL_R32UI, 4, 4, 2, "layered");
   const auto refused = Framebuffer::create({&*color, &*small}, nullptr, "layered and not");
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_EQ(refused.error().code, ErrorCode::unavailable);
 }
 
 TEST_F(GlWrapper, a_vertex_array_moves) {

@@ -261,7 +261,7 @@ TEST(Edit, a_stroke_that_is_refused_for_want_of_memory_has_painted_nothing) {
     renderer->run_on_gpu_thread_for_test([&] { refusal.reset(); });
     painted = outcome.has_value();
     if (painted) break;
-    EXPECT_EQ(outcome.error().status, 503);
+    EXPECT_EQ(outcome.error().code, ErrorCode::out_of_memory);
     for (const auto& tile : renderer.paint(layer, dab(camera, 30, 60, 3, 9)).tiles) {
       EXPECT_TRUE(tile.after.valid == tile.written) << "refused at buffer " << refusals;
     }
@@ -374,26 +374,28 @@ TEST(Edit, strokes_that_cannot_be_painted_are_refused_with_a_reason) {
   const auto model = renderer.add(scene);
   const auto layer = renderer.add_layer(model, ValueType::u8, 256);
   const auto camera = orthographic_camera({0, 0, 2}, {0, 0, 0}, 100, 100, 0.5);
-  const auto refused = [&](render::LayerHandle target, const StrokeBatch& stroke, int status) {
+  const auto refused = [&](render::LayerHandle target, const StrokeBatch& stroke, ErrorCode code) {
     const auto result = await<render::StrokeOutcome>(
         [&](auto done) { renderer->paint(target, stroke, std::move(done)); });
     ASSERT_FALSE(result.has_value());
-    EXPECT_EQ(result.error().status, status);
+    EXPECT_EQ(result.error().code, code);
     EXPECT_FALSE(result.error().detail.empty());
   };
   auto stroke = dab(camera, 50, 50, 10);
-  refused(layer + 100, stroke, 404);
-  refused(renderer.add_layer(model, ValueType::u8, 512), stroke, 409);  // no surface map of 512
+  refused(layer + 100, stroke, ErrorCode::not_found);
+  refused(renderer.add_layer(model, ValueType::u8, 512), stroke,
+          ErrorCode::conflict);  // no surface map of 512
   stroke.path.clear();
-  refused(layer, stroke, 422);
-  refused(layer, dab(camera, std::nan(""), 0, 10), 422);
-  refused(layer, dab(camera, 50, 50, 0), 422);
+  refused(layer, stroke, ErrorCode::invalid);
+  refused(layer, dab(camera, std::nan(""), 0, 10), ErrorCode::invalid);
+  refused(layer, dab(camera, 50, 50, 0), ErrorCode::invalid);
   for (const double bias : {-1e-9, 1.5, std::nan("")}) {
     auto biased = dab(camera, 50, 50, 10);
     biased.fixed_depth_bias = bias;
-    refused(layer, biased, 422);
+    refused(layer, biased, ErrorCode::invalid);
   }
-  refused(layer, dab({glm::dmat4(0.0), camera.projection, 100, 100}, 50, 50, 10), 422);
+  refused(layer, dab({glm::dmat4(0.0), camera.projection, 100, 100}, 50, 50, 10),
+          ErrorCode::invalid);
 }
 
 }  // namespace

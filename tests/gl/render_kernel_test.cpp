@@ -97,7 +97,7 @@ TEST(Kernel, a_stroke_for_whose_tiles_there_is_no_memory_has_painted_nothing) {
   const auto refused = await<render::StrokeOutcome>(
       [&](auto done) { renderer->paint(layer, dab(camera, 100, 100, 90, 7), std::move(done)); });
   ASSERT_FALSE(refused.has_value());
-  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
   EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
   // The six pages that are left hold nothing of it.
   const auto outcome = renderer.paint(layer, dab(camera, 100, 100, 10, 9));

@@ -114,7 +114,7 @@ TEST(Layers, removing_a_layer_or_a_model_gives_its_memory_back) {
   const auto gone = await<render::LayerHandle>(
       [&](auto done) { renderer->add_layer(model, ValueType::u8, 512, std::move(done)); });
   ASSERT_FALSE(gone);
-  EXPECT_EQ(gone.error().status, 404);
+  EXPECT_EQ(gone.error().code, ErrorCode::not_found);
 }
 
 TEST(Layers, memory_of_removed_layers_serves_layers_of_other_widths) {
@@ -132,7 +132,7 @@ TEST(Layers, memory_of_removed_layers_serves_layers_of_other_widths) {
     const auto refused = await<render::StrokeOutcome>(
         [&](auto done) { renderer->paint(narrow, dab(camera, 100, 100, 40), std::move(done)); });
     ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().status, 503);
+    EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
     renderer->remove_layer(wide);
     const auto outcome = renderer.paint(narrow, dab(camera, 100, 100, 40));
     EXPECT_EQ(outcome.tiles.size(), painted.tiles.size());
@@ -234,7 +234,7 @@ TEST_F(Leaving, more_layers_at_once_than_there_is_memory_for_are_refused) {
   const auto a = add(1), b = add(3), c = add(9);
   const auto refused = draw({a, b, c});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
   EXPECT_TRUE(draw({a})) << "the refused ones are let go";
 }
 
@@ -295,7 +295,7 @@ TEST(Layers, tiles_that_do_not_all_fit_leave_the_layer_as_it_was) {
   const auto refused =
       await<void>([&](auto done) { renderer->write_tiles(layer, tiles, std::move(done)); });
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
   EXPECT_EQ(renderer->layer_bytes_used(layer), empty);
   tiles.resize(256);
   renderer.write(layer, tiles);
@@ -312,7 +312,7 @@ TEST(Layers, painting_beyond_the_memory_budget_is_refused_and_changes_nothing) {
   const auto refused = await<render::StrokeOutcome>(
       [&](auto done) { renderer->paint(layer, dab(camera, 100, 100, 40), std::move(done)); });
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
   EXPECT_NE(refused.error().detail.find("budget of 12 MiB of GPU memory is used up"),
             std::string::npos)
       << refused.error().detail;
@@ -333,7 +333,7 @@ TEST(Layers, tiles_of_another_type_or_place_are_refused) {
     const auto result =
         await<void>([&](auto done) { renderer->write_tiles(layer, {wrong}, std::move(done)); });
     ASSERT_FALSE(result);
-    EXPECT_EQ(result.error().status, 422);
+    EXPECT_EQ(result.error().code, ErrorCode::invalid);
   }
 }
 

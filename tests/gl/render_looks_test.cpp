@@ -51,11 +51,11 @@ class Looks : public testing::Test {
   static void expect_near(const Color& got, const Color& wanted, int within = 1) {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], wanted[i], within) << "channel " << i;
   }
-  Problem refusal(const render::FrameRequest& request) {
+  Error refusal(const render::FrameRequest& request) {
     auto frame =
         await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
     EXPECT_FALSE(frame);
-    return frame ? Problem{} : frame.error();
+    return frame ? Error{} : frame.error();
   }
 
   TestRenderer renderer_;
@@ -104,18 +104,18 @@ TEST_F(Looks, a_layer_lies_over_them) {
 TEST_F(Looks, what_a_view_cannot_show_is_refused) {
   const auto look = add(plain({1, 2, 3, 255}));
   request_.looks.assign(5, {look, 1});
-  EXPECT_EQ(refusal(request_).status, 422);
+  EXPECT_EQ(refusal(request_).code, ErrorCode::invalid);
   request_.looks = {{look, std::nanf("")}};
-  EXPECT_EQ(refusal(request_).status, 422);
+  EXPECT_EQ(refusal(request_).code, ErrorCode::invalid);
   request_.looks = {{look + 1000, 1}};
-  EXPECT_EQ(refusal(request_).status, 404);
+  EXPECT_EQ(refusal(request_).code, ErrorCode::not_found);
   request_.looks = {{look, 1}};
   request_.light.direction = {0, 0, 0};
   EXPECT_EQ(refusal(request_).field, "light.direction");
   request_.light.direction = {0, 0, 1};
   const auto other = renderer_.add(make_scene(flat_square(), 256));
   request_.view = renderer_.add_view(other);
-  EXPECT_EQ(refusal(request_).status, 422) << "a look of another model";
+  EXPECT_EQ(refusal(request_).code, ErrorCode::invalid) << "a look of another model";
 }
 
 TEST_F(Looks, their_memory_is_counted_and_given_back) {
@@ -131,11 +131,11 @@ TEST_F(Looks, their_memory_is_counted_and_given_back) {
   const auto missing = await<render::LookHandle>([&](auto done) {
     renderer_->add_look(model_ + 1000, plain({0, 0, 0, 0}), std::move(done));
   });
-  EXPECT_EQ(missing.error().status, 404);
+  EXPECT_EQ(missing.error().code, ErrorCode::not_found);
   const auto empty = await<render::LookHandle>([&](auto done) {
     renderer_->add_look(model_, std::make_shared<const render::LookImage>(), std::move(done));
   });
-  EXPECT_EQ(empty.error().status, 422);
+  EXPECT_EQ(empty.error().code, ErrorCode::invalid);
 }
 
 TEST_F(Looks, a_picture_of_many_megabytes_arrives_whole) {

@@ -13,12 +13,15 @@ using Boxes = std::vector<Box>;
 
 const Box kBox{{0, 0, 0}, {1, 1, 1}}, kOther{{2, 2, 2}, {3, 3, 3}};
 
+using Answer = std::optional<ErrorCode>;
+constexpr Answer kDrawn = std::nullopt;
+
 // Requests are told apart by what they answered.
 class FrameTurns : public testing::Test {
  protected:
   FrameQueue::Pushed push(FrameQueue& queue, const FrameRequest& request, int number = 0) {
     return queue.push(request, [this, number](const Result<SharedFrame>& frame) {
-      answers_[number] = frame ? 200 : frame.error().status;
+      answers_[number] = frame ? kDrawn : Answer(frame.error().code);
     });
   }
   static FrameRequest whole(ViewHandle view, int width = 1) {
@@ -52,7 +55,7 @@ class FrameTurns : public testing::Test {
     return task->askers.front().view;
   }
 
-  std::map<int, int> answers_;
+  std::map<int, Answer> answers_;
 };
 
 TEST_F(FrameTurns, the_latest_request_of_a_view_wins_and_inherits_what_was_to_be_redrawn) {
@@ -60,8 +63,8 @@ TEST_F(FrameTurns, the_latest_request_of_a_view_wins_and_inherits_what_was_to_be
   EXPECT_FALSE(push(queue, part(1, {kBox}, 10), 1).displaced);
   const auto pushed = push(queue, part(1, {kOther}, 20), 2);
   ASSERT_TRUE(pushed.displaced);
-  (*pushed.displaced)(fail(409, "Superseded", ""));
-  EXPECT_EQ(answers_, (std::map<int, int>{{1, 409}}));
+  (*pushed.displaced)(fail(ErrorCode::superseded, "Superseded", ""));
+  EXPECT_EQ(answers_, (std::map<int, Answer>{{1, ErrorCode::superseded}}));
   const auto taken = queue.take();
   ASSERT_TRUE(taken);
   EXPECT_EQ(taken->request.width, 20);
@@ -330,7 +333,7 @@ TEST_F(FrameTurns, the_same_picture_of_several_views_is_drawn_once_by_the_view_t
   ASSERT_EQ(second->askers.size(), 2u);
   EXPECT_EQ(*second->request.changed, (Boxes{kBox, kOther}));
   for (const auto& asker : second->askers) asker.done(std::make_shared<const Frame>());
-  EXPECT_EQ(answers_, (std::map<int, int>{{2, 200}, {3, 200}}));
+  EXPECT_EQ(answers_, (std::map<int, Answer>{{2, kDrawn}, {3, kDrawn}}));
   EXPECT_FALSE(queue.take());
 }
 

@@ -460,24 +460,24 @@ TEST_F(Shade, views_give_their_buffers_up_when_memory_runs_out_and_draw_again) {
 }
 
 TEST_F(Shade, requests_that_cannot_be_drawn_are_refused_with_a_reason) {
-  const auto refused = [&](const render::FrameRequest& request, int status) {
+  const auto refused = [&](const render::FrameRequest& request, ErrorCode code) {
     const auto result =
         await<render::SharedFrame>([&](auto done) { renderer_->draw(request, std::move(done)); });
     ASSERT_FALSE(result.has_value());
-    EXPECT_EQ(result.error().status, status) << result.error().detail;
+    EXPECT_EQ(result.error().code, code) << result.error().detail;
   };
   auto request = request_;
   request.view += 1000;
-  refused(request, 404);
+  refused(request, ErrorCode::not_found);
   request = request_;
   request.width = 0;
-  refused(request, 422);
+  refused(request, ErrorCode::invalid);
   request = request_;
   request.layers = {
       {view_ + 1000, std::make_shared<Palette>(default_palette(ValueType::u8, true)), 1}};
-  refused(request, 404);
+  refused(request, ErrorCode::not_found);
   request.layers = {{filled_layer(ValueType::u8, 1), nullptr, 1}};
-  refused(request, 422);
+  refused(request, ErrorCode::invalid);
   EXPECT_EQ(renderer_.draw(request_).rects.at(0).width, kSize)
       << "a refused request leaves the view usable";
 }

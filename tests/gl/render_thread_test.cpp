@@ -26,7 +26,7 @@ struct Gate {
               opened.wait();
               return Step::done;
             },
-            [](const Problem&) {}};
+            [](const Error&) {}};
   }
 };
 
@@ -39,7 +39,7 @@ class Lanes : public testing::Test {
     hooks.stop = [] {};
     hooks.lost = [this] { return lost_.exchange(false); };
     hooks.recover = [this]() -> Result<void> {
-      if (broken_) return fail(503, "GPU lost", "No driver.");
+      if (broken_) return fail(ErrorCode::gpu_lost, "GPU lost", "No driver.");
       note("recovered");
       return {};
     };
@@ -54,7 +54,7 @@ class Lanes : public testing::Test {
       std::lock_guard lock(mutex_);
       return std::exchange(part_, std::nullopt);
     };
-    hooks.abort_frames = [](const Problem&) {};
+    hooks.abort_frames = [](const Error&) {};
     ASSERT_TRUE(thread_->start(std::move(hooks)));
   }
   void note(const std::string& what) {
@@ -70,8 +70,8 @@ class Lanes : public testing::Test {
               note(name);
               return --*left > 0 ? Step::more : Step::done;
             },
-            [this, name](const Problem& problem) {
-              note(name + " " + std::to_string(problem.status) + " " + problem.title);
+            [this, name](const Error& problem) {
+              note(name + " " + std::string(strata::name(problem.code)) + " " + problem.title);
             }};
   }
   std::vector<std::string> finish() {
@@ -80,7 +80,7 @@ class Lanes : public testing::Test {
                                                    done.set_value();
                                                    return Step::done;
                                                  },
-                                                 [&](const Problem&) { done.set_value(); }}));
+                                                 [&](const Error&) { done.set_value(); }}));
     done.get_future().wait();
     std::lock_guard lock(mutex_);
     return log_;
@@ -121,7 +121,7 @@ TEST_F(Lanes, an_edit_runs_between_the_slices_of_a_long_background_job) {
                                      }
                                      return --*left > 0 ? Step::more : Step::done;
                                    },
-                                   [](const Problem&) {}});
+                                   [](const Error&) {}});
   gate.open.set_value();
   EXPECT_EQ(finish(), (std::vector<std::string>{"slice", "edit", "slice", "slice"}));
 }
@@ -136,7 +136,7 @@ TEST_F(Lanes, nothing_overtakes_an_edit_that_waits_for_the_gpu_but_a_frame) {
                                   note("waiting edit");
                                   return Step::done;
                                 },
-                                [](const Problem&) {}});
+                                [](const Error&) {}});
   thread_->post(Lane::ordered, noted("next edit"));
   {
     std::lock_guard lock(mutex_);
@@ -145,7 +145,7 @@ TEST_F(Lanes, nothing_overtakes_an_edit_that_waits_for_the_gpu_but_a_frame) {
                          *frame_ran = true;
                          return Step::done;
                        },
-                       [](const Problem&) {}});
+                       [](const Error&) {}});
   }
   gate.open.set_value();
   EXPECT_EQ(finish(), (std::vector<std::string>{"frame", "waiting edit", "next edit"}));
@@ -159,7 +159,7 @@ TEST_F(Lanes, an_edit_that_yields_shares_the_gpu_with_frames_and_uploads_but_not
                                   note("slice");
                                   return --*left > 0 ? Step::yield : Step::done;
                                 },
-                                [](const Problem&) {}});
+                                [](const Error&) {}});
   thread_->post(Lane::ordered, noted("next edit"));
   thread_->post(Lane::background, noted("upload"));
   {
@@ -187,7 +187,7 @@ TEST_F(Lanes, a_small_frame_whose_turn_it_is_goes_between_the_slices_of_a_long_o
                          }
                          return --*left > 0 ? Step::more : Step::done;
                        },
-                       [](const Problem&) {}});
+                       [](const Error&) {}});
   }
   gate.open.set_value();
   EXPECT_EQ(finish(),
@@ -198,14 +198,14 @@ TEST_F(Lanes, a_flood_of_edits_lets_frames_through) {
   start();
   auto frame_ran = std::make_shared<bool>(false);
   thread_->post(Lane::ordered, {[frame_ran] { return *frame_ran ? Step::done : Step::more; },
-                                [](const Problem&) {}});
+                                [](const Error&) {}});
   {
     std::lock_guard lock(mutex_);
     frames_.push_back({[frame_ran] {
                          *frame_ran = true;
                          return Step::done;
                        },
-                       [](const Problem&) {}});
+                       [](const Error&) {}});
   }
   finish();  // never, were the frame to wait for the edit
   EXPECT_TRUE(*frame_ran);
@@ -220,7 +220,7 @@ TEST_F(Lanes, a_full_lane_refuses_but_not_what_must_not_be_lost) {
                                   gate.opened.wait();
                                   return Step::done;
                                 },
-                                [](const Problem&) {}});
+                                [](const Error&) {}});
   running.get_future().wait();
   EXPECT_TRUE(thread_->post(Lane::ordered, noted("a")));
   EXPECT_TRUE(thread_->post(Lane::ordered, noted("b")));
@@ -241,8 +241,8 @@ TEST_F(Lanes, a_lost_context_answers_all_that_waits_and_goes_on) {
   while (!was_noted("recovered")) std::this_thread::yield();
   thread_->post(Lane::ordered, noted("after"));
   const auto log = finish();
-  EXPECT_EQ(log, (std::vector<std::string>{"edit 503 GPU lost", "upload 503 GPU lost", "recovered",
-                                           "after"}));
+  EXPECT_EQ(log, (std::vector<std::string>{"edit gpu_lost GPU lost", "upload gpu_lost GPU lost",
+                                           "recovered", "after"}));
 }
 
 TEST_F(Lanes, the_thread_is_not_ready_while_a_lost_context_cannot_be_replaced) {
@@ -253,7 +253,7 @@ TEST_F(Lanes, the_thread_is_not_ready_while_a_lost_context_cannot_be_replaced) {
   thread_->wake();
   while (thread_->ready()) std::this_thread::yield();
   thread_->post(Lane::ordered, noted("edit"));
-  EXPECT_EQ(finish(), (std::vector<std::string>{"edit 503 GPU lost"}));
+  EXPECT_EQ(finish(), (std::vector<std::string>{"edit gpu_lost GPU lost"}));
   broken_ = false;
   while (!thread_->ready()) std::this_thread::yield();
   EXPECT_EQ(finish().back(), "recovered");
@@ -272,7 +272,7 @@ TEST_F(Lanes, stopping_answers_what_waits) {
   std::lock_guard lock(mutex_);
   // It may have run before the stop was seen, but it was answered once.
   ASSERT_EQ(log_.size(), 1u);
-  EXPECT_TRUE(log_[0] == "edit" || log_[0] == "edit 503 Renderer stopped");
+  EXPECT_TRUE(log_[0] == "edit" || log_[0] == "edit unavailable Renderer stopped");
 }
 
 TEST(Frames, many_superseded_requests_of_one_view_are_all_answered) {
@@ -288,7 +288,7 @@ TEST(Frames, many_superseded_requests_of_one_view_are_all_answered) {
     renderer->draw(request, [&](const Result<render::SharedFrame>& frame) {
       if (frame)
         ++drawn;
-      else if (frame.error().status == 409 && frame.error().title == "Superseded")
+      else if (frame.error().code == ErrorCode::superseded)
         ++superseded;
       else
         ++other;
@@ -316,11 +316,10 @@ TEST(LostContext, pending_work_is_answered_and_the_renderer_works_again_with_new
     renderer->run_on_gpu_thread_for_test([&] {
       renderer->lose_context_for_test();
       for (int i = 0; i < kStrokes; ++i) {
-        renderer->paint(
-            layer, dab(camera, 100, 100, 20), [&](Result<render::StrokeOutcome> outcome) {
-              if (!outcome && outcome.error().status == 503 && outcome.error().title == "GPU lost")
-                ++lost;
-            });
+        renderer->paint(layer, dab(camera, 100, 100, 20),
+                        [&](Result<render::StrokeOutcome> outcome) {
+                          if (!outcome && outcome.error().code == ErrorCode::gpu_lost) ++lost;
+                        });
       }
     });
   });
@@ -331,7 +330,7 @@ TEST(LostContext, pending_work_is_answered_and_the_renderer_works_again_with_new
   const auto old_layer = await<render::StrokeOutcome>(
       [&](auto done) { renderer->paint(layer, dab(camera, 100, 100, 20), std::move(done)); });
   ASSERT_FALSE(old_layer);
-  EXPECT_EQ(old_layer.error().status, 404);
+  EXPECT_EQ(old_layer.error().code, ErrorCode::not_found);
   render::FrameRequest request;
   request.view = view;
   request.camera = camera;

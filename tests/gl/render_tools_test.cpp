@@ -174,9 +174,9 @@ TEST(AngleLimit, strokes_whose_shape_or_angle_makes_no_sense_are_refused) {
   const auto field_of = [&](const StrokeBatch& stroke) {
     const auto result = await<render::StrokeOutcome>(
         [&](auto done) { renderer->paint(layer, stroke, std::move(done)); });
-    return result                         ? "painted"
-           : result.error().status == 422 ? result.error().field
-                                          : result.error().detail;
+    return result                                      ? "painted"
+           : result.error().code == ErrorCode::invalid ? result.error().field
+                                                       : result.error().detail;
   };
   for (const double angle : {0.0, -5.0, 90.1, std::nan("")}) {
     auto stroke = dab(camera, 50, 50, 10);

@@ -191,9 +191,9 @@ TEST_F(StreamViewer, what_cannot_be_drawn_is_told_once_and_tried_again_when_some
   Client& client = new_client();
   std::mutex mutex;
   std::condition_variable changed;
-  std::vector<Problem> told;
+  std::vector<Error> told;
   auto view = Viewer::create({&renderer_.get(), &encoder_}, model_, {}, client.send(),
-                             [&](const Problem& why) {
+                             [&](const Error& why) {
                                std::lock_guard lock(mutex);
                                told.push_back(why);
                                changed.notify_all();
@@ -207,7 +207,7 @@ TEST_F(StreamViewer, what_cannot_be_drawn_is_told_once_and_tried_again_when_some
   {
     std::unique_lock lock(mutex);
     ASSERT_TRUE(changed.wait_for(lock, kPatience, [&] { return !told.empty(); }));
-    EXPECT_EQ(told[0].status, 422);
+    EXPECT_EQ(told[0].code, ErrorCode::invalid);
   }
   view->set_camera(2, camera(0.1), false);  // refused again, but not told again
   view->set_style({styles(), {}, {}, {}});

@@ -42,7 +42,7 @@ Result<T> await(Call call) {
   return future.get();
 }
 
-// A renderer in a debug context with blocking calls, where any Problem fails the test. Its
+// A renderer in a debug context with blocking calls, where any Error fails the test. Its
 // destructor checks that no GL error was reported. STRATA_TEST_EDIT_PATH (`compute` or `kernel`)
 // says where strokes are painted if the options do not.
 class TestRenderer {

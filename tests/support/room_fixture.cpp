@@ -148,8 +148,8 @@ Result<room::EditAnswer> RoomTest::send(room::EditRequest edit) {
 }
 
 Result<room::EditAnswer> RoomTest::send_until_taken(const room::EditRequest& edit) {
-  Result<room::EditAnswer> answer = fail(503, "", "");
-  for (int i = 0; i < 6000 && !answer && answer.error().status == 503; ++i) {
+  Result<room::EditAnswer> answer = fail(ErrorCode::unavailable, "", "");
+  for (int i = 0; i < 6000 && !answer && is_server_failure(answer.error().code); ++i) {
     answer = send(edit);
     if (!answer) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -172,7 +172,7 @@ void RoomTest::expect_picture_of_journal() {
   options.shader_dir = shader_dir().string();
   auto renderer = render::Renderer::start(options);
   ASSERT_TRUE(renderer) << renderer.error().detail;
-  Result<render::Frame> expected = fail(503, "", "");
+  Result<render::Frame> expected = fail(ErrorCode::unavailable, "", "");
   {
     room::Rooms rooms(*store_, **renderer, stream::StreamContext{renderer->get(), encoder_.get()},
                       {});
@@ -181,7 +181,7 @@ void RoomTest::expect_picture_of_journal() {
     expected = (*fresh)->picture({}, camera({0.3, -1, 0.4}));
   }
   ASSERT_TRUE(expected) << expected.error().detail;
-  Result<render::Frame> shown = fail(503, "", "");
+  Result<render::Frame> shown = fail(ErrorCode::unavailable, "", "");
   for (int i = 0; i < 3000 && !(shown && shown->pixels == expected->pixels); ++i) {
     shown = room()->picture({}, camera({0.3, -1, 0.4}));
     if (!shown || shown->pixels != expected->pixels)

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "mesh/atlas.h"
 #include "mesh/triangle_mesh.h"
 

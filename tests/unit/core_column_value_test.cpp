@@ -29,7 +29,7 @@ json kept(const Column& of, const json& value) {
 void expect_refused(const Column& of, const json& value) {
   const auto checked = check_value(of, value, "values/column");
   ASSERT_FALSE(checked.has_value()) << value;
-  EXPECT_EQ(checked.error().status, 422);
+  EXPECT_EQ(checked.error().code, ErrorCode::invalid);
   EXPECT_EQ(checked.error().field, "values/column");
   EXPECT_FALSE(checked.error().detail.empty());
 }

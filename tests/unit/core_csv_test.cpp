@@ -51,7 +51,7 @@ TEST(Csv, a_problem_names_the_line) {
                                  const CsvLimits& limits = {}) {
     const auto csv = parse_csv(text, limits);
     ASSERT_FALSE(csv.has_value()) << text;
-    EXPECT_EQ(csv.error().status, 422);
+    EXPECT_EQ(csv.error().code, ErrorCode::invalid);
     EXPECT_NE(csv.error().detail.find(part), std::string::npos) << csv.error().detail;
   };
   expect_problem("a,b\n1,\"2\n", "(line");

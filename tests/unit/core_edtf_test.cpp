@@ -85,7 +85,7 @@ TEST(Edtf, what_is_no_period_is_refused_with_examples) {
                            "\xff\xfe"}) {
     const auto parsed = parse_edtf(text);
     ASSERT_FALSE(parsed.has_value()) << text;
-    EXPECT_EQ(parsed.error().status, 422);
+    EXPECT_EQ(parsed.error().code, ErrorCode::invalid);
     EXPECT_NE(parsed.error().detail.find("1560/.."), std::string::npos);
   }
 }

@@ -49,7 +49,7 @@ TEST(NamePattern, patterns_that_say_nothing_are_refused) {
                               "{a}1{b}2{c}3{d}4{e}5{f}6{g}7{h}8{i}"}) {
     const auto parsed = NamePattern::parse(pattern, "pattern");
     ASSERT_FALSE(parsed) << pattern;
-    EXPECT_EQ(parsed.error().status, 422);
+    EXPECT_EQ(parsed.error().code, ErrorCode::invalid);
     EXPECT_EQ(parsed.error().field, "pattern");
   }
 }

@@ -53,7 +53,8 @@ void expect_same(const Bytes& file, PictureFormat format, const Bytes& rgba, int
   ASSERT_TRUE(back) << back.error().detail;
   EXPECT_EQ(std::pair(back->width, back->height), std::pair(kWidth, kHeight));
   EXPECT_LE(worst_difference(back->rgba, rgba), tolerance);
-  EXPECT_EQ(decode_picture(file, kWidth - 1).error().status, 422) << "larger than a side may be";
+  EXPECT_EQ(decode_picture(file, kWidth - 1).error().code, ErrorCode::invalid)
+      << "larger than a side may be";
 }
 
 TEST(PictureFormats, a_tiff_keeps_its_pixels_however_it_is_stored) {
@@ -198,7 +199,7 @@ TEST(PictureFormats, every_format_that_is_cut_short_is_refused) {
     for (const std::size_t kept : {bytes.size() - 40, bytes.size() / 2, std::size_t{60}}) {
       const auto cut = decode_picture(std::span(bytes).first(kept));
       ASSERT_FALSE(cut) << name << ' ' << kept;
-      EXPECT_EQ(cut.error().status, 422) << name << ' ' << kept;
+      EXPECT_EQ(cut.error().code, ErrorCode::invalid) << name << ' ' << kept;
     }
 }
 
@@ -214,7 +215,7 @@ TEST(PictureFormats, formats_that_are_not_read_are_named) {
     bytes.resize(200);
     const auto refused =
         decode_picture({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-    return refused ? Problem{} : refused.error();
+    return refused ? Error{} : refused.error();
   };
   using namespace std::literals;
   EXPECT_THAT(says("\xabKTX 20\xbb\r\n\x1a\n").detail, HasSubstr("KTX2"));
@@ -223,7 +224,7 @@ TEST(PictureFormats, formats_that_are_not_read_are_named) {
                    "ftypavif"s)
                   .detail,
               HasSubstr("AVIF"));
-  EXPECT_EQ(says("\xabKTX 20\xbb\r\n\x1a\n").status, 415);
+  EXPECT_EQ(says("\xabKTX 20\xbb\r\n\x1a\n").code, ErrorCode::unsupported);
   const std::string text = says("newmtl a").detail;
   EXPECT_THAT(text, HasSubstr("TIFF, WebP, BMP and TGA"));
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -12,20 +13,20 @@
 namespace strata {
 namespace {
 
-const Problem kGone{499, "Client gone", "", {}};
+const Error kGone{ErrorCode::cancelled, "Client gone", "", {}};
 
 std::shared_ptr<Question> asked(const std::string& who, QuestionLimits limits = {},
                                 std::shared_ptr<QuestionTurns> turns = nullptr) {
   return std::make_shared<Question>(who, limits, std::move(turns));
 }
 
-int status_of(const std::function<void()>& work) {
+std::optional<ErrorCode> end_of(const std::function<void()>& work) {
   try {
     work();
   } catch (const QuestionEnded& ended) {
-    return ended.problem().status;
+    return ended.problem().code;
   }
-  return 200;
+  return std::nullopt;
 }
 
 void wait_until(const std::function<bool()>& holds) {
@@ -34,10 +35,10 @@ void wait_until(const std::function<bool()>& holds) {
 
 TEST(Question, goes_on_until_it_is_ended_and_the_first_reason_counts) {
   const auto question = asked("ann");
-  EXPECT_EQ(status_of([&] { question->check(); }), 200);
+  EXPECT_EQ(end_of([&] { question->check(); }), std::nullopt);
   question->end(kGone);
-  question->end({503, "Server stops", "", {}});
-  EXPECT_EQ(status_of([&] { question->check(); }), 499);
+  question->end({ErrorCode::unavailable, "Server stops", "", {}});
+  EXPECT_EQ(end_of([&] { question->check(); }), ErrorCode::cancelled);
   EXPECT_EQ(question->why()->title, "Client gone");
 }
 
@@ -47,22 +48,22 @@ TEST(Question, is_refused_before_it_takes_more_steps_or_memory_than_it_may) {
   question->spend(600);
   { const QuestionMemory memory(900); }
   { const QuestionMemory memory(900); }  // what was given back counts no more
-  EXPECT_EQ(status_of([&] { question->spend(600); }), 422);
+  EXPECT_EQ(end_of([&] { question->spend(600); }), ErrorCode::invalid);
   EXPECT_TRUE(question->ended());
   const auto other = asked("ann", {.bytes = 1000});
   const Question::Scope inner(other);
   const QuestionMemory first(900);
-  EXPECT_EQ(status_of([&] { const QuestionMemory second(200); }), 422);
+  EXPECT_EQ(end_of([&] { const QuestionMemory second(200); }), ErrorCode::invalid);
 }
 
 TEST(Question, takes_no_longer_than_it_may_unless_its_answer_is_on_its_way) {
   const auto question = asked("ann", {.time = std::chrono::milliseconds(1)});
   std::this_thread::sleep_for(std::chrono::milliseconds(2));
   question->let_take_time();
-  EXPECT_EQ(status_of([&] { question->check(); }), 200);
+  EXPECT_EQ(end_of([&] { question->check(); }), std::nullopt);
   const auto other = asked("ann", {.time = std::chrono::milliseconds(1)});
   std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  EXPECT_EQ(status_of([&] { other->check(); }), 503);
+  EXPECT_EQ(end_of([&] { other->check(); }), ErrorCode::timed_out);
 }
 
 TEST(Question, belongs_to_a_thread_while_its_scope_lasts) {
@@ -85,13 +86,13 @@ TEST(Question, ends_the_work_of_all_threads_that_work_on_it) {
     const auto question = asked("ann");
     const Question::Scope scope(question);
     std::atomic<int> done = 0;
-    EXPECT_EQ(status_of([&] {
+    EXPECT_EQ(end_of([&] {
                 mesh::parallel_for(threads, 100'000, [&](int) {
                   EXPECT_EQ(Question::current(), question.get());
                   if (++done == 10) question->end(kGone);
                 });
               }),
-              499);
+              ErrorCode::cancelled);
     EXPECT_GE(done, 10);
     EXPECT_LE(done, 10 + threads) << "each thread ends what it has begun, and begins nothing";
   }
@@ -168,10 +169,10 @@ TEST_F(Turns, who_waits_is_let_go_when_the_question_is_over) {
   const auto running = asked("ann", {}, turns_), waits = asked("bob", {}, turns_);
   const Question::Scope scope(running);
   const QuestionTurn turn;
-  int status = 0;
+  std::optional<ErrorCode> end;
   std::thread thread([&] {
     const Question::Scope own(waits);
-    status = status_of([&] {
+    end = end_of([&] {
       const QuestionTurn its;
       its.check();
     });
@@ -179,7 +180,7 @@ TEST_F(Turns, who_waits_is_let_go_when_the_question_is_over) {
   wait_until([&] { return turns_->waiting() == 1; });
   waits->end(kGone);
   thread.join();
-  EXPECT_EQ(status, 499);
+  EXPECT_EQ(end, ErrorCode::cancelled);
   EXPECT_EQ(turns_->running(), 1);
   EXPECT_EQ(turns_->waiting(), 0);
 }

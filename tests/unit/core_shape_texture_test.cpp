@@ -51,7 +51,7 @@ TEST(ShapeTexture, larger_and_smaller_pictures_are_scaled_by_the_mean_of_what_a_
   const auto stripes = [](int light) {
     return grey(1024, 1024, [light](int x, int) { return x % 4 < light ? 255 : 0; });
   };
-  EXPECT_EQ(shape_of(stripes(1), {}).error().status, 422);
+  EXPECT_EQ(shape_of(stripes(1), {}).error().code, ErrorCode::invalid);
   EXPECT_EQ(count(shape_of(stripes(3), {}).value()), kShapeSide * kShapeSide);
 }
 
@@ -77,13 +77,13 @@ TEST(ShapeTexture, the_tool_is_what_is_opaque_or_else_what_is_light_unless_it_is
   EXPECT_EQ(shape_of(black_left, {}).value(), left);
   EXPECT_EQ(shape_of(black_left, ShapePart::dark).value(), left)
       << "what is transparent is not dark";
-  EXPECT_EQ(shape_of(black_left, ShapePart::light).error().status, 422);
+  EXPECT_EQ(shape_of(black_left, ShapePart::light).error().code, ErrorCode::invalid);
 }
 
 TEST(ShapeTexture, a_picture_with_nothing_of_the_tool_is_refused_with_what_to_do) {
   const auto refused = shape_of(grey(64, 64, [](int, int) { return 20; }), {});
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 422);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid);
   EXPECT_NE(refused.error().detail.find("part=dark"), std::string::npos);
 }
 

@@ -69,12 +69,12 @@ TEST(TermsSkos, a_vocabulary_in_rdf_xml_becomes_terms_also_with_entities_for_its
 TEST(TermsSkos, what_is_broken_is_told_with_its_line) {
   const auto list = read_terms_skos("@prefix a: <http://a/> .\na:x a:y ;;; [ .", RdfSyntax::turtle);
   ASSERT_FALSE(list);
-  EXPECT_EQ(list.error().status, 422);
+  EXPECT_EQ(list.error().code, ErrorCode::invalid);
   EXPECT_THAT(list.error().detail, HasSubstr("line 2"));
-  EXPECT_EQ(read_terms_skos("<rdf:RDF", RdfSyntax::rdf_xml).error().status, 422);
-  EXPECT_EQ(read_terms_skos("\xff\xfe", RdfSyntax::turtle).error().status, 422);
+  EXPECT_EQ(read_terms_skos("<rdf:RDF", RdfSyntax::rdf_xml).error().code, ErrorCode::invalid);
+  EXPECT_EQ(read_terms_skos("\xff\xfe", RdfSyntax::turtle).error().code, ErrorCode::invalid);
   EXPECT_EQ(read_terms_skos("", RdfSyntax::turtle).error().title, "No terms");
-  EXPECT_EQ(read_terms_skos("", RdfSyntax::rdf_xml).error().status, 422);
+  EXPECT_EQ(read_terms_skos("", RdfSyntax::rdf_xml).error().code, ErrorCode::invalid);
 }
 
 TEST(TermsSkos, entities_that_grow_are_refused_and_files_are_not_read) {
@@ -90,7 +90,7 @@ TEST(TermsSkos, entities_that_grow_are_refused_and_files_are_not_read) {
       R"(<skos:Concept rdf:about="http://t.example/x"><skos:prefLabel>&k;</skos:prefLabel></skos:Concept></rdf:RDF>)";
   const auto grown = read_terms_skos(bomb, RdfSyntax::rdf_xml);
   ASSERT_FALSE(grown);
-  EXPECT_EQ(grown.error().status, 422);
+  EXPECT_EQ(grown.error().code, ErrorCode::invalid);
 
   const auto fetched = read_terms_skos(
       R"(<?xml version="1.0"?><!DOCTYPE r [<!ENTITY f SYSTEM "file:///etc/passwd">]>

@@ -122,16 +122,16 @@ TEST(Thumbnail, a_bomb_is_refused_by_its_header) {
   put(29, crc_of());
   const auto refused = make_thumbnail(png, 256);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 422);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid);
   EXPECT_NE(refused.error().detail.find("256 million pixels"), std::string::npos)
       << refused.error().detail;
 }
 
 TEST(Thumbnail, what_is_no_picture_is_refused) {
-  EXPECT_EQ(make_thumbnail(Bytes{'<', 's', 'v', 'g'}, 256).error().status, 415);
+  EXPECT_EQ(make_thumbnail(Bytes{'<', 's', 'v', 'g'}, 256).error().code, ErrorCode::unsupported);
   auto jpeg = encode_jpeg(test::gradient(64, 64), 64, 64, {});
   jpeg.resize(jpeg.size() / 2);
-  EXPECT_EQ(make_thumbnail(jpeg, 256).error().status, 422);
+  EXPECT_EQ(make_thumbnail(jpeg, 256).error().code, ErrorCode::invalid);
 }
 
 TEST(JpegFacts, cut_and_damaged_ones_say_nothing) {

@@ -354,7 +354,7 @@ TEST_F(Files, CancelledWritesEnd) {
     const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format, {},
                                       folder_ / "none", progress_);
     ASSERT_FALSE(written);
-    EXPECT_EQ(written.error().status, 499);
+    EXPECT_EQ(written.error().code, ErrorCode::cancelled);
   }
 }
 
@@ -366,7 +366,7 @@ TEST_F(Files, ADiskThatTakesNothingIsSaid) {
       const auto written = write_figure(layout.finish(2, {}, {}), drawing_of(layout), 100, format,
                                         {}, file, progress_);
       ASSERT_FALSE(written) << file << " " << static_cast<int>(format);
-      EXPECT_EQ(written.error().status, 507);
+      EXPECT_EQ(written.error().code, ErrorCode::storage_full);
     }
 }
 

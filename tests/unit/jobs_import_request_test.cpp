@@ -53,9 +53,9 @@ TEST(ImportRequest, the_ending_names_the_format) {
   }
   ImportRequest request = good();
   request.files[0].filename = "pot.jpg";
-  EXPECT_EQ(check(request).error().status, 415);
+  EXPECT_EQ(check(request).error().code, ErrorCode::unsupported);
   request.files[0].filename = "pot";
-  EXPECT_EQ(check(request).error().status, 422);
+  EXPECT_EQ(check(request).error().code, ErrorCode::invalid);
   request.files[0].filename = "";
   EXPECT_EQ(check(request).error().field, "filename");
   request.files.clear();
@@ -69,10 +69,10 @@ TEST(ImportRequest, one_of_several_files_is_the_scan) {
   request.files.push_back({"lid.ply", {}});
   const auto two = check(request);
   ASSERT_FALSE(two);
-  EXPECT_EQ(two.error().status, 422);
+  EXPECT_EQ(two.error().code, ErrorCode::invalid);
   EXPECT_NE(two.error().detail.find("pot.obj, lid.ply"), std::string::npos) << two.error().detail;
   request.files = {{"pot.mtl", {}}, {"pot.jpg", {}}};
-  EXPECT_EQ(check(request).error().status, 415);
+  EXPECT_EQ(check(request).error().code, ErrorCode::unsupported);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ TEST(JobsQueue, a_job_that_ends_names_its_model) {
 TEST(JobsQueue, a_job_that_fails_keeps_its_problem) {
   JobQueue queue;
   const auto id = queue.add(1, [](Progress&) -> Result<JobResult> {
-    return fail(422, "Mesh file refused", "No triangle.", "file");
+    return fail(ErrorCode::invalid, "Mesh file refused", "No triangle.", "file");
   });
   const auto status = wait_until_over(queue, *id);
   EXPECT_EQ(status.state, JobState::failed);
@@ -71,8 +71,8 @@ TEST(JobsQueue, a_job_that_throws_fails_and_the_next_one_runs) {
       queue.add(1, [](Progress&) -> Result<JobResult> { throw std::runtime_error("planted"); });
   const auto huge = queue.add(1, [](Progress&) -> Result<JobResult> { throw std::bad_alloc(); });
   const auto good = queue.add(1, [](Progress&) -> Result<JobResult> { return 7; });
-  EXPECT_EQ(wait_until_over(queue, *bad).problem->status, 500);
-  EXPECT_EQ(wait_until_over(queue, *huge).problem->status, 507);
+  EXPECT_EQ(wait_until_over(queue, *bad).problem->code, ErrorCode::internal);
+  EXPECT_EQ(wait_until_over(queue, *huge).problem->code, ErrorCode::out_of_memory);
   EXPECT_EQ(wait_until_over(queue, *good).state, JobState::done);
 }
 
@@ -117,7 +117,7 @@ TEST(JobsQueue, more_than_64_waiting_jobs_are_refused) {
     EXPECT_TRUE(queue.add(1, [](Progress&) -> Result<JobResult> { return 1; }));
   const auto refused = queue.add(1, [](Progress&) -> Result<JobResult> { return 1; });
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_EQ(refused.error().code, ErrorCode::busy);
   gate.opened.set_value();
 }
 

@@ -239,14 +239,14 @@ TEST(mesh_atlas, stops_when_cancelled) {
   progress.cancel();
   const auto atlas = make_atlas(test::sphere(40), kLowest, progress);
   ASSERT_FALSE(atlas);
-  EXPECT_EQ(atlas.error().status, 499);
+  EXPECT_EQ(atlas.error().code, ErrorCode::cancelled);
 }
 
 TEST(mesh_atlas, refuses_more_pieces_than_texels_can_hold_apart) {
   Progress progress;
   const auto atlas = make_atlas(test::separate_triangles(3000), 128, progress);
   ASSERT_FALSE(atlas);
-  EXPECT_EQ(atlas.error().status, 422);
+  EXPECT_EQ(atlas.error().code, ErrorCode::invalid);
   EXPECT_THAT(atlas.error().detail, testing::HasSubstr("higher lowest resolution"));
 }
 
@@ -255,7 +255,7 @@ TEST(mesh_atlas, refuses_a_soup_of_faces_before_it_tries_to_pack_it) {
   Progress progress;
   const auto atlas = make_atlas(test::separate_triangles(200'000), 1024, progress);
   ASSERT_FALSE(atlas);
-  EXPECT_EQ(atlas.error().status, 422);
+  EXPECT_EQ(atlas.error().code, ErrorCode::invalid);
   EXPECT_THAT(atlas.error().detail, testing::HasSubstr("200000 separate pieces"));
 }
 
@@ -268,7 +268,7 @@ TEST(mesh_atlas, stops_packing_when_cancelled) {
   const auto atlas = make_atlas(test::separate_triangles(200'000), 2048, progress);
   canceller.join();
   ASSERT_FALSE(atlas);
-  EXPECT_EQ(atlas.error().status, 499);
+  EXPECT_EQ(atlas.error().code, ErrorCode::cancelled);
 }
 
 TEST(mesh_atlas, refuses_a_mesh_without_area) {
@@ -278,7 +278,7 @@ TEST(mesh_atlas, refuses_a_mesh_without_area) {
   Progress progress;
   const auto atlas = make_atlas(line, kLowest, progress);
   ASSERT_FALSE(atlas);
-  EXPECT_EQ(atlas.error().status, 422);
+  EXPECT_EQ(atlas.error().code, ErrorCode::invalid);
 }
 
 TEST(mesh_atlas, of_real_scans_uses_most_texels_with_little_stretch) {

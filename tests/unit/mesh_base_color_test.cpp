@@ -201,7 +201,7 @@ TEST(BaseColor, pixels_that_are_lost_are_said_with_the_sizes) {
   const auto refused =
       mesh::bake_base_color(poor.mesh, poor.atlas, poor.repairs, poor.progress, &little);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 503);
+  EXPECT_EQ(refused.error().code, ErrorCode::out_of_memory);
 }
 
 TEST(BaseColor, a_tiff_becomes_a_png_of_its_pixels) {
@@ -269,8 +269,8 @@ TEST(BaseColor, a_cancelled_bake_stops) {
   squares.progress.cancel();
   EXPECT_EQ(mesh::bake_base_color(squares.mesh, squares.atlas, squares.repairs, squares.progress)
                 .error()
-                .status,
-            499);
+                .code,
+            ErrorCode::cancelled);
 }
 
 TEST(TextureSampler, textures_go_on_outside_as_their_wrap_says) {

@@ -110,7 +110,7 @@ TEST(DetailLevelsThatAreCancelled, are_refused) {
   progress.cancel();
   const auto levels = mesh::make_detail_levels(geometry, progress);
   ASSERT_FALSE(levels);
-  EXPECT_EQ(levels.error().status, 499);
+  EXPECT_EQ(levels.error().code, ErrorCode::cancelled);
 }
 
 TEST(ClusterBoxes, hold_their_triangles_and_make_up_the_box) {

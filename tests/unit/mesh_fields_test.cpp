@@ -200,7 +200,7 @@ TEST(SurfaceSamples, can_be_cancelled) {
   progress.cancel();
   const auto cancelled = SurfaceSamples::make(*geometry_of(test::sphere(24)), 0.1f, progress);
   ASSERT_FALSE(cancelled);
-  EXPECT_EQ(cancelled.error().status, 499);
+  EXPECT_EQ(cancelled.error().code, ErrorCode::cancelled);
 }
 
 TEST(Roughness, is_the_distance_of_a_bump_to_the_plane_around_it) {
@@ -242,7 +242,7 @@ TEST(Openness, can_be_cancelled_while_its_tree_is_made) {
   progress.cancel();
   const auto openness = Openness::make(geometry_of(test::sphere(200)), 10, 64, progress);
   ASSERT_FALSE(openness);
-  EXPECT_EQ(openness.error().status, 499);
+  EXPECT_EQ(openness.error().code, ErrorCode::cancelled);
 }
 
 TEST(Openness, at_the_foot_of_a_wall_is_a_half) {
@@ -363,7 +363,7 @@ TEST(SampledField, leaves_out_corners_without_a_value_and_can_be_cancelled) {
   const auto cancelled = SampledField::make(
       geometry, normals, 10, [](const glm::vec3&, const glm::vec3&) { return 1.0f; }, progress);
   ASSERT_FALSE(cancelled);
-  EXPECT_EQ(cancelled.error().status, 499);
+  EXPECT_EQ(cancelled.error().code, ErrorCode::cancelled);
 }
 
 TEST(SurfaceNormals, are_smooth_on_a_ball_and_those_of_the_faces_on_a_cube) {

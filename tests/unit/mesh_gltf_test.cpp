@@ -383,7 +383,7 @@ TEST_P(MeshGltfFaults, is_refused_by_name) {
   GetParam().harm(builder.json);
   const auto loaded = load_text(builder.glb(), "a.glb");
   ASSERT_FALSE(loaded);
-  EXPECT_EQ(loaded.error().status, 422);
+  EXPECT_EQ(loaded.error().code, ErrorCode::invalid);
   EXPECT_THAT(loaded.error().detail, HasSubstr(GetParam().says));
 }
 

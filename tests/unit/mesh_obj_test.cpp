@@ -194,7 +194,7 @@ class MalformedObj : public testing::TestWithParam<BadObj> {};
 TEST_P(MalformedObj, is_refused_with_its_line) {
   const auto loaded = load_text(GetParam().bytes, "a.obj");
   ASSERT_FALSE(loaded);
-  EXPECT_EQ(loaded.error().status, 422);
+  EXPECT_EQ(loaded.error().code, ErrorCode::invalid);
   EXPECT_THAT(loaded.error().detail, HasSubstr(GetParam().says));
 }
 

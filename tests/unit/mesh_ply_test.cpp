@@ -133,7 +133,7 @@ TEST_P(PlyEncodings, a_file_cut_anywhere_is_refused_and_never_read_beyond_its_en
     Progress progress;
     const auto loaded = mesh::load_mesh_bytes(cut, "a.ply", progress);
     ASSERT_FALSE(loaded) << size;
-    EXPECT_EQ(loaded.error().status, 422);
+    EXPECT_EQ(loaded.error().code, ErrorCode::invalid);
   }
 }
 
@@ -196,7 +196,7 @@ TEST(MeshPly, a_face_of_more_corners_than_are_taken_is_refused_before_they_are_r
   for (int i = 0; i < corners; ++i) file.put(std::uint8_t{9});
   const auto loaded = load_text(file.bytes(), "a.ply");
   ASSERT_FALSE(loaded);
-  EXPECT_EQ(loaded.error().status, 422);
+  EXPECT_EQ(loaded.error().code, ErrorCode::invalid);
   EXPECT_THAT(loaded.error().detail, HasSubstr("face 0 (byte"));
   EXPECT_THAT(loaded.error().detail, HasSubstr("more than 4096 corners"));
 }
@@ -221,7 +221,7 @@ TEST(MeshPly, more_triangles_than_are_taken_are_refused_whatever_makes_them) {
     EXPECT_EQ(most->mesh.triangle_count(), 6u);
     const auto more = mesh::parse_ply(*test::files_of({{"a.ply", text}}), progress, 5);
     ASSERT_FALSE(more);
-    EXPECT_EQ(more.error().status, 422);
+    EXPECT_EQ(more.error().code, ErrorCode::invalid);
     EXPECT_THAT(more.error().detail, HasSubstr("more than 5 triangles"));
   }
 }
@@ -277,7 +277,7 @@ class MalformedPly : public testing::TestWithParam<BadPly> {};
 TEST_P(MalformedPly, is_refused_with_its_place) {
   const auto loaded = load_text(GetParam().bytes, "a.ply");
   ASSERT_FALSE(loaded);
-  EXPECT_EQ(loaded.error().status, 422);
+  EXPECT_EQ(loaded.error().code, ErrorCode::invalid);
   EXPECT_EQ(loaded.error().title, "Mesh file refused");
   EXPECT_THAT(loaded.error().detail, HasSubstr(GetParam().says));
 }

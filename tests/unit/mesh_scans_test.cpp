@@ -65,7 +65,7 @@ json import_in_child(const std::vector<mesh::InputFile>& files) {
   const auto start = std::chrono::steady_clock::now();
   Progress progress;
   auto loaded = mesh::load_mesh(files, progress);
-  if (!loaded) return {{"problem", loaded.error().detail}, {"status", loaded.error().status}};
+  if (!loaded) return {{"problem", loaded.error().detail}, {"code", name(loaded.error().code)}};
   json told{
       {"triangles", loaded->mesh.triangle_count()}, {"positions", loaded->mesh.positions.size()},
       {"area", mesh::surface_area(loaded->mesh)},   {"colors", !loaded->mesh.vertex_colors.empty()},
@@ -79,11 +79,11 @@ json import_in_child(const std::vector<mesh::InputFile>& files) {
   }
   auto atlas = mesh::keep_uvs(loaded->mesh, kResolution, progress);
   if (!atlas) atlas = mesh::make_atlas(loaded->mesh, kResolution, progress);
-  if (!atlas) return {{"problem", atlas.error().detail}, {"status", atlas.error().status}};
+  if (!atlas) return {{"problem", atlas.error().detail}, {"code", name(atlas.error().code)}};
   told["atlas"] = atlas->report.source;
   loaded->repairs.insert(loaded->repairs.end(), atlas->repairs.begin(), atlas->repairs.end());
   auto color = mesh::bake_base_color(loaded->mesh, *atlas, loaded->repairs, progress);
-  if (!color) return {{"problem", color.error().detail}, {"status", color.error().status}};
+  if (!color) return {{"problem", color.error().detail}, {"code", name(color.error().code)}};
   if (*color)
     told["look"] = {{"width", (*color)->width},
                     {"bytes", (*color)->bytes.size()},
@@ -279,7 +279,7 @@ TEST_F(MeshScans, bad_files_are_refused_and_the_fault_is_named) {
   for (const auto& [name, says] : refused()) {
     const Outcome outcome = import({name});
     ASSERT_TRUE(outcome.told.contains("problem")) << name;
-    EXPECT_EQ(outcome.told["status"], 422) << name;
+    EXPECT_EQ(outcome.told["code"], "invalid") << name;
     EXPECT_THAT(outcome.told["problem"].get<std::string>(), HasSubstr(says)) << name;
   }
   const Outcome alone = import({"mask_bali/mask.gltf"});

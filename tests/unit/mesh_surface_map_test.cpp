@@ -471,7 +471,7 @@ TEST(mesh_surface_map, stops_when_cancelled) {
   progress.cancel();
   const auto map = bake_surface_map(overlapping_squares(), kResolution, progress);
   ASSERT_FALSE(map);
-  EXPECT_EQ(map.error().status, 499);
+  EXPECT_EQ(map.error().code, ErrorCode::cancelled);
 }
 
 TEST(mesh_surface_map, refuses_resolutions_that_are_no_whole_tiles) {

@@ -122,12 +122,13 @@ TEST(TexelOwners, do_not_depend_on_the_number_of_threads) {
 TEST(TexelOwners, can_be_cancelled_and_refuse_an_impossible_resolution) {
   const Geometry geometry = build_geometry(test::sphere(12), Atlas{});
   Progress progress;
-  EXPECT_EQ(bake_texel_owners(geometry, 100, progress).error().status, 400);
+  EXPECT_EQ(bake_texel_owners(geometry, 100, progress).error().code, ErrorCode::malformed);
   progress.cancel();
-  EXPECT_EQ(bake_texel_owners(geometry, kResolution, progress).error().status, 499);
+  EXPECT_EQ(bake_texel_owners(geometry, kResolution, progress).error().code, ErrorCode::cancelled);
   TexelOwners owners;
   const auto nothing = [](std::size_t) { return std::optional<std::uint32_t>(); };
-  EXPECT_EQ(paint_texels(owners, ValueType::f32, nothing, progress).error().status, 499);
+  EXPECT_EQ(paint_texels(owners, ValueType::f32, nothing, progress).error().code,
+            ErrorCode::cancelled);
 }
 
 }  // namespace

@@ -156,7 +156,7 @@ TEST(Archive, what_is_no_single_scan_is_refused) {
   for (const auto& [bytes, says] : bad) {
     const auto loaded = load_texts({{"a.zip", bytes}});
     ASSERT_FALSE(loaded) << says;
-    EXPECT_EQ(loaded.error().status, 422);
+    EXPECT_EQ(loaded.error().code, ErrorCode::invalid);
     EXPECT_THAT(loaded.error().detail, HasSubstr(says));
   }
 }

@@ -167,7 +167,7 @@ TEST(mesh_uv_check, stops_when_cancelled) {
   progress.cancel();
   const auto atlas = keep_uvs(test::cube_with_face_charts(), 512, progress);
   ASSERT_FALSE(atlas);
-  EXPECT_EQ(atlas.error().status, 499);
+  EXPECT_EQ(atlas.error().code, ErrorCode::cancelled);
 }
 
 class ScanUvs : public testing::Test {

@@ -67,7 +67,7 @@ TEST(VertexProperties, of_a_file_that_ends_early_or_has_none_such_are_refused) {
     for (std::size_t length = 0; length + 16 < whole.size(); length += 3) {
       const auto cut = read_vertex_property(bytes_of(whole.substr(0, length)), "quality");
       if (cut) continue;  // what is cut off comes after the vertices
-      EXPECT_EQ(cut.error().status, 422);
+      EXPECT_EQ(cut.error().code, ErrorCode::invalid);
     }
     EXPECT_FALSE(
         read_vertex_property(bytes_of(whole.substr(0, whole.size() / 2 + 120)), "quality"));

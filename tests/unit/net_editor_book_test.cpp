@@ -109,7 +109,7 @@ TEST_F(Editors, a_connection_has_so_many_records_and_no_more) {
   EXPECT_TRUE(begin({4, 0}, ada)) << "one that it has is no more";
   const auto refused = book.begin(1, {4, most}, ada, false, tell);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 422);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid);
   EXPECT_EQ(refused.error().field, "key");
   EXPECT_TRUE(begin({4, most}, bea));
   EXPECT_FALSE(begin({4, most}, ada, true)) << "nor by taking over";

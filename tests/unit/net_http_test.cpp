@@ -73,7 +73,7 @@ TEST(Target, what_is_not_an_address_is_refused) {
     Request request;
     const auto result = parse_target(target, request);
     ASSERT_FALSE(result) << target;
-    EXPECT_EQ(result.error().status, 400);
+    EXPECT_EQ(result.error().code, ErrorCode::malformed);
   }
 }
 
@@ -91,7 +91,7 @@ TEST(Respond, only_the_first_answer_counts) {
   {
     const Respond respond([&](Response response) { answers.push_back(response.status); });
     respond(empty_response(204));
-    respond(Problem{500, "Too late", "", {}});
+    respond(Error{ErrorCode::internal, "Too late", "", {}});
   }
   EXPECT_EQ(answers, std::vector<int>{204});
 }
@@ -105,7 +105,8 @@ TEST(Respond, a_dropped_request_still_gets_an_answer) {
 }
 
 TEST(Problems, carry_what_rfc_9457_names_and_the_field) {
-  const Response response = problem_response({422, "Not a point", "Write it so.", "coords"});
+  const Response response =
+      problem_response({ErrorCode::invalid, "Not a point", "Write it so.", "coords"});
   EXPECT_EQ(response.header("Content-Type"), "application/problem+json");
   const auto json = nlohmann::json::parse(response.body);
   EXPECT_EQ(json["status"], 422);
@@ -173,7 +174,7 @@ TEST(Host, is_an_address_or_one_of_the_servers_names) {
         "localhost.evil.example", ":8080", " "}) {
     const auto checked = check_host(asking(host), names);
     ASSERT_FALSE(checked) << host;
-    EXPECT_EQ(checked.error().status, 421);
+    EXPECT_EQ(checked.error().code, ErrorCode::misdirected);
     EXPECT_EQ(checked.error().field, "Host");
   }
 }
@@ -187,7 +188,7 @@ TEST(Host, of_scripts_with_a_token_may_be_any) {
 
 TEST(Origin, without_an_origin_the_browser_must_say_same_origin) {
   Request request = from("", true);
-  EXPECT_EQ(check_same_origin(request, {}).error().status, 403);
+  EXPECT_EQ(check_same_origin(request, {}).error().code, ErrorCode::forbidden);
   request.headers.emplace_back("sec-fetch-site", "same-origin");
   EXPECT_TRUE(check_same_origin(request, {}));
   request.headers.back().second = "cross-site";
@@ -420,14 +421,14 @@ TEST(Upload, the_files_of_a_scan_come_together_with_their_folders) {
     return std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator());
   };
   const auto before = files_there();
-  EXPECT_EQ(take(part("a.obj", "1") + part("a.obj", "2") + "--X--\r\n").error().status, 422);
+  EXPECT_EQ(take(part("a.obj", "1") + part("a.obj", "2") + "--X--\r\n").error().code,
+            ErrorCode::invalid);
   std::string many;
   for (std::size_t i = 0; i <= kMostFormFiles; ++i) many += part("f" + std::to_string(i), "x");
-  EXPECT_EQ(take(many + "--X--\r\n").error().status, 413);
-  EXPECT_EQ(take("--X\r\nContent-Disposition: form-data; name=\"f\"\r\n\r\nv\r\n--X--\r\n")
-                .error()
-                .status,
-            415);
+  EXPECT_EQ(take(many + "--X--\r\n").error().code, ErrorCode::too_large);
+  EXPECT_EQ(
+      take("--X\r\nContent-Disposition: form-data; name=\"f\"\r\n\r\nv\r\n--X--\r\n").error().code,
+      ErrorCode::unsupported);
   EXPECT_EQ(files_there(), before) << "what was refused left nothing behind";
 }
 
@@ -476,7 +477,7 @@ TEST(Upload, broken_forms_are_refused) {
     const auto upload = take_upload(
         upload_of(folder.write("1.body", body), "multipart/form-data; boundary=X"), folder.path());
     ASSERT_FALSE(upload) << body;
-    EXPECT_EQ(upload.error().status, 400) << body;
+    EXPECT_EQ(upload.error().code, ErrorCode::malformed) << body;
   }
   EXPECT_FALSE(take_upload(upload_of(folder.write("2.body", ""), ""), folder.path()));
 }
@@ -485,7 +486,7 @@ TEST(ByteBudget, what_is_held_bounds_what_may_be_taken) {
   ByteBudget budget(100);
   auto first = budget.take(60);
   ASSERT_TRUE(first);
-  EXPECT_EQ(budget.take(50).error().status, 503);
+  EXPECT_EQ(budget.take(50).error().code, ErrorCode::busy);
   auto second = budget.take(40);
   ASSERT_TRUE(second);
   auto copy = *first;

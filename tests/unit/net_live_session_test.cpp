@@ -49,7 +49,8 @@ class FakeMember final : public room::Member {
   void edits() override {}
   void pointer(std::optional<room::Pointing> at) override { pointers.push_back(at); }
   Result<void> look_together(bool leading, const std::optional<Uuid>& follow) override {
-    if (follow == kGone) return fail(404, "Not here", "Who is to be followed has left.", "follow");
+    if (follow == kGone)
+      return fail(ErrorCode::not_found, "Not here", "Who is to be followed has left.", "follow");
     together.emplace_back(leading, follow);
     return {};
   }
@@ -81,7 +82,7 @@ class FakeRoom final : public room::Room {
   std::vector<Layer> layers() const override { return {layer_}; }
   Result<Layer> layer(const std::string& ref) const override {
     if (ref == "cracks" || ref == "7") return layer_;
-    return fail(404, "No such layer", "There is no layer '" + ref + "'.");
+    return fail(ErrorCode::not_found, "No such layer", "There is no layer '" + ref + "'.");
   }
   std::int64_t sequence() const override { return 0; }
   std::int64_t durable_sequence() const override { return 0; }
@@ -121,7 +122,7 @@ class FakeRoom final : public room::Room {
   }
   Result<Layer> layer_computed(std::int64_t, const std::string&, std::int64_t,
                                const std::map<std::int64_t, std::int64_t>&) override {
-    return fail(500, "Not here", "");
+    return fail(ErrorCode::internal, "Not here", "");
   }
   void records_changed(std::int64_t) override {}
   Result<void> check_expression(const Expression&, const std::string&, Visibility) const override {
@@ -201,7 +202,7 @@ class FakeRoom final : public room::Room {
   std::vector<Look> looks() const override { return {look_}; }
   Result<Look> look(const std::string& ref) const override {
     if (ref == "uv-light" || ref == "9") return look_;
-    return fail(404, "No such look", "There is no look '" + ref + "'.");
+    return fail(ErrorCode::not_found, "No such look", "There is no look '" + ref + "'.");
   }
   Result<Look> create_look(Look look, std::span<const std::uint8_t>,
                            const store::FirstAnswer<Look>&) override {
@@ -248,7 +249,7 @@ struct Live : testing::Test {
     shared->check_record = [](std::int64_t project_id,
                               const EditorBook::Record& record) -> Result<void> {
       if (project_id == 1 && record.table == 4) return {};
-      return fail(404, "No such table", "There is none.", "table");
+      return fail(ErrorCode::not_found, "No such table", "There is none.", "table");
     };
     room = std::make_shared<FakeRoom>();
     connect();
@@ -294,7 +295,7 @@ struct Live : testing::Test {
 TEST_F(Live, a_tool_of_the_site_is_looked_for_on_a_worker_before_the_stroke_begins) {
   const auto shape = test::shape(test::in_flag);
   shared->find_tool = [&](const std::string& ref) -> Result<FoundTool> {
-    if (ref != "12") return fail(404, "Not found", "There is no such tool.");
+    if (ref != "12") return fail(ErrorCode::not_found, "Not found", "There is no such tool.");
     return FoundTool{12, shape};
   };
   hello();
@@ -348,7 +349,8 @@ TEST_F(Live, a_deleted_model_is_told_before_the_connection_ends) {
 
 TEST_F(Live, a_view_that_cannot_be_drawn_is_a_problem) {
   hello();
-  session->view_refused(2, {422, "Palette not usable", "A palette has points.", "layers"});
+  session->view_refused(
+      2, {ErrorCode::invalid, "Palette not usable", "A palette has points.", "layers"});
   ASSERT_EQ(socket->of("problem").size(), 1u);
   EXPECT_EQ(socket->of("problem")[0]["status"], 422);
 }
@@ -576,7 +578,7 @@ TEST_F(Live, an_edit_that_is_taken_back_is_told_as_unsaved) {
   const json batch = extend(stroke, 0, {{1, 1}});
   say(batch);
   room->edits[0].applied({1, 1, 0, false});
-  room->edits[0].saved(fail(503, "Not saved", "The database is away."));
+  room->edits[0].saved(fail(ErrorCode::unavailable, "Not saved", "The database is away."));
   ASSERT_EQ(socket->of("unsaved").size(), 1u);
   EXPECT_EQ(socket->of("unsaved")[0]["ids"], json::array({batch["id"]}));
   EXPECT_TRUE(socket->of("problem").empty());
@@ -590,7 +592,7 @@ TEST_F(Live, an_edit_that_is_refused_is_a_problem_with_its_id) {
        {"layer", 7},
        {"edit", {{"op", "fill"}, {"mode", "where"}, {"where", "true"}, {"value", 1}}}});
   ASSERT_EQ(room->edits.size(), 1u);
-  room->edits[0].saved(fail(429, "Too many edits", "Wait."));
+  room->edits[0].saved(fail(ErrorCode::too_many_requests, "Too many edits", "Wait."));
   ASSERT_EQ(socket->of("problem").size(), 1u);
   EXPECT_EQ(socket->of("problem")[0]["ref"], id);
   EXPECT_EQ(socket->of("problem")[0]["status"], 429);

@@ -6,6 +6,8 @@
 #include <future>
 #include <thread>
 
+#include "protocol/problem.h"
+
 namespace strata::net {
 namespace {
 
@@ -59,7 +61,7 @@ TEST_F(Desk, refuses_one_s_too_many_with_429_and_all_s_too_many_with_503) {
   begun.get_future().wait();
   const auto ask = [&](const std::string& user) {
     const auto posted = desk_.post(desk_.begin(from(user)), [] {});
-    return posted ? 200 : posted.error().status;
+    return posted ? 200 : protocol::http_status(posted.error().code);
   };
   for (int i = 0; i < 3; ++i) EXPECT_EQ(ask("ann"), 200);
   EXPECT_EQ(ask("ann"), 429);
@@ -78,10 +80,10 @@ TEST_F(Desk, a_question_is_the_current_one_where_it_is_answered_and_ends_with_th
     try {
       for (;;) check_question();
     } catch (const QuestionEnded& ended) {
-      answered.set_value(ended.problem().status);
+      answered.set_value(protocol::http_status(ended.problem().code));
     }
   }));
-  desk_.end_all({503, "Server stops", "", {}});
+  desk_.end_all({ErrorCode::unavailable, "Server stops", "", {}});
   EXPECT_EQ(answered.get_future().get(), 503);
   EXPECT_TRUE(desk_.begin(from("bob"))->ended()) << "later ones are over before they begin";
 }

@@ -80,7 +80,7 @@ TEST(RecordCsv, a_first_row_that_cannot_be_understood_is_refused) {
        {"", "\n\n", "colour\nred\n", "code,Código\na,b\n", "key,key\n1,2\n", "code,\na,b\n"}) {
     const auto rows = read_records_csv(text, units());
     ASSERT_FALSE(rows.has_value()) << text;
-    EXPECT_EQ(rows.error().status, 422);
+    EXPECT_EQ(rows.error().code, ErrorCode::invalid);
   }
 }
 

@@ -80,7 +80,7 @@ TEST(Router, an_unknown_query_parameter_is_refused_by_name) {
   const auto match = router.find(Method::get, request.segments);
   const auto refused = check_query(*match.route, request);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().status, 400);
+  EXPECT_EQ(refused.error().code, ErrorCode::malformed);
   EXPECT_EQ(refused.error().field, "colour");
   EXPECT_NE(refused.error().detail.find("limit, offset"), std::string::npos);
 }

@@ -35,7 +35,7 @@ TEST(SignInGate, guesses_for_a_name_are_few_from_an_address_and_bounded_from_man
   for (int i = 0; i < 600; ++i) at.pass("10.1." + std::to_string(i) + ".1", "ada");
   const auto refused = at.gate.pass("10.2.0.1", "ada", at.now);
   ASSERT_FALSE(refused.has_value());
-  EXPECT_EQ(refused.error().status, 429);
+  EXPECT_EQ(refused.error().code, ErrorCode::too_many_requests);
   EXPECT_TRUE(at.pass("10.2.0.1", "grace"));
 }
 

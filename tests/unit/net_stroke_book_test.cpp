@@ -59,7 +59,7 @@ TEST_F(Book, a_reconnect_begins_the_same_stroke_again) {
 
 TEST_F(Book, another_brush_under_a_known_id_is_refused) {
   ASSERT_TRUE(book.begin(kAnna, stroke, tool(5)));
-  EXPECT_EQ(book.begin(kAnna, stroke, tool(6)).error().status, 409);
+  EXPECT_EQ(book.begin(kAnna, stroke, tool(6)).error().code, ErrorCode::conflict);
 }
 
 TEST_F(Book, a_gap_and_a_taken_number_are_refused) {
@@ -69,12 +69,12 @@ TEST_F(Book, a_gap_and_a_taken_number_are_refused) {
   ASSERT_FALSE(gap);
   EXPECT_EQ(gap.error().field, "n");
   EXPECT_NE(gap.error().detail.find("number 1"), std::string::npos);
-  EXPECT_EQ(book.extend(kAnna, stroke, ids[1], 0, {{2, 2}}).error().status, 409);
+  EXPECT_EQ(book.extend(kAnna, stroke, ids[1], 0, {{2, 2}}).error().code, ErrorCode::conflict);
 }
 
 TEST_F(Book, strokes_of_others_are_unknown) {
   ASSERT_TRUE(book.begin(kAnna, stroke, tool()));
-  EXPECT_EQ(book.extend(kBert, stroke, ids[0], 0, {{1, 1}}).error().status, 404);
+  EXPECT_EQ(book.extend(kBert, stroke, ids[0], 0, {{1, 1}}).error().code, ErrorCode::not_found);
   EXPECT_TRUE(book.open_strokes(kBert).empty());
 }
 
@@ -83,7 +83,7 @@ TEST_F(Book, an_ended_stroke_takes_repeats_but_nothing_new) {
   ASSERT_TRUE(book.extend(kAnna, stroke, ids[0], 0, {{1, 1}}));
   ASSERT_TRUE(book.end(kAnna, stroke));
   EXPECT_TRUE(book.extend(kAnna, stroke, ids[0], 0, {{1, 1}}));
-  EXPECT_EQ(book.extend(kAnna, stroke, ids[1], 1, {{2, 2}}).error().status, 409);
+  EXPECT_EQ(book.extend(kAnna, stroke, ids[1], 1, {{2, 2}}).error().code, ErrorCode::conflict);
   ASSERT_TRUE(book.begin(kAnna, stroke, tool()))
       << "a resend after a reconnect begins with the begin";
   EXPECT_TRUE(book.extend(kAnna, stroke, ids[1], 1, {{2, 2}}));
@@ -128,7 +128,7 @@ TEST_F(Book, after_a_restart_a_stroke_goes_on_from_the_journals_point) {
   ASSERT_TRUE(batch);
   EXPECT_EQ(batch->path, (Path{{9, 9}, {10, 10}}));
   EXPECT_EQ(book.extend(kAnna, stroke, ids[1], 8, {{11, 11}})->path, (Path{{10, 10}, {11, 11}}));
-  EXPECT_EQ(book.extend(kAnna, stroke, ids[2], 3, {{1, 1}}).error().status, 409);
+  EXPECT_EQ(book.extend(kAnna, stroke, ids[2], 3, {{1, 1}}).error().code, ErrorCode::conflict);
 }
 
 TEST_F(Book, a_batch_starts_with_the_width_that_the_one_before_ended_with) {

@@ -202,8 +202,9 @@ TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {
   std::string asked;
   const FindTool find = [&](const std::string& ref) -> Result<FoundTool> {
     asked = ref;
-    if (ref == "gone") return fail(503, "Database unavailable", "Wait.");
-    if (ref != "flag" && ref != "12") return fail(404, "Not found", "There is no such tool.");
+    if (ref == "gone") return fail(ErrorCode::unavailable, "Database unavailable", "Wait.");
+    if (ref != "flag" && ref != "12")
+      return fail(ErrorCode::not_found, "Not found", "There is no such tool.");
     return FoundTool{12, shape};
   };
   auto edit = stroke(1);
@@ -222,9 +223,9 @@ TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {
     EXPECT_EQ(batch.texture, shape);
     EXPECT_EQ(request->record["shape"], 12) << "whatever becomes of its slug";
   }
-  EXPECT_EQ(with_shape("star").error().status, 422);
+  EXPECT_EQ(with_shape("star").error().code, ErrorCode::invalid);
   EXPECT_EQ(with_shape("star").error().field, "shape");
-  EXPECT_EQ(with_shape("gone").error().status, 503);
+  EXPECT_EQ(with_shape("gone").error().code, ErrorCode::unavailable);
   asked.clear();
   const auto square = with_shape("square");
   EXPECT_FALSE(names_tool(edit));
@@ -342,7 +343,7 @@ TEST(Wire, a_job_tells_what_went_wrong) {
   jobs::JobStatus job;
   job.id = 3;
   job.state = jobs::JobState::failed;
-  job.problem = Problem{422, "Bad file", "Line 3.", {}};
+  job.problem = Error{ErrorCode::invalid, "Bad file", "Line 3.", {}};
   const auto json = to_json(job);
   EXPECT_EQ(json["state"], "failed");
   EXPECT_EQ(json["problem"]["title"], "Bad file");

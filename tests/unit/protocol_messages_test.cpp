@@ -12,6 +12,7 @@
 
 #include "protocol/fast_json.h"
 #include "protocol/parse.h"
+#include "protocol/problem.h"
 #include "strata_dirs.h"
 
 namespace strata::protocol {
@@ -109,7 +110,7 @@ TEST(ProtocolMessages, every_invalid_fixture_is_refused_with_the_field_it_names)
   const auto all = fixtures("invalid");
   ASSERT_GT(all.size(), 70u);
   for (const auto& f : all) {
-    Problem problem;
+    Error problem;
     if (is_client_message(f)) {
       const auto message = parse_client_message(f.text());
       ASSERT_FALSE(message) << f.name;
@@ -121,7 +122,7 @@ TEST(ProtocolMessages, every_invalid_fixture_is_refused_with_the_field_it_names)
     }
     EXPECT_EQ(problem.field, f.content["field"].get<std::string>())
         << f.name << ": " << problem.title << ": " << problem.detail;
-    EXPECT_EQ(problem.status, f.content["status"].get<int>()) << f.name;
+    EXPECT_EQ(http_status(problem.code), f.content["status"].get<int>()) << f.name;
     EXPECT_FALSE(problem.title.empty()) << f.name;
     EXPECT_GT(problem.detail.size(), 10u) << f.name;
   }
@@ -153,8 +154,8 @@ TEST(ProtocolMessages, a_refused_message_still_tells_its_id) {
   std::string ref;
   EXPECT_FALSE(parse_client_message(R"({"op":"undo","id":"abc"})", &ref));
   EXPECT_EQ(ref, "abc");
-  const json problem =
-      to_json(problem_message(Problem{422, "Member missing", "It must be given.", "layer"}, ref));
+  const json problem = to_json(problem_message(
+      Error{ErrorCode::invalid, "Member missing", "It must be given.", "layer"}, ref));
   EXPECT_TRUE(validate(Schema::ProblemMessage, problem));
   EXPECT_EQ(problem["ref"], "abc");
 }
@@ -165,8 +166,8 @@ TEST(ProtocolMessages, a_problem_keeps_its_bounds_whatever_was_sent) {
   for (const std::size_t before : {0, 1, 2}) {
     std::string sent(before, 'x');
     for (int i = 0; i < 5000; ++i) sent += "語";
-    const Problem problem{422, "Not a language of the tour", "The tour has no `" + sent + "`.",
-                          "title." + sent};
+    const Error problem{ErrorCode::invalid, "Not a language of the tour",
+                        "The tour has no `" + sent + "`.", "title." + sent};
     const json body = problem_body(problem), message = to_json(problem_message(problem));
     EXPECT_TRUE(validate(Schema::Problem, body));
     EXPECT_TRUE(validate(Schema::ProblemMessage, message));
@@ -201,7 +202,7 @@ TEST(ProtocolMessages, a_long_list_of_numbers_is_looked_through_to_its_end) {
                                      {json(7), field}}) {
       const auto refused = from_json<PositionsRequest>(with(place, item));
       ASSERT_FALSE(refused) << item;
-      EXPECT_EQ(refused.error().status, 422);
+      EXPECT_EQ(refused.error().code, ErrorCode::invalid);
       EXPECT_EQ(refused.error().field, wrong) << item;
     }
   }
@@ -230,14 +231,14 @@ TEST(ProtocolMessages, a_list_that_is_too_long_is_refused_before_its_items_are_b
   const auto problem_of = [](const std::string& text) {
     const auto read = parse<PositionsRequest>(text, {16u << 20, 32});
     EXPECT_FALSE(read);
-    return read ? Problem{} : read.error();
+    return read ? Error{} : read.error();
   };
   const std::string bom = "\xEF\xBB\xBF";  // which the careful reader alone takes
-  const Problem expected =
+  const Error expected =
       from_json<PositionsRequest>(json{{"points", json(100'001, {1, 2, 3})}}).error();
   for (const std::string& before : {std::string(), bom}) {
-    const Problem problem = problem_of(before + R"({"points":[)" + points + R"([1,2,3]]})");
-    EXPECT_EQ(problem.status, 422);
+    const Error problem = problem_of(before + R"({"points":[)" + points + R"([1,2,3]]})");
+    EXPECT_EQ(problem.code, ErrorCode::invalid);
     EXPECT_EQ(problem.field, "points");
     EXPECT_EQ(problem.title, expected.title);
     EXPECT_EQ(problem.detail, expected.detail);
@@ -275,7 +276,7 @@ TEST(ProtocolMessages, a_text_is_refused_by_its_size_before_it_is_read) {
   const auto message = parse_client_message(
       "{\"op\":\"hello\",\"client\":\"" + std::string(100, 'x') + "\"}", nullptr, limits);
   ASSERT_FALSE(message);
-  EXPECT_EQ(message.error().status, 413);
+  EXPECT_EQ(message.error().code, ErrorCode::too_large);
 }
 
 TEST(ProtocolMessages, nesting_is_taken_up_to_the_limit_and_not_beyond) {
@@ -293,7 +294,7 @@ TEST(ProtocolMessages, nesting_is_taken_up_to_the_limit_and_not_beyond) {
 TEST(ProtocolMessages, invalid_utf_8_is_refused) {
   const auto parsed = parse_json("{\"op\":\"\xC3\x28\"}");
   ASSERT_FALSE(parsed);
-  EXPECT_EQ(parsed.error().status, 400);
+  EXPECT_EQ(parsed.error().code, ErrorCode::malformed);
 }
 
 TEST(ProtocolMessages, what_only_the_careful_reader_takes_is_still_taken) {

@@ -49,7 +49,7 @@ TEST(ColorKeys, that_are_none_are_refused) {
     const auto keys = parse_color_keys(text, "colors");
     ASSERT_FALSE(keys) << text;
     EXPECT_EQ(keys.error().field, "colors");
-    EXPECT_EQ(keys.error().status, 422);
+    EXPECT_EQ(keys.error().code, ErrorCode::invalid);
   }
 }
 

@@ -133,7 +133,7 @@ TEST(Dabs, that_would_take_for_ever_are_refused) {
   const std::vector<Dab> dabs(10'000, dab_at(sphere.map, {0, 1, 0}, 3));
   const auto painted = paint_dabs(sphere.map, sphere.graph, dabs, 10, ValueType::u8);
   ASSERT_FALSE(painted);
-  EXPECT_EQ(painted.error().status, 422);
+  EXPECT_EQ(painted.error().code, ErrorCode::invalid);
 }
 
 }  // namespace

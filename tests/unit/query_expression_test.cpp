@@ -519,7 +519,7 @@ class BadExpression : public testing::TestWithParam<Bad> {};
 TEST_P(BadExpression, is_refused_with_the_reason_and_the_place) {
   const auto parsed = parse_condition(GetParam().text, "edit.where");
   ASSERT_FALSE(parsed);
-  EXPECT_EQ(parsed.error().status, 422);
+  EXPECT_EQ(parsed.error().code, ErrorCode::invalid);
   EXPECT_EQ(parsed.error().field, "edit.where");
   EXPECT_THAT(parsed.error().detail, testing::HasSubstr(GetParam().says));
 }
@@ -584,7 +584,7 @@ TEST(Expression, a_layer_that_is_not_there_is_named) {
   ASSERT_TRUE(condition);
   const auto selection = select_where({*condition}, views(), full_map(), "where");
   ASSERT_FALSE(selection);
-  EXPECT_EQ(selection.error().status, 422);
+  EXPECT_EQ(selection.error().code, ErrorCode::invalid);
   EXPECT_THAT(selection.error().detail, testing::HasSubstr("'salt'"));
 }
 

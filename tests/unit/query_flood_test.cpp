@@ -323,7 +323,8 @@ TEST(Flood, is_the_same_on_any_number_of_threads_and_stops_when_cancelled) {
   EXPECT_EQ(again->to_right, surface.graph.to_right);
   EXPECT_EQ(again->to_upper, surface.graph.to_upper);
   progress.cancel();
-  EXPECT_EQ(mesh::build_texel_graph(surface.geometry, surface.map, progress).error().status, 499);
+  EXPECT_EQ(mesh::build_texel_graph(surface.geometry, surface.map, progress).error().code,
+            ErrorCode::cancelled);
 }
 
 TEST(Flood, a_texture_coordinate_finds_its_texel_also_from_the_gutter) {

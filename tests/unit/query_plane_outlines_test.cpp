@@ -198,7 +198,7 @@ TEST(PlaneOutlines, borders_with_too_many_corners_are_refused_before_they_are_la
     for (std::uint16_t x = 0; x < 16; ++x) view.snapshot.tiles[{x, y}] = board;
   const auto made = plane_outlines(view, surface.geometry, surface.map, kEach, {});
   ASSERT_FALSE(made);
-  EXPECT_EQ(made.error().status, 422);
+  EXPECT_EQ(made.error().code, ErrorCode::invalid);
 }
 
 TEST(PlaneOutlines, they_end_with_their_question) {
@@ -213,7 +213,7 @@ TEST(PlaneOutlines, they_end_with_their_question) {
       ring.emplace_back(x + std::cos(i * kPi / 10'000), std::sin(i * kPi / 10'000), 0);
     discs.emplace_back(FlatPolygon{{ring}});
   }
-  question->end({499, "Given up", "Nobody waits any more."});
+  question->end({ErrorCode::cancelled, "Given up", "Nobody waits any more."});
   EXPECT_THROW(outlines(surface, [](glm::vec3) { return 1; }), QuestionEnded);
   EXPECT_THROW(FlatArea::joined(std::move(discs), 1e-6), QuestionEnded) << "GEOS asks, too";
 }

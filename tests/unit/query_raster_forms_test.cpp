@@ -325,7 +325,7 @@ TEST(QueryRasterForms, the_first_number_that_does_not_fit_is_named_with_its_plac
          {decode_npy(layer_of(wrong.type), write_npy({"<" + form.name(), form}, value)),
           decode_tiff(layer_of(wrong.type), write_tiff(tiff))}) {
       ASSERT_FALSE(tiles);
-      EXPECT_EQ(tiles.error().status, 422);
+      EXPECT_EQ(tiles.error().code, ErrorCode::invalid);
       EXPECT_NE(tiles.error().detail.find("column 7 of row 3"), std::string::npos)
           << tiles.error().detail;
       EXPECT_NE(tiles.error().detail.find(std::string("The value ") + wrong.text),
@@ -339,7 +339,7 @@ TEST(QueryRasterForms, types_that_no_layer_takes_are_refused_and_named) {
   for (const char* type : {"<c8", "<f16", "|S4", "<M8", "<u3", "<b4", "?u1"}) {
     const auto tiles = decode_npy(layer_of(ValueType::u8), write_npy({type, {'u', 1}}, value_at));
     ASSERT_FALSE(tiles) << type;
-    EXPECT_EQ(tiles.error().status, 422);
+    EXPECT_EQ(tiles.error().code, ErrorCode::invalid);
     EXPECT_NE(tiles.error().detail.find(type), std::string::npos) << tiles.error().detail;
   }
 }
@@ -359,7 +359,7 @@ TEST(QueryRasterForms, files_with_a_mask_or_planes_that_are_cut_or_damaged_never
           broken[broken.size() - 1 - random() % std::min<std::size_t>(broken.size(), 900)] ^=
               static_cast<std::uint8_t>(1u << random() % 8);
         const auto tiles = decode_tiff(layer_of(ValueType::f32), broken);
-        EXPECT_TRUE(tiles || tiles.error().status == 422);
+        EXPECT_TRUE(tiles || tiles.error().code == ErrorCode::invalid);
       }
     }
 }

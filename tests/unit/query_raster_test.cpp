@@ -210,8 +210,8 @@ TEST(QueryRaster, a_png_of_other_than_small_whole_numbers_is_not_possible) {
     if (holds(kFormats[1], type)) continue;
     const auto bytes = encode_png(layer_of(type), {});
     ASSERT_FALSE(bytes);
-    EXPECT_EQ(bytes.error().status, 406);
-    EXPECT_EQ(decode_png(layer_of(type), {}).error().status, 415);
+    EXPECT_EQ(bytes.error().code, ErrorCode::not_acceptable);
+    EXPECT_EQ(decode_png(layer_of(type), {}).error().code, ErrorCode::unsupported);
   }
 }
 
@@ -224,7 +224,7 @@ TEST(QueryRaster, another_size_is_refused_and_named) {
     ASSERT_TRUE(bytes);
     const auto other_size = format.decode(large, *bytes);
     ASSERT_FALSE(other_size);
-    EXPECT_EQ(other_size.error().status, 422);
+    EXPECT_EQ(other_size.error().code, ErrorCode::invalid);
     EXPECT_NE(other_size.error().detail.find("256"), std::string::npos)
         << other_size.error().detail;
     EXPECT_NE(other_size.error().detail.find("512 × 512"), std::string::npos)
@@ -232,7 +232,7 @@ TEST(QueryRaster, another_size_is_refused_and_named) {
     if (format.decode != decode_png) continue;
     const auto other_type = format.decode(wide, *bytes);
     ASSERT_FALSE(other_type);
-    EXPECT_EQ(other_type.error().status, 422);
+    EXPECT_EQ(other_type.error().code, ErrorCode::invalid);
   }
   const Layer whole = layer_of(ValueType::i32, 256), real = layer_of(ValueType::f32, 256);
   EXPECT_FALSE(decode_tiff(real, *encode_tiff(whole, paint(whole))))

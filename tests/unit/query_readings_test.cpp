@@ -42,7 +42,7 @@ TEST(Readings, that_cannot_be_read_are_refused_with_the_line) {
   for (const auto& [text, says] : cases) {
     const auto readings = parse_readings(text);
     ASSERT_FALSE(readings) << text;
-    EXPECT_EQ(readings.error().status, 422);
+    EXPECT_EQ(readings.error().code, ErrorCode::invalid);
     EXPECT_THAT(readings.error().detail, testing::HasSubstr(says)) << text;
   }
   std::string many = "x,y,z,value\n";

@@ -186,7 +186,7 @@ TEST(Shapefile, that_cannot_be_read_is_refused_with_the_reason) {
   for (const Case& c : cases) {
     const auto map = parse(c.shp, c.dbf);
     ASSERT_FALSE(map) << c.says;
-    EXPECT_EQ(map.error().status, 422);
+    EXPECT_EQ(map.error().code, ErrorCode::invalid);
     EXPECT_THAT(map.error().detail, testing::HasSubstr(c.says));
   }
 }

@@ -24,11 +24,11 @@ TEST_F(FollowersTest, one_follows_one_at_a_time) {
 
 TEST_F(FollowersTest, nobody_follows_themselves_however_long_the_way_round) {
   for (const Uuid& way : {anna, bea, carl})
-    EXPECT_EQ(followers.follow(way, way).error().status, 409);
+    EXPECT_EQ(followers.follow(way, way).error().code, ErrorCode::conflict);
   ASSERT_TRUE(followers.follow(anna, bea));
   EXPECT_EQ(followers.follow(bea, anna).error().field, "follow");
   ASSERT_TRUE(followers.follow(bea, carl));
-  EXPECT_EQ(followers.follow(carl, anna).error().status, 409);
+  EXPECT_EQ(followers.follow(carl, anna).error().code, ErrorCode::conflict);
   EXPECT_FALSE(followers.leader_of(carl)) << "what is refused changes nothing";
   ASSERT_TRUE(followers.stop(bea));
   EXPECT_TRUE(followers.follow(carl, anna)) << "the way is open";

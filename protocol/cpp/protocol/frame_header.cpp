@@ -23,8 +23,8 @@ T get(std::span<const std::uint8_t> bytes, std::size_t offset) {
   return static_cast<T>(value);
 }
 
-tl::unexpected<Problem> broken(const char* field, std::string detail) {
-  return fail(400, "Frame not usable", std::move(detail), field);
+tl::unexpected<Error> broken(const char* field, std::string detail) {
+  return fail(ErrorCode::malformed, "Frame not usable", std::move(detail), field);
 }
 
 // Rules 5 to 10 of frame.md: what must hold between the members.
@@ -104,7 +104,7 @@ Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message) {
   h.render_us = get<std::uint32_t>(message, 44);
   h.encode_us = get<std::uint32_t>(message, 48);
   h.payload_bytes = get<std::uint32_t>(message, 52);
-  if (auto ok = check(h); !ok) return tl::unexpected<Problem>(ok.error());
+  STRATA_TRY(check(h));
   if (message.size() - kFrameHeaderBytes != h.payload_bytes)
     return broken("payload_bytes", "The payload is exactly the rest of the message.");
   return h;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/problem.h"
+#include "core/error.h"
 
 // The binary message that carries one rectangle of a picture: see protocol/frame.md, whose rules
 // are named in brackets.
@@ -38,7 +38,7 @@ struct FrameHeader {
 std::array<std::uint8_t, kFrameHeaderBytes> encode_frame_header(const FrameHeader& header);
 
 // The header of a whole message; the payload is what follows kFrameHeaderBytes. Refused: a message
-// that is too short or too long, and every header that breaks a rule; the Problem's field is the
+// that is too short or too long, and every header that breaks a rule; the Error's field is the
 // name of the member.
 Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message);
 

@@ -117,10 +117,10 @@ nlohmann::json write_core(const IdOrSlug& value) {
 
 Result<void> named_in_message(Result<void> checked, const std::string& parent) {
   if (checked) return checked;
-  Problem problem = checked.error();
+  Error problem = checked.error();
   if (problem.field.starts_with('.')) problem.field.erase(0, 1);
   problem.field = join_field(parent, problem.field);
-  return tl::unexpected<Problem>(std::move(problem));
+  return tl::unexpected<Error>(std::move(problem));
 }
 
 }  // namespace strata::protocol

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/error.h"
 #include "core/layer.h"
 #include "core/light.h"
 #include "core/model.h"
-#include "core/problem.h"
 #include "core/uuid.h"
 
 // What the generated reading and writing is made of. JSON that comes in here has passed `validate`,

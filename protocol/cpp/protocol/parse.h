@@ -8,18 +8,16 @@
 #include "protocol/strict_json.h"
 #include "protocol/validate.h"
 
-// The boundary: text from outside becomes a value, or a Problem that names the field. Thread-safe.
+// The boundary: text from outside becomes a value, or an Error that names the field. Thread-safe.
 namespace strata::protocol {
 
 // From JSON already parsed (for example a part of a larger object); `field` is where it stands.
 template <class T>
 Result<T> from_json(const nlohmann::json& json, const std::string& field = {}) {
-  if (auto ok = validate(kSchemaOf<T>, json, field); !ok)
-    return tl::unexpected<Problem>(ok.error());
+  STRATA_TRY(validate(kSchemaOf<T>, json, field));
   T value;
   read(json, value);
-  if constexpr (requires { check(value, field); })
-    if (auto ok = check(value, field); !ok) return tl::unexpected<Problem>(ok.error());
+  if constexpr (requires { check(value, field); }) STRATA_TRY(check(value, field));
   return value;
 }
 
@@ -28,9 +26,8 @@ template <class T>
 Result<T> parse(std::string_view text, const JsonLimits& limits = {}) {
   JsonLimits bounded = limits;
   bounded.lists = &list_limits(kSchemaOf<T>);
-  auto json = parse_json(text, bounded);
-  if (!json) return tl::unexpected<Problem>(json.error());
-  return from_json<T>(*json);
+  auto json = STRATA_TRY(parse_json(text, bounded));
+  return from_json<T>(json);
 }
 
 // A text message of the WebSocket. `ref`, when given, becomes the message's `id` as far as it can
@@ -43,11 +40,6 @@ Result<ServerMessage> parse_server_message(std::string_view text,
 // One line of JSON, ready to send.
 std::string to_text(const ClientMessage& message);
 std::string to_text(const ServerMessage& message);
-
-ProblemMessage problem_message(const Problem& problem, const std::optional<std::string>& ref = {});
-
-// The body of an `application/problem+json` answer.
-nlohmann::json problem_body(const Problem& problem);
 
 // "12" or "cracks": what the store and the routes take.
 std::string to_ref(const LayerRef& layer);

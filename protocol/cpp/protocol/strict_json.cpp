@@ -20,7 +20,7 @@ class StrictBuilder : public nlohmann::json_sax<json> {
       : max_depth_(max_depth), root_lists_(lists) {}
 
   json take() { return std::move(root_); }
-  Problem take_problem() { return std::move(problem_); }
+  Error take_problem() { return std::move(problem_); }
 
   bool null() override { return put(nullptr); }
   bool boolean(bool value) override { return put(value); }
@@ -28,7 +28,7 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   bool number_unsigned(number_unsigned_t value) override { return put(value); }
   bool number_float(number_float_t value, const string_t& text) override {
     if (!std::isfinite(value))
-      return refuse(422, "Number not usable",
+      return refuse(ErrorCode::invalid, "Number not usable",
                     "The number " + text.substr(0, 40) + " is too large.");
     return put(value);
   }
@@ -42,7 +42,7 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   bool key(string_t& name) override {
     if (has_nul(name)) return false;
     if (open_.back()->contains(name))
-      return refuse(422, "Member given twice",
+      return refuse(ErrorCode::invalid, "Member given twice",
                     "The member \"" + name.substr(0, 100) + "\" stands twice in one object.");
     key_ = std::move(name);
     return true;
@@ -59,9 +59,9 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& error) override {
     if (error.id == 406)
-      return refuse(422, "Number not usable",
+      return refuse(ErrorCode::invalid, "Number not usable",
                     "A number near byte " + std::to_string(position) + " is too large.");
-    return refuse(400, "Malformed JSON",
+    return refuse(ErrorCode::malformed, "Malformed JSON",
                   "The text stops being JSON near byte " + std::to_string(position) + ".");
   }
 
@@ -85,7 +85,7 @@ class StrictBuilder : public nlohmann::json_sax<json> {
     if (open_.empty() || !open_.back()->is_array()) return true;
     const ListLimits* limits = lists_.back();
     if (!limits || !limits->most || open_.back()->size() < *limits->most) return true;
-    refuse(422, "Value not allowed", "It must be " + limits->wanted + ".");
+    refuse(ErrorCode::invalid, "Value not allowed", "It must be " + limits->wanted + ".");
     for (std::size_t i = 1; i < steps_.size(); ++i)
       problem_.field +=
           (steps_[i].starts_with('[') || problem_.field.empty() ? "" : ".") + steps_[i];
@@ -104,7 +104,7 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   bool open(json&& container) {
     if (static_cast<int>(open_.size()) >= max_depth_)
       return refuse(
-          422, "Nested too deeply",
+          ErrorCode::invalid, "Nested too deeply",
           "At most " + std::to_string(max_depth_) + " objects and lists may lie in each other.");
     lists_.push_back(next_lists());
     if (open_.empty())
@@ -123,11 +123,12 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   }
   bool has_nul(const std::string& text) {
     if (text.find('\0') == std::string::npos) return false;
-    refuse(422, "Text not usable", "A text holds the character U+0000, which cannot be stored.");
+    refuse(ErrorCode::invalid, "Text not usable",
+           "A text holds the character U+0000, which cannot be stored.");
     return true;
   }
-  bool refuse(int status, const char* title, std::string detail) {
-    problem_ = Problem{status, title, std::move(detail), {}};
+  bool refuse(ErrorCode code, const char* title, std::string detail) {
+    problem_ = Error{code, title, std::move(detail), {}};
     return false;
   }
 
@@ -138,25 +139,26 @@ class StrictBuilder : public nlohmann::json_sax<json> {
   std::vector<const ListLimits*> lists_;  // of each that is open; null: none
   std::vector<std::string> steps_;        // from the one before to each that is open
   std::string key_;
-  Problem problem_;
+  Error problem_;
 };
 
 }  // namespace
 
 Result<json> parse_json(std::string_view text, const JsonLimits& limits) {
   if (text.size() > limits.max_bytes)
-    return fail(413, "Too much at once",
+    return fail(ErrorCode::too_large, "Too much at once",
                 "At most " + std::to_string(limits.max_bytes) +
                     " bytes of JSON are taken; these are " + std::to_string(text.size()) + ".");
   // Shorter ones are built sooner than looked through twice, and validated then.
   constexpr std::size_t kLong = 64 * 1024;
   if (limits.lists && text.size() >= kLong)
     if (const auto too_long = find_long_list(text, *limits.lists))
-      return fail(422, "Value not allowed", "It must be " + too_long->wanted + ".", too_long->path);
+      return fail(ErrorCode::invalid, "Value not allowed", "It must be " + too_long->wanted + ".",
+                  too_long->path);
   if (auto value = read_json_fast(text, limits.max_depth)) return std::move(*value);
   StrictBuilder builder(limits.max_depth, limits.lists);
   if (!json::sax_parse(text.begin(), text.end(), &builder))
-    return tl::unexpected<Problem>(builder.take_problem());
+    return tl::unexpected<Error>(builder.take_problem());
   return builder.take();
 }
 

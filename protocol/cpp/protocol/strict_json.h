@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "core/problem.h"
+#include "core/error.h"
 #include "protocol/list_limits.h"
 
 namespace strata::protocol {

@@ -255,8 +255,8 @@ std::string ruled_out(const json& choice, const json& value) {
   return {};
 }
 
-tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::string& field,
-                                const valijson::ValidationResults::Error& error) {
+tl::unexpected<Error> explain(Schema schema, const json& whole, const std::string& field,
+                              const valijson::ValidationResults::Error& error) {
   std::string path = field;
   const json* value = &whole;
   const json* rule = &definitions().at(std::string(name(schema)));
@@ -291,12 +291,12 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
     const auto exclusive = exclusive_members(rule);
     if (!exclusive.empty() && member == exclusive.front()) {
       enter(member);
-      return fail(422, "Member missing", "Give exactly one of " + listed(json(exclusive)) + ".",
-                  path);
+      return fail(ErrorCode::invalid, "Member missing",
+                  "Give exactly one of " + listed(json(exclusive)) + ".", path);
     }
     const json* missing = rule == nullptr ? nullptr : child_schema(*rule, *value, member);
     enter(member);
-    return fail(422, "Member missing",
+    return fail(ErrorCode::invalid, "Member missing",
                 "It must be given" + (missing ? ": " + expectation(*missing) : std::string()) + ".",
                 path);
   }
@@ -305,27 +305,27 @@ tl::unexpected<Problem> explain(Schema schema, const json& whole, const std::str
     if (const json* choice = begun_choice(rule, value))
       if (const std::string member = ruled_out(*choice, *value); !member.empty()) {
         enter(member);
-        return fail(422, "Members exclude each other",
+        return fail(ErrorCode::invalid, "Members exclude each other",
                     "It does not go with " + listed((*choice)["required"]) + ".", path);
       }
     const auto exclusive = exclusive_members(rule);
     if (exclusive.size() > 1) enter(exclusive.back());
-    return fail(422, "Members exclude each other",
+    return fail(ErrorCode::invalid, "Members exclude each other",
                 "Give exactly one of " + listed(json(exclusive)) + ".", path);
   }
   if (said.starts_with("Object contains a property")) {
     enter(member_named(said, "constraints: '"));
-    return fail(422, "Unknown member",
+    return fail(ErrorCode::invalid, "Unknown member",
                 "This object has no such member; check its spelling or leave it out.", path);
   }
   if (said.starts_with("Object should have no fewer"))
-    return fail(422, "Nothing given", "Give at least one member.", path);
+    return fail(ErrorCode::invalid, "Nothing given", "Give at least one member.", path);
   if (said.starts_with("Value type"))
-    return fail(422, "Wrong type",
+    return fail(ErrorCode::invalid, "Wrong type",
                 "It must be " + (rule ? expectation(*rule) : std::string("of another type")) + ".",
                 path);
-  return fail(422, "Value not allowed", rule ? "It must be " + expectation(*rule) + "." : said,
-              path);
+  return fail(ErrorCode::invalid, "Value not allowed",
+              rule ? "It must be " + expectation(*rule) + "." : said, path);
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ Result<void> check_memory(double area, double cell_side, int depth) {
   const auto gib = [](double bytes) {
     return std::to_string(static_cast<int>(std::ceil(bytes / (1u << 30))));
   };
-  return fail(503, "Octree too large",
+  return fail(ErrorCode::unavailable, "Octree too large",
               "An octree of depth " + std::to_string(depth) + " of this model takes about " +
                   gib(needed) + " GiB to build and " + gib(available) +
                   " GiB can be had: run it on a larger machine.");
@@ -155,7 +155,7 @@ std::vector<std::vector<std::uint64_t>> crossed_cells(const mesh::Geometry& geom
 
 Result<Octree> Octree::build(const mesh::Geometry& geometry, int depth, int threads) {
   if (depth < 1 || depth > kDeepest)
-    return fail(422, "Depth out of range", "An octree has 1 to 15 levels.", "depth");
+    return fail(ErrorCode::invalid, "Depth out of range", "An octree has 1 to 15 levels.", "depth");
   Octree tree;
   const glm::vec3 extent = geometry.box_max - geometry.box_min;
   // A little larger, so that no vertex lies on the far faces.

@@ -20,7 +20,7 @@ class Octree {
     std::uint32_t mask;   // bit x | y << 1 | z << 2: that child is there
   };
 
-  // Depth 1 to 15. A Problem where main memory would not do: its detail says how much is needed.
+  // Depth 1 to 15. An Error where main memory would not do: its detail says how much is needed.
   static Result<Octree> build(const mesh::Geometry& geometry, int depth, int threads);
 
   int depth() const { return static_cast<int>(levels_.size()); }

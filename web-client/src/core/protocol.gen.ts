@@ -18,6 +18,9 @@ export type Section = Plane[];
 /** Pointer path. Pixels of the camera's window; consecutive points are joined, one point is a dab. */
 export type Path = Point2[];
 
+/** Kind of problem. A stable reference on this server by which programs decide; `/problems` describes each. */
+export type ProblemType = "/problems#malformed" | "/problems#unauthenticated" | "/problems#forbidden" | "/problems#not_found" | "/problems#method_not_allowed" | "/problems#not_acceptable" | "/problems#too_slow" | "/problems#conflict" | "/problems#superseded" | "/problems#gone" | "/problems#stale" | "/problems#too_large" | "/problems#unsupported" | "/problems#range_not_satisfied" | "/problems#misdirected" | "/problems#invalid" | "/problems#upgrade_required" | "/problems#version_required" | "/problems#too_many_requests" | "/problems#head_too_large" | "/problems#cancelled" | "/problems#internal" | "/problems#not_implemented" | "/problems#bad_gateway" | "/problems#busy" | "/problems#unavailable" | "/problems#timed_out" | "/problems#gpu_lost" | "/problems#out_of_memory" | "/problems#storage_full";
+
 /** #rrggbb, sRGB. */
 export type BackgroundColor = string;
 
@@ -999,7 +1002,7 @@ export interface Picked {
 export interface ProblemMessage {
   op: "problem";
   ref?: string;
-  type?: string;
+  type?: ProblemType;
   title: string;
   status: number;
   detail: string;
@@ -1039,9 +1042,8 @@ export interface RecordsReport {
 
 /** Problem (RFC 9457). */
 export interface Problem {
-  /** about:blank when absent. */
-  type?: string;
-  /** Constant for a kind of problem. */
+  type?: ProblemType;
+  /** For people; the words may change. */
   title: string;
   status: number;
   /** This occurrence, and what to do about it. */

@@ -15,7 +15,7 @@
 #include "core/layer.h"
 #include "core/light.h"
 #include "core/model.h"
-#include "core/problem.h"
+#include "core/error.h"
 #include "core/uuid.h"
 
 // Messages and bodies as plain values. `read` takes JSON that `validate` (protocol/validate.h) has let through and
@@ -31,6 +31,7 @@ enum class Schema {
   Plane,
   Section,
   Path,
+  ProblemType,
   BackgroundColor,
   Background,
   Widths,
@@ -314,7 +315,7 @@ enum class Schema {
   Readiness,
   ServerVersion,
 };
-constexpr int kSchemaCount = 288;
+constexpr int kSchemaCount = 289;
 using strata::name;  // of the core's types
 std::string_view name(Schema schema);
 std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}
