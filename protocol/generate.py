@@ -14,7 +14,12 @@ import sys
 
 sys.dont_write_bytecode = True
 
-from generator import cpp, openapi, schemas, typescript  # noqa: E402  (after dont_write_bytecode on purpose)
+from generator import (  # noqa: E402  (after dont_write_bytecode on purpose)
+    cpp,
+    openapi,
+    schemas,
+    typescript,
+)
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -28,15 +33,21 @@ def results() -> dict[pathlib.Path, str]:
         generated / "cpp/protocol/messages.h": header,
         generated / "cpp/protocol/messages.cpp": writer.source(),
         generated / "cpp/protocol/schemas.cpp": writer.schemas(),
-        generated / "schemas.json": json.dumps(schemas.bundle(protocol), indent=1, ensure_ascii=False) + "\n",
+        generated
+        / "schemas.json": json.dumps(schemas.bundle(protocol), indent=1, ensure_ascii=False)
+        + "\n",
         generated / "openapi.json": openapi.write(protocol, HERE / "openapi.yaml"),
         HERE.parent / "web-client/src/core/protocol.gen.ts": typescript.write(protocol),
     }
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 when a result is stale")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; exit 1 when a result is stale"
+    )
     arguments = parser.parse_args()
     try:
         wanted = results()

@@ -13,7 +13,11 @@ def count_cases(root):
     for case in root.iter("testcase"):
         if case.find("failure") is not None or case.find("error") is not None:
             failed += 1
-        elif case.find("skipped") is not None or case.get("status") in ("notrun", "disabled") or case.get("result") == "skipped":
+        elif (
+            case.find("skipped") is not None
+            or case.get("status") in ("notrun", "disabled")
+            or case.get("result") == "skipped"
+        ):
             skipped += 1
         else:
             passed += 1
@@ -33,7 +37,8 @@ def main():
         for case in ET.parse(ctest).getroot().iter("testcase"):
             ran_wrong = case.find("failure") is not None or case.get("status") == "fail"
             if case.get("name") in reported:
-                # A binary that failed after its cases all passed (a leak report, say) is a failure too.
+                # A binary that failed after its cases all passed (a leak report, say) is a failure
+                # too.
                 if ran_wrong and total[1] == 0:
                     total[1] += 1
             elif ran_wrong:

@@ -10,8 +10,11 @@ import re
 import subprocess
 import sys
 
-# The C and C++ libraries of the system and of the compiler are no parts of a program (GCC's runtime library exception, section 5 of the LGPL).
-OF_THE_SYSTEM = re.compile(r"^(libc6|libc6-dev|linux-libc-dev|libstdc\+\+.*|libgcc.*|gcc-\d+-base|cpp.*)$")
+# The C and C++ libraries of the system and of the compiler are no parts of a program (GCC's runtime
+# library exception, section 5 of the LGPL).
+OF_THE_SYSTEM = re.compile(
+    r"^(libc6|libc6-dev|linux-libc-dev|libstdc\+\+.*|libgcc.*|gcc-\d+-base|cpp.*)$"
+)
 HEAD = """Strata is distributed under the MIT licence (LICENSE). The program holds or links the libraries below; each stands under the licence that follows its name.
 
 """
@@ -23,7 +26,11 @@ def run(*command):
 
 def headers_of(build):
     """Headers outside of the project that the program's own units read."""
-    units = {line.split(":")[0] for line in run("ninja", "-C", build, "-t", "inputs", "strata").splitlines() if line.split(":")[0].endswith(".o")}
+    units = {
+        line.split(":")[0]
+        for line in run("ninja", "-C", build, "-t", "inputs", "strata").splitlines()
+        if line.split(":")[0].endswith(".o")
+    }
     wanted, found = False, set()
     for line in run("ninja", "-C", build, "-t", "deps").splitlines():
         if line and not line.startswith(" "):
@@ -40,7 +47,11 @@ def headers_of(build):
 def libraries_of(program):
     """Those that the program itself asks for; what these need comes with Debian's packages and their own notices."""
     needed = set(re.findall(r"NEEDED\s+(\S+)", run("objdump", "-p", program)))
-    return {os.path.realpath(path) for name, path in re.findall(r"(\S+) => (/\S+)", run("ldd", program)) if name in needed}
+    return {
+        os.path.realpath(path)
+        for name, path in re.findall(r"(\S+) => (/\S+)", run("ldd", program))
+        if name in needed
+    }
 
 
 def packages_of(files):
@@ -48,7 +59,7 @@ def packages_of(files):
     names = set()
     files = sorted(files)
     for begin in range(0, len(files), 500):
-        piece = files[begin:begin + 500]
+        piece = files[begin : begin + 500]
         piece += [name.removeprefix("/usr") for name in piece if name.startswith("/usr/lib/")]
         for line in run("dpkg-query", "-S", *piece).splitlines():
             names |= {name.split(":")[0].strip() for name in line.rpartition(": ")[0].split(",")}
@@ -70,8 +81,18 @@ def main():
     build, output = os.path.realpath(sys.argv[1]), sys.argv[2]
     headers = headers_of(build)
     deps = os.path.join(os.path.dirname(build), "deps")
-    unpacked = sorted(os.listdir(os.path.join(deps, "usr/share/doc"))) if any(path.startswith(deps + "/") for path in headers) else []
-    packages = sorted(packages_of({path for path in headers if not path.startswith(deps)} | libraries_of(os.path.join(build, "bin", "strata"))) | set(unpacked))
+    unpacked = (
+        sorted(os.listdir(os.path.join(deps, "usr/share/doc")))
+        if any(path.startswith(deps + "/") for path in headers)
+        else []
+    )
+    packages = sorted(
+        packages_of(
+            {path for path in headers if not path.startswith(deps)}
+            | libraries_of(os.path.join(build, "bin", "strata"))
+        )
+        | set(unpacked)
+    )
     by_text, without = {}, []
     for package in packages:
         notice = notice_of(package, ["/", deps])
@@ -84,7 +105,9 @@ def main():
     with open(output, "w", encoding="utf-8") as file:
         file.write(HEAD)
         for notice, names in sorted(by_text.items(), key=lambda entry: entry[1]):
-            file.write("=" * 100 + "\n" + ", ".join(names) + "\n" + "=" * 100 + "\n\n" + notice + "\n\n")
+            file.write(
+                "=" * 100 + "\n" + ", ".join(names) + "\n" + "=" * 100 + "\n\n" + notice + "\n\n"
+            )
     print(f"{output}: the notices of {len(packages)} packages")
 
 

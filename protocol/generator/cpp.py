@@ -14,8 +14,20 @@ def with_note(line: str, note: str | None) -> str:
         return line + "\n"
     if len(line) + 5 + len(note) <= 100:
         return f"{line}  // {note}\n"
-    indent = line[:len(line) - len(line.lstrip())] + "// "
-    return "\n".join(textwrap.wrap(note, 100, initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False, break_long_words=False)) + f"\n{line}\n"
+    indent = line[: len(line) - len(line.lstrip())] + "// "
+    return (
+        "\n".join(
+            textwrap.wrap(
+                note,
+                100,
+                initial_indent=indent,
+                subsequent_indent=indent,
+                break_on_hyphens=False,
+                break_long_words=False,
+            )
+        )
+        + f"\n{line}\n"
+    )
 
 
 class Writer:
@@ -27,8 +39,15 @@ class Writer:
     # --- types
 
     def spell(self, type_: Type) -> str:
-        simple = {"string": "std::string", "uuid": "Uuid", "number": "double", "int32": "int", "int64": "std::int64_t",
-                  "boolean": "bool", "scalar_union": "std::variant<std::int64_t, std::string>"}
+        simple = {
+            "string": "std::string",
+            "uuid": "Uuid",
+            "number": "double",
+            "int32": "int",
+            "int64": "std::int64_t",
+            "boolean": "bool",
+            "scalar_union": "std::variant<std::int64_t, std::string>",
+        }
         if type_.kind in simple:
             return simple[type_.kind]
         if type_.kind == "ref":
@@ -49,7 +68,14 @@ class Writer:
 
     def is_named(self, definition: Definition) -> bool:
         """Whether C++ gets a name of its own for it."""
-        return not definition.cpp_type and definition.type.kind not in ("string", "uuid", "int32", "int64", "number", "boolean")
+        return not definition.cpp_type and definition.type.kind not in (
+            "string",
+            "uuid",
+            "int32",
+            "int64",
+            "number",
+            "boolean",
+        )
 
     def is_optional(self, member) -> bool:
         return not member.required and member.default is None and member.type.kind != "nullable"
@@ -61,19 +87,37 @@ class Writer:
             if isinstance(value, bool):
                 return f" = {str(value).lower()}"
             if isinstance(value, str):
-                if "::" in spelled and not spelled.startswith("std::") or self.resolved(member.type).kind == "enum":
+                if (
+                    "::" in spelled
+                    and not spelled.startswith("std::")
+                    or self.resolved(member.type).kind == "enum"
+                ):
                     return f" = {spelled}::{value}"
                 return f' = "{value}"' if value else ""
             return f" = {value}"
         if self.is_optional(member):
             return ""
-        by_type = {"glm::dvec2": "{0}", "glm::dvec3": "{0}", "glm::dmat4": "{1}", "strata::ValueType": "{}", "strata::LayerKind": "{}", "strata::Unit": "{}", "strata::Visibility": "{}",
-                   "strata::LightMode": "{}"}
+        by_type = {
+            "glm::dvec2": "{0}",
+            "glm::dvec3": "{0}",
+            "glm::dmat4": "{1}",
+            "strata::ValueType": "{}",
+            "strata::LayerKind": "{}",
+            "strata::Unit": "{}",
+            "strata::Visibility": "{}",
+            "strata::LightMode": "{}",
+        }
         if spelled in by_type:
             return by_type[spelled]
         resolved = self.resolved(member.type)
-        return {"number": " = 0", "int32": " = 0", "int64": " = 0", "boolean": " = false", "enum": "{}",
-                "array": "{}" if resolved.count else ""}.get(resolved.kind, "")
+        return {
+            "number": " = 0",
+            "int32": " = 0",
+            "int64": " = 0",
+            "boolean": " = false",
+            "enum": "{}",
+            "array": "{}" if resolved.count else "",
+        }.get(resolved.kind, "")
 
     def resolved(self, type_: Type) -> Type:
         while type_.kind == "ref" and not self.protocol.definitions[type_.name].cpp_type:
@@ -99,44 +143,67 @@ class Writer:
     # --- header
 
     def header(self) -> str:
-        out = [NOTE, "#pragma once\n\n#include <array>\n#include <cstdint>\n#include <map>\n#include <nlohmann/json.hpp>\n"
-               "#include <optional>\n#include <string>\n#include <string_view>\n#include <variant>\n#include <vector>\n\n"
-               '#include "core/camera.h"\n#include "core/layer.h"\n#include "core/light.h"\n#include "core/model.h"\n#include "core/error.h"\n#include "core/uuid.h"\n\n'
-               "// Messages and bodies as plain values. `read` takes JSON that `validate` (protocol/validate.h) has let through and\n"
-               "// leaves absent members at their defaults; `to_json` leaves unset optional members out; `check` looks at what a\n"
-               "// schema cannot say (cameras). Use protocol/parse.h to do all of it at once.\n"
-               "namespace strata::protocol {\n\n"]
-        out.append("// Every definition of protocol/messages, by its name there.\nenum class Schema {\n")
+        out = [
+            NOTE,
+            "#pragma once\n\n#include <array>\n#include <cstdint>\n#include <map>\n#include <nlohmann/json.hpp>\n"
+            "#include <optional>\n#include <string>\n#include <string_view>\n#include <variant>\n#include <vector>\n\n"
+            '#include "core/camera.h"\n#include "core/layer.h"\n#include "core/light.h"\n#include "core/model.h"\n#include "core/error.h"\n#include "core/uuid.h"\n\n'
+            "// Messages and bodies as plain values. `read` takes JSON that `validate` (protocol/validate.h) has let through and\n"
+            "// leaves absent members at their defaults; `to_json` leaves unset optional members out; `check` looks at what a\n"
+            "// schema cannot say (cameras). Use protocol/parse.h to do all of it at once.\n"
+            "namespace strata::protocol {\n\n",
+        ]
+        out.append(
+            "// Every definition of protocol/messages, by its name there.\nenum class Schema {\n"
+        )
         out += [f"  {name},\n" for name in self.protocol.definitions]
-        out.append("};\nconstexpr int kSchemaCount = " + str(len(self.protocol.definitions)) + ";\n"
-                   "using strata::name;  // of the core's types\nstd::string_view name(Schema schema);\n"
-                   "std::string_view schema_bundle();  // JSON text: {\"definitions\": {name: schema}}\n\n"
-                   "template <class T>\nextern const Schema kSchemaOf;\n\n")
+        out.append(
+            "};\nconstexpr int kSchemaCount = " + str(len(self.protocol.definitions)) + ";\n"
+            "using strata::name;  // of the core's types\nstd::string_view name(Schema schema);\n"
+            'std::string_view schema_bundle();  // JSON text: {"definitions": {name: schema}}\n\n'
+            "template <class T>\nextern const Schema kSchemaOf;\n\n"
+        )
         for definition in self.order:
             if self.is_named(definition):
                 out.append(self.declare(definition))
             elif (definition.cpp_type or "").startswith("strata::"):
                 out.append(f"using {definition.name} = {definition.cpp_type};\n\n")
         for union, names in self.protocol.unions.items():
-            out.append(f"using {union} = std::variant<{', '.join(names)}>;\n"
-                       f"// The schema of the message with this `op`; nothing when the op is unknown.\n"
-                       f"std::optional<Schema> {snake(union)}_schema(std::string_view op);\n"
-                       f"void read(const nlohmann::json& json, {union}& value);\n"
-                       f"nlohmann::json to_json(const {union}& value);\n\n")
+            out.append(
+                f"using {union} = std::variant<{', '.join(names)}>;\n"
+                f"// The schema of the message with this `op`; nothing when the op is unknown.\n"
+                f"std::optional<Schema> {snake(union)}_schema(std::string_view op);\n"
+                f"void read(const nlohmann::json& json, {union}& value);\n"
+                f"nlohmann::json to_json(const {union}& value);\n\n"
+            )
         out.append("}  // namespace strata::protocol\n")
         return "".join(out)
 
     def declare(self, definition: Definition) -> str:
         name, type_ = definition.name, definition.type
-        comment = "".join(f"// {line}\n" for line in filter(None, [definition.title + (
-            ". " + definition.description if definition.description else ".")]))
+        comment = "".join(
+            f"// {line}\n"
+            for line in filter(
+                None,
+                [
+                    definition.title
+                    + (". " + definition.description if definition.description else ".")
+                ],
+            )
+        )
         if type_.kind == "enum":
             return comment + self.declare_enum(name, type_.values)
         if type_.kind == "union":
-            text = f"{comment}using {name} = std::variant<{', '.join(type_.values)}>;\n" + self.functions(name)
+            text = (
+                f"{comment}using {name} = std::variant<{', '.join(type_.values)}>;\n"
+                + self.functions(name)
+            )
             if self.has_camera(name):
                 text += f"Result<void> check(const {name}& value, const std::string& field);\n"
-            return text + f"template <>\ninline constexpr Schema kSchemaOf<{name}> = Schema::{name};\n\n"
+            return (
+                text
+                + f"template <>\ninline constexpr Schema kSchemaOf<{name}> = Schema::{name};\n\n"
+            )
         if type_.kind != "object":
             return f"{comment}using {name} = {self.spell(type_)};\n\n"
         text = ""
@@ -153,27 +220,40 @@ class Writer:
             spelled = self.spell(member.type)
             if self.is_optional(member):
                 spelled = f"std::optional<{spelled}>"
-            text += with_note(f"  {spelled} {cpp_name(member)}{self.initial(member)};", member.description)
+            text += with_note(
+                f"  {spelled} {cpp_name(member)}{self.initial(member)};", member.description
+            )
         text += f"  bool operator==(const {name}&) const = default;\n}};\n" + self.functions(name)
         if definition.schema.get("x-camera"):
             text += f"strata::Camera camera_of(const {name}& value);\n"
         if self.has_check(name):
             text += f"Result<void> check(const {name}& value, const std::string& field);\n"
-        return text + f"template <>\ninline constexpr Schema kSchemaOf<{name}> = Schema::{name};\n\n"
+        return (
+            text + f"template <>\ninline constexpr Schema kSchemaOf<{name}> = Schema::{name};\n\n"
+        )
 
     def declare_enum(self, name: str, values: list) -> str:
         self.enums[name] = values
         words = ", ".join(identifier(v) for v in values)
-        return f"enum class {name} {{ {words} }};\nstd::string_view name({name} value);\n" + self.functions(name) + "\n"
+        return (
+            f"enum class {name} {{ {words} }};\nstd::string_view name({name} value);\n"
+            + self.functions(name)
+            + "\n"
+        )
 
     def functions(self, name: str) -> str:
-        return (f"void read(const nlohmann::json& json, {name}& value);\n"
-                f"nlohmann::json to_json(const {name}& value);\n")
+        return (
+            f"void read(const nlohmann::json& json, {name}& value);\n"
+            f"nlohmann::json to_json(const {name}& value);\n"
+        )
 
     # --- source
 
     def source(self) -> str:
-        out = [NOTE, '#include "protocol/messages.h"\n\n#include "protocol/json_values.h"\n\nnamespace strata::protocol {\n\n']
+        out = [
+            NOTE,
+            '#include "protocol/messages.h"\n\n#include "protocol/json_values.h"\n\nnamespace strata::protocol {\n\n',
+        ]
         for name, values in self.enums.items():
             out.append(self.define_enum(name, values))
         for definition in self.order:
@@ -184,8 +264,10 @@ class Writer:
             elif definition.type.kind == "union":
                 out.append(self.define_union(definition.name, definition.type.values))
                 if self.has_camera(definition.name):
-                    out.append(f"Result<void> check(const {definition.name}& value, const std::string& field) {{\n"
-                               f"  return check_alternative(value, field);\n}}\n\n")
+                    out.append(
+                        f"Result<void> check(const {definition.name}& value, const std::string& field) {{\n"
+                        f"  return check_alternative(value, field);\n}}\n\n"
+                    )
         for union, names in self.protocol.unions.items():
             out.append(f"std::optional<Schema> {snake(union)}_schema(std::string_view op) {{\n")
             out += [f"  if (op == {n}::kOp) return Schema::{n};\n" for n in names]
@@ -196,11 +278,13 @@ class Writer:
 
     def define_enum(self, name: str, values: list) -> str:
         cases = "".join(f'    case {name}::{identifier(v)}: return "{v}";\n' for v in values)
-        tests = "".join(f"  if (text == \"{v}\") value = {name}::{identifier(v)};\n" for v in values)
-        return (f"std::string_view name({name} value) {{\n  switch (value) {{\n{cases}  }}\n  return {{}};\n}}\n\n"
-                f"void read(const nlohmann::json& json, {name}& value) {{\n"
-                f"  const auto& text = json.get_ref<const std::string&>();\n{tests}}}\n\n"
-                f"nlohmann::json to_json(const {name}& value) {{ return name(value); }}\n\n")
+        tests = "".join(f'  if (text == "{v}") value = {name}::{identifier(v)};\n' for v in values)
+        return (
+            f"std::string_view name({name} value) {{\n  switch (value) {{\n{cases}  }}\n  return {{}};\n}}\n\n"
+            f"void read(const nlohmann::json& json, {name}& value) {{\n"
+            f"  const auto& text = json.get_ref<const std::string&>();\n{tests}}}\n\n"
+            f"nlohmann::json to_json(const {name}& value) {{ return name(value); }}\n\n"
+        )
 
     def define_struct(self, definition: Definition) -> str:
         name, members = definition.name, definition.type.members
@@ -216,16 +300,24 @@ class Writer:
                 write += f"  write_member(json, {target});\n"
             else:
                 read += f"  read_optional_member(json, {target});\n"
-                write += f"  write_optional_member(json, {target});\n" if self.is_optional(member) or member.type.kind == "nullable" else f"  write_member(json, {target});\n"
+                write += (
+                    f"  write_optional_member(json, {target});\n"
+                    if self.is_optional(member) or member.type.kind == "nullable"
+                    else f"  write_member(json, {target});\n"
+                )
         blank = "[[maybe_unused]] " if unused else ""
-        text = (f"void read({blank}const nlohmann::json& json, {blank}{name}& value) {{\n{read}}}\n\n"
-                f"nlohmann::json to_json({blank}const {name}& value) {{\n"
-                f"  nlohmann::json json = nlohmann::json::object();\n{write}  return json;\n}}\n\n")
+        text = (
+            f"void read({blank}const nlohmann::json& json, {blank}{name}& value) {{\n{read}}}\n\n"
+            f"nlohmann::json to_json({blank}const {name}& value) {{\n"
+            f"  nlohmann::json json = nlohmann::json::object();\n{write}  return json;\n}}\n\n"
+        )
         if definition.schema.get("x-camera"):
-            text += (f"strata::Camera camera_of(const {name}& value) {{\n"
-                     "  return {value.view, value.projection, value.width, value.height, value.section.value_or(std::vector<glm::dvec4>{})};\n}\n\n"
-                     f"Result<void> check(const {name}& value, const std::string& field) {{\n"
-                     "  return named_in_message(strata::validate(camera_of(value), \"\"), field);\n}\n\n")
+            text += (
+                f"strata::Camera camera_of(const {name}& value) {{\n"
+                "  return {value.view, value.projection, value.width, value.height, value.section.value_or(std::vector<glm::dvec4>{})};\n}\n\n"
+                f"Result<void> check(const {name}& value, const std::string& field) {{\n"
+                '  return named_in_message(strata::validate(camera_of(value), ""), field);\n}\n\n'
+            )
         elif self.has_check(name):
             checks = ""
             for member in members:
@@ -233,22 +325,33 @@ class Writer:
                 if inner.kind != "ref" or not self.has_camera(inner.name):
                     continue
                 optional = self.is_optional(member)
-                call = "strata::validate" if self.protocol.definitions[inner.name].cpp_type else "check"
+                call = (
+                    "strata::validate"
+                    if self.protocol.definitions[inner.name].cpp_type
+                    else "check"
+                )
                 access = f"*value.{cpp_name(member)}" if optional else f"value.{cpp_name(member)}"
                 condition = f"value.{cpp_name(member)} ? " if optional else ""
                 otherwise = " : Result<void>{}" if optional else ""
-                checks += (f'  if (auto ok = {condition}{call}({access}, join_field(field, "{member.name}")){otherwise}; !ok) return ok;\n')
+                checks += f'  if (auto ok = {condition}{call}({access}, join_field(field, "{member.name}")){otherwise}; !ok) return ok;\n'
             blank = "" if checks else "[[maybe_unused]] "
-            text += (f"Result<void> check({blank}const {name}& value, {blank}const std::string& field) {{\n"
-                     f"{checks}  return {{}};\n}}\n\n")
+            text += (
+                f"Result<void> check({blank}const {name}& value, {blank}const std::string& field) {{\n"
+                f"{checks}  return {{}};\n}}\n\n"
+            )
         return text
 
     def define_union(self, union: str, names: list) -> str:
-        branches = "".join(f"  if (op == {n}::kOp) {{\n    read(json, value.emplace<{n}>());\n    return;\n  }}\n" for n in names)
-        return (f"void read(const nlohmann::json& json, {union}& value) {{\n"
-                f'  const auto& op = json.at("op").get_ref<const std::string&>();\n{branches}}}\n\n'
-                f"nlohmann::json to_json(const {union}& value) {{\n"
-                "  return std::visit([](const auto& alternative) { return to_json(alternative); }, value);\n}\n\n")
+        branches = "".join(
+            f"  if (op == {n}::kOp) {{\n    read(json, value.emplace<{n}>());\n    return;\n  }}\n"
+            for n in names
+        )
+        return (
+            f"void read(const nlohmann::json& json, {union}& value) {{\n"
+            f'  const auto& op = json.at("op").get_ref<const std::string&>();\n{branches}}}\n\n'
+            f"nlohmann::json to_json(const {union}& value) {{\n"
+            "  return std::visit([](const auto& alternative) { return to_json(alternative); }, value);\n}\n\n"
+        )
 
     # --- embedded schemas
 
@@ -258,10 +361,12 @@ class Writer:
         for name, schema in bundle_for_validation(self.protocol)["definitions"].items():
             lines.append(f'{json.dumps(name)}:{json.dumps(schema, separators=(",", ":"))}')
         text = '{"definitions":{\n' + ",\n".join(lines) + "\n}}"
-        return (NOTE + '#include "protocol/messages.h"\n\nnamespace strata::protocol {\n\n'
-                f"std::string_view name(Schema schema) {{\n  switch (schema) {{\n{names}  }}\n  return {{}};\n}}\n\n"
-                f'std::string_view schema_bundle() {{\n  return R"json({text})json";\n}}\n\n'
-                "}  // namespace strata::protocol\n")
+        return (
+            NOTE + '#include "protocol/messages.h"\n\nnamespace strata::protocol {\n\n'
+            f"std::string_view name(Schema schema) {{\n  switch (schema) {{\n{names}  }}\n  return {{}};\n}}\n\n"
+            f'std::string_view schema_bundle() {{\n  return R"json({text})json";\n}}\n\n'
+            "}  // namespace strata::protocol\n"
+        )
 
 
 def identifier(word) -> str:

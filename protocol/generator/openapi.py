@@ -21,9 +21,14 @@ def point_to_components(node):
     return [point_to_components(value) for value in node] if isinstance(node, list) else node
 
 
-# What any call may be answered with, whatever it asks: the description of openapi.yaml says why. Beside these 415 where JSON is taken, and 406 where
-# something is read.
-OF_ANY_CALL = {"421": "UnknownHost", "429": "TooFast", "431": "HeaderTooLarge", "503": "Unavailable"}
+# What any call may be answered with, whatever it asks: the description of openapi.yaml says why.
+# Beside these 415 where JSON is taken, and 406 where something is read.
+OF_ANY_CALL = {
+    "421": "UnknownHost",
+    "429": "TooFast",
+    "431": "HeaderTooLarge",
+    "503": "Unavailable",
+}
 
 
 def add_common_answers(document) -> None:
@@ -37,12 +42,22 @@ def add_common_answers(document) -> None:
             if method == "get":
                 answers["406"] = "NotAcceptable"
             for status, name in answers.items():
-                operation["responses"].setdefault(status, {"$ref": "#/components/responses/" + name})
+                operation["responses"].setdefault(
+                    status, {"$ref": "#/components/responses/" + name}
+                )
             operation["responses"] = dict(sorted(operation["responses"].items()))
 
 
-# Reads whose answers have no ETag: what is told once or as it happens, what must not be kept, and what has the version of a record for If-Match but tells more.
-WITHOUT_ANSWER_ETAG = ("/login", "/live", "/events", "/me/models/{model}/view", "/layers/{layer}/records/{key}", "/attachments")
+# Reads whose answers have no ETag: what is told once or as it happens, what must not be kept, and
+# what has the version of a record for If-Match but tells more.
+WITHOUT_ANSWER_ETAG = (
+    "/login",
+    "/live",
+    "/events",
+    "/me/models/{model}/view",
+    "/layers/{layer}/records/{key}",
+    "/attachments",
+)
 
 
 def add_validators(document) -> None:
@@ -52,11 +67,20 @@ def add_validators(document) -> None:
             if method == "parameters" or not path.startswith("/api/"):
                 continue
             parameters, answers = operation.setdefault("parameters", []), operation["responses"]
-            if method == "get" and "304" not in answers and "200" in answers and not path.endswith(WITHOUT_ANSWER_ETAG):
+            if (
+                method == "get"
+                and "304" not in answers
+                and "200" in answers
+                and not path.endswith(WITHOUT_ANSWER_ETAG)
+            ):
                 parameters.append({"$ref": "#/components/parameters/if_none_match"})
-                answers["200"].setdefault("headers", {})["ETag"] = {"$ref": "#/components/headers/AnswerETag"}
+                answers["200"].setdefault("headers", {})["ETag"] = {
+                    "$ref": "#/components/headers/AnswerETag"
+                }
                 answers["304"] = {"$ref": "#/components/responses/UnchangedAnswer"}
-            is_versioned = {"$ref": "#/components/parameters/if_match"} in parameters and method in ("patch", "delete")
+            is_versioned = {
+                "$ref": "#/components/parameters/if_match"
+            } in parameters and method in ("patch", "delete")
             if is_versioned and not path.startswith("/api/v1/tools"):
                 answers["428"] = {"$ref": "#/components/responses/VersionMissing"}
             if not parameters:
@@ -83,7 +107,9 @@ def write(protocol: Protocol, source: pathlib.Path) -> str:
         if name not in schemas:
             if name not in protocol.schemas:
                 raise SystemExit(f"{source.name}: there is no schema {name}")
-            schemas[name] = point_to_components(strip(protocol.schemas[name], lambda key: key.startswith("x-")))
+            schemas[name] = point_to_components(
+                strip(protocol.schemas[name], lambda key: key.startswith("x-"))
+            )
             wanted += [ref for ref in references(schemas[name]) if ref.startswith(prefix)]
     document["components"]["schemas"] = dict(sorted(schemas.items()))
     for ref in references(document):

@@ -22,7 +22,8 @@ class Type:
     name: str = ""  # ref: the definition; enum: its own name
     items: "Type | None" = None
     count: "int | None" = None  # array: fixed length
-    values: list = field(default_factory=list)  # enum: the words or numbers; const: one value; union: definition names
+    # enum: the words or numbers; const: one value; union: definition names
+    values: list = field(default_factory=list)
     members: list = field(default_factory=list)  # object
     choices: list = field(default_factory=list)  # any: types
     description: str = ""
@@ -75,9 +76,17 @@ class Protocol:
                 schema = self.schemas[name]
                 self.require_bounds(schema, name)
                 self.definitions[name] = Definition(
-                    name, file, schema, self.type_of(schema, name), schema.get("title", ""), schema.get("description", ""))
+                    name,
+                    file,
+                    schema,
+                    self.type_of(schema, name),
+                    schema.get("title", ""),
+                    schema.get("description", ""),
+                )
             if "x-union" in source:
-                self.unions[source["x-union"]] = [n for n in source["definitions"] if self.definitions[n].op]
+                self.unions[source["x-union"]] = [
+                    n for n in source["definitions"] if self.definitions[n].op
+                ]
 
     def type_of(self, schema: dict, where: str) -> Type:
         description = schema.get("description", "")
@@ -99,8 +108,10 @@ class Protocol:
             return Type("uuid" if schema.get("format") == "uuid" else "string")
         if kind == "integer":
             bounds = schema.get("enum") or [schema["minimum"], schema["maximum"]]
-            return Type("int32" if -MAX_INT32 <= min(bounds) and max(bounds) <= MAX_INT32 else "int64",
-                        values=schema.get("enum", []))
+            return Type(
+                "int32" if -MAX_INT32 <= min(bounds) and max(bounds) <= MAX_INT32 else "int64",
+                values=schema.get("enum", []),
+            )
         if kind in ("number", "boolean"):
             return Type(kind)
         if kind == "array":
@@ -113,7 +124,15 @@ class Protocol:
             members = []
             for name, member in schema["properties"].items():
                 inner = self.type_of(member, where + camel(name))
-                members.append(Member(name, inner, name in required, member.get("default"), member.get("description", "")))
+                members.append(
+                    Member(
+                        name,
+                        inner,
+                        name in required,
+                        member.get("default"),
+                        member.get("description", ""),
+                    )
+                )
             return Type("object", name=where, members=members)
         raise SchemaError(f"{where}: no type is known for {json.dumps(schema)[:200]}")
 
@@ -123,18 +142,32 @@ class Protocol:
         if all("$ref" in choice for choice in choices):
             names = [choice["$ref"].removeprefix("#/definitions/") for choice in choices]
             if any("const" not in self.schemas[name]["properties"].get("op", {}) for name in names):
-                raise SchemaError(f"{where}: every choice of a union of objects needs a constant `op`")
+                raise SchemaError(
+                    f"{where}: every choice of a union of objects needs a constant `op`"
+                )
             return Type("union", values=names)
         if [choice.get("type") for choice in choices] == ["integer", "string"]:
             return Type("scalar_union")
-        if all("type" in choice for choice in choices):  # for definitions with `x-cpp-type`: values as they are
-            return Type("any", choices=[Type("null") if choice["type"] == "null" else self.type_of(choice, where) for choice in choices])
+        # for definitions with `x-cpp-type`: values as they are
+        if all("type" in choice for choice in choices):
+            return Type(
+                "any",
+                choices=[
+                    Type("null") if choice["type"] == "null" else self.type_of(choice, where)
+                    for choice in choices
+                ],
+            )
         raise SchemaError(f"{where}: this oneOf is not known")
 
     def require_bounds(self, schema: dict, where: str):
         """Every number, text and list is bounded, and every object is closed: STYLE of this protocol."""
-        needed = {"integer": ("minimum", "maximum"), "number": ("minimum|exclusiveMinimum", "maximum"),
-                  "string": ("maxLength",), "array": ("minItems", "maxItems", "items"), "object": ("additionalProperties",)}
+        needed = {
+            "integer": ("minimum", "maximum"),
+            "number": ("minimum|exclusiveMinimum", "maximum"),
+            "string": ("maxLength",),
+            "array": ("minItems", "maxItems", "items"),
+            "object": ("additionalProperties",),
+        }
         kind = schema.get("type")
         if "enum" not in schema and "const" not in schema:
             for keyword in needed.get(kind, ()):
@@ -144,7 +177,11 @@ class Protocol:
             raise SchemaError(f"{where}: additionalProperties must be false or a schema")
         for name, member in schema.get("properties", {}).items():
             self.require_bounds(member, f"{where}.{name}")
-        for child in [schema.get("items"), schema.get("additionalProperties"), *schema.get("oneOf", [])]:
+        for child in [
+            schema.get("items"),
+            schema.get("additionalProperties"),
+            *schema.get("oneOf", []),
+        ]:
             if isinstance(child, dict):
                 self.require_bounds(child, where + "[]")
 
@@ -178,12 +215,16 @@ class Protocol:
 def localise(schema):
     """References to other files become references inside the bundle."""
     if isinstance(schema, dict):
-        return {k: ("#" + v.split("#")[1] if k == "$ref" else localise(v)) for k, v in schema.items()}
+        return {
+            k: ("#" + v.split("#")[1] if k == "$ref" else localise(v)) for k, v in schema.items()
+        }
     return [localise(v) for v in schema] if isinstance(schema, list) else schema
 
 
 def camel(name: str) -> str:
-    return "".join(part[:1].upper() + part[1:] for part in name.replace(".", "_").replace("-", "_").split("_"))
+    return "".join(
+        part[:1].upper() + part[1:] for part in name.replace(".", "_").replace("-", "_").split("_")
+    )
 
 
 def strip(schema, drop):
@@ -214,22 +255,40 @@ def as_draft_07(schema):
 def bundle(protocol: Protocol) -> dict:
     """One draft-07 document for test tools such as ajv: our own keywords and formats are left out."""
     drop = lambda key: key.startswith("x-") or key == "format"
-    return {"$schema": "http://json-schema.org/draft-07/schema#",
-            "definitions": {name: as_draft_07(strip(schema, drop)) for name, schema in protocol.schemas.items()}}
+    return {
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "definitions": {
+            name: as_draft_07(strip(schema, drop)) for name, schema in protocol.schemas.items()
+        },
+    }
 
 
 def bundle_for_validation(protocol: Protocol) -> dict:
     """What the server checks with. A choice by `op` becomes if/then, so that an error names the member that is wrong
     instead of all choices; words for people are left out."""
-    drop = lambda key: key.startswith("x-") or key in ("format", "title", "description", "default", "$schema")
+    drop = lambda key: key.startswith("x-") or key in (
+        "format",
+        "title",
+        "description",
+        "default",
+        "$schema",
+    )
     definitions = {}
     for name, definition in protocol.definitions.items():
         schema = as_draft_07(strip(copy.deepcopy(definition.schema), drop))
         if definition.type.kind == "union":
             ops = [protocol.definitions[choice].op for choice in definition.type.values]
             schema = {
-                "type": "object", "required": ["op"], "properties": {"op": {"type": "string", "enum": ops}},
-                "allOf": [{"if": {"required": ["op"], "properties": {"op": {"const": op}}}, "then": {"$ref": "#/definitions/" + choice}}
-                          for op, choice in zip(ops, definition.type.values)]}
+                "type": "object",
+                "required": ["op"],
+                "properties": {"op": {"type": "string", "enum": ops}},
+                "allOf": [
+                    {
+                        "if": {"required": ["op"], "properties": {"op": {"const": op}}},
+                        "then": {"$ref": "#/definitions/" + choice},
+                    }
+                    for op, choice in zip(ops, definition.type.values)
+                ],
+            }
         definitions[name] = schema
     return {"definitions": definitions}

@@ -6,7 +6,18 @@
 import json
 import sys
 
-HEAD = ["mesh", "triangles", "coordinates", "charts", "used", "mean stretch", "largest texel / mean at 2048² · 4096² · 8192²", "texels with two owners", "s", "processor s"]
+HEAD = [
+    "mesh",
+    "triangles",
+    "coordinates",
+    "charts",
+    "used",
+    "mean stretch",
+    "largest texel / mean at 2048² · 4096² · 8192²",
+    "texels with two owners",
+    "s",
+    "processor s",
+]
 
 
 def spaced(number):
@@ -21,9 +32,20 @@ def cells(row):
     if "refused" in row:
         return [f"`{row['mesh']}`", "refused: " + row["refused"]]
     resolutions = row["resolutions"]
-    return [f"`{row['mesh']}`", spaced(row["triangles"]), "the file's" if row["source"] == "file" else "made", str(row["charts"]),
-            f"{100 * row['coverage']:.1f} %", f"{row['stretch_mean']:.2f}", " · ".join(f"{r['max_over_mean']:.2f}" for r in resolutions),
-            " · ".join(spaced(r["shared_texels"]) for r in resolutions) if any(r["shared_texels"] for r in resolutions) else "0", seconds(row["seconds"]), seconds(row["cpu_seconds"])]
+    return [
+        f"`{row['mesh']}`",
+        spaced(row["triangles"]),
+        "the file's" if row["source"] == "file" else "made",
+        str(row["charts"]),
+        f"{100 * row['coverage']:.1f} %",
+        f"{row['stretch_mean']:.2f}",
+        " · ".join(f"{r['max_over_mean']:.2f}" for r in resolutions),
+        " · ".join(spaced(r["shared_texels"]) for r in resolutions)
+        if any(r["shared_texels"] for r in resolutions)
+        else "0",
+        seconds(row["seconds"]),
+        seconds(row["cpu_seconds"]),
+    ]
 
 
 def print_table(rows):

@@ -12,20 +12,57 @@ from pathlib import Path
 
 from draw_edit import Log, line, save, short, text
 
-# What is measured: title, colour (Okabe and Ito), dash, where it stands in a run, and of which hands.
+# What is measured: title, colour (Okabe and Ito), dash, where it stands in a run, and of which
+# hands.
 BOTH = "turn and paint"
 TIMES = (
     ("camera → last byte", "#0072b2", "", ("camera_to_last_byte",), ("turn",)),
     ("camera → last byte, others paint", "#56b4e9", "8 4", ("camera_to_last_byte",), (BOTH,)),
     ("stroke → own pixels", "#d55e00", "", ("strokes", "to_own_pixels"), ("paint",)),
-    ("stroke → others' pixels", "#009e73", "2 3", ("strokes", "to_others_pixels", "still"), ("paint",)),
-    ("stroke → who turns", "#cc79a7", "8 3 2 3", ("strokes", "to_others_pixels", "turning"), (BOTH,)),
+    (
+        "stroke → others' pixels",
+        "#009e73",
+        "2 3",
+        ("strokes", "to_others_pixels", "still"),
+        ("paint",),
+    ),
+    (
+        "stroke → who turns",
+        "#cc79a7",
+        "8 3 2 3",
+        ("strokes", "to_others_pixels", "turning"),
+        (BOTH,),
+    ),
 )
 RATES = (
-    ("turning: pictures a second of a viewer", "#0072b2", "", ("frames_per_s", "turning", "median"), "turn"),
-    ("painting: the same of a viewer", "#d55e00", "", ("frames_per_s", "painting", "median"), "paint"),
-    ("turning: pictures of a second of the server's processors", "#56b4e9", "8 4", ("frames_per_cpu_s",), "turn"),
-    ("painting: the same of a second of processors", "#e69f00", "2 3", ("frames_per_cpu_s",), "paint"),
+    (
+        "turning: pictures a second of a viewer",
+        "#0072b2",
+        "",
+        ("frames_per_s", "turning", "median"),
+        "turn",
+    ),
+    (
+        "painting: the same of a viewer",
+        "#d55e00",
+        "",
+        ("frames_per_s", "painting", "median"),
+        "paint",
+    ),
+    (
+        "turning: pictures of a second of the server's processors",
+        "#56b4e9",
+        "8 4",
+        ("frames_per_cpu_s",),
+        "turn",
+    ),
+    (
+        "painting: the same of a second of processors",
+        "#e69f00",
+        "2 3",
+        ("frames_per_cpu_s",),
+        "paint",
+    ),
 )
 PANEL, LEFT, TOP, BOTTOM, LEGEND = 300, 62, 44, 290, 20
 
@@ -70,7 +107,10 @@ def rows_of(data, part):
 
 
 def active_rows(data, link, hands):
-    return sorted((row for row in rows_of(data, "active") if row["link"] == link and row["hands"] == hands), key=lambda row: row["active"])
+    return sorted(
+        (row for row in rows_of(data, "active") if row["link"] == link and row["hands"] == hands),
+        key=lambda row: row["active"],
+    )
 
 
 def axes(body, y, x0, numbers, x, title):
@@ -85,15 +125,29 @@ def axes(body, y, x0, numbers, x, title):
 def curve(body, points, color, dash):
     """Points (x, y, whisker's low and high y)."""
     path = " ".join(f"{x:.1f},{y:.1f}" for x, y, _, _ in points)
-    body.append(f'<polyline points="{path}" fill="none" stroke="{color}" stroke-width="2" stroke-dasharray="{dash}"/>')
+    body.append(
+        f'<polyline points="{path}" fill="none" stroke="{color}" stroke-width="2" stroke-dasharray="{dash}"/>'
+    )
     for x, y, low, high in points:
-        body += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.8" fill="{color}"/>', line(x, low, x, high, f'stroke="{color}" stroke-opacity="0.6"')]
+        body += [
+            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.8" fill="{color}"/>',
+            line(x, low, x, high, f'stroke="{color}" stroke-opacity="0.6"'),
+        ]
 
 
 def legend(body, kinds):
     for number, (title, color, dash, *_) in enumerate(kinds):
         y = BOTTOM + 62 + LEGEND * number
-        body += [line(LEFT, y - 4, LEFT + 28, y - 4, f'stroke="{color}" stroke-width="2" stroke-dasharray="{dash}"'), text(LEFT + 34, y, title, "start")]
+        body += [
+            line(
+                LEFT,
+                y - 4,
+                LEFT + 28,
+                y - 4,
+                f'stroke="{color}" stroke-width="2" stroke-dasharray="{dash}"',
+            ),
+            text(LEFT + 34, y, title, "start"),
+        ]
 
 
 def draw(data, path, title, unit, kinds, points_of):
@@ -105,8 +159,12 @@ def draw(data, path, title, unit, kinds, points_of):
         for kind in kinds:
             hands = kind[4] if isinstance(kind[4], tuple) else (kind[4],)
             rows = [row for each in hands for row in active_rows(data, link, each)]
-            found[link, kind] = [(row["active"], *point) for row in rows if (point := points_of(row, kind))]
-    every = [value for points in found.values() for point in points for value in point[1:] if value > 0]
+            found[link, kind] = [
+                (row["active"], *point) for row in rows if (point := points_of(row, kind))
+            ]
+    every = [
+        value for points in found.values() for point in points for value in point[1:] if value > 0
+    ]
     if not every:
         return
     y = Log(every, BOTTOM, TOP)
@@ -114,10 +172,18 @@ def draw(data, path, title, unit, kinds, points_of):
     body = [text(10, 20, title, "start", 'font-weight="bold"'), text(10, TOP - 8, unit, "start")]
     for place, link in enumerate(links):
         x0 = LEFT + place * PANEL
-        x = lambda number, x0=x0: x0 + 20 + numbers.index(number) * (PANEL - 64) / max(1, len(numbers) - 1)
+        x = (
+            lambda number, x0=x0: x0
+            + 20
+            + numbers.index(number) * (PANEL - 64) / max(1, len(numbers) - 1)
+        )
         axes(body, y, x0, numbers, x, f"active viewers, {link}")
         for shift, kind in enumerate(kinds):
-            points = [(x(number) + 2 * (shift - len(kinds) / 2), y(value), y(low), y(high)) for number, value, low, high in found[link, kind] if value > 0]
+            points = [
+                (x(number) + 2 * (shift - len(kinds) / 2), y(value), y(low), y(high))
+                for number, value, low, high in found[link, kind]
+                if value > 0
+            ]
             if points:
                 curve(body, points, *kind[1:3])
     legend(body, kinds)
@@ -146,53 +212,164 @@ def draw_peer(data, path):
         return
     most = max(max(values(row, "frames_per_cpu_s")) for row in rows)
     x = lambda value: 250 + value / most * 320
-    body = [text(10, 20, f"Pictures of a second of processors, one viewer, {data['window']}", "start", 'font-weight="bold"')]
+    body = [
+        text(
+            10,
+            20,
+            f"Pictures of a second of processors, one viewer, {data['window']}",
+            "start",
+            'font-weight="bold"',
+        )
+    ]
     for number, row in enumerate(rows):
         y, found = 44 + 30 * number, values(row, "frames_per_cpu_s")
         color = "#d55e00" if row["program"] == "paraview" else "#0072b2"
-        body += [text(242, y + 13, peer_title(row), "end"), f'<rect x="250" y="{y}" width="{x(statistics.median(found)) - 250:.1f}" height="18" fill="{color}"/>',
-                 line(x(min(found)), y + 9, x(max(found)), y + 9, 'stroke="#222"'), text(x(max(found)) + 6, y + 13, f"{statistics.median(found):.1f}", "start")]
+        body += [
+            text(242, y + 13, peer_title(row), "end"),
+            f'<rect x="250" y="{y}" width="{x(statistics.median(found)) - 250:.1f}" height="18" fill="{color}"/>',
+            line(x(min(found)), y + 9, x(max(found)), y + 9, 'stroke="#222"'),
+            text(x(max(found)) + 6, y + 13, f"{statistics.median(found):.1f}", "start"),
+        ]
     save(path, 640, 60 + 30 * len(rows), body, "Pictures of a second of processors")
 
 
 def table(title, heads, rows):
     if not rows:
         return []
-    return [f"\n**{title}**\n", "| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"] + ["| " + " | ".join(row) + " |" for row in rows]
+    return [f"\n**{title}**\n", "| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"] + [
+        "| " + " | ".join(row) + " |" for row in rows
+    ]
 
 
 def active_table(data):
     out = []
     for row in rows_of(data, "active"):
         server = middle(row, "cores", "server")
-        out.append([row["link"], str(row["active"]), row["hands"], cell(middle(row, "frames_per_s", "turning", "min"), "{:.1f}"), with_spread(row, "frames_per_s", "turning", "median"),
-                    with_spread(row, "frames_per_s", "painting", "median"), times(row, "camera_to_last_byte"), times(row, "last_camera_to_full_quality"), times(row, "strokes", "to_own_pixels"),
-                    times(row, "strokes", "to_others_pixels", "still"), times(row, "strokes", "to_others_pixels", "turning"), cell(middle(row, "strokes", "batches_per_s")),
-                    cell(middle(row, "bytes_per_s", "an_active_viewer", "median") / 1000), with_spread(row, "frames_per_cpu_s"), cell(server / row["active"], "{:.2f}"),
-                    cell(middle(row, "cores", "postgresql"), "{:.2f}"), cell(middle(row, "server_mib", "peak"))])
-    return table("Active viewers", ["link", "active", "hands", "turning, frames/s: slowest viewer", "median viewer", "painting, frames/s", "camera → last byte, p50 / p95 ms", "last camera → full quality", "stroke → own pixels",
-                                    "→ others', still", "→ others', turning", "batches/s", "KB/s a viewer", "frames a CPU second", "cores a viewer", "PostgreSQL cores", "MiB"], out)
+        out.append(
+            [
+                row["link"],
+                str(row["active"]),
+                row["hands"],
+                cell(middle(row, "frames_per_s", "turning", "min"), "{:.1f}"),
+                with_spread(row, "frames_per_s", "turning", "median"),
+                with_spread(row, "frames_per_s", "painting", "median"),
+                times(row, "camera_to_last_byte"),
+                times(row, "last_camera_to_full_quality"),
+                times(row, "strokes", "to_own_pixels"),
+                times(row, "strokes", "to_others_pixels", "still"),
+                times(row, "strokes", "to_others_pixels", "turning"),
+                cell(middle(row, "strokes", "batches_per_s")),
+                cell(middle(row, "bytes_per_s", "an_active_viewer", "median") / 1000),
+                with_spread(row, "frames_per_cpu_s"),
+                cell(server / row["active"], "{:.2f}"),
+                cell(middle(row, "cores", "postgresql"), "{:.2f}"),
+                cell(middle(row, "server_mib", "peak")),
+            ]
+        )
+    return table(
+        "Active viewers",
+        [
+            "link",
+            "active",
+            "hands",
+            "turning, frames/s: slowest viewer",
+            "median viewer",
+            "painting, frames/s",
+            "camera → last byte, p50 / p95 ms",
+            "last camera → full quality",
+            "stroke → own pixels",
+            "→ others', still",
+            "→ others', turning",
+            "batches/s",
+            "KB/s a viewer",
+            "frames a CPU second",
+            "cores a viewer",
+            "PostgreSQL cores",
+            "MiB",
+        ],
+        out,
+    )
 
 
 def idle_table(data):
     out = []
     for row in rows_of(data, "idle"):
-        out.append([str(row["idle"]), row["idle_views"], f"{row['active']} {row['hands']}" if row["active"] else "nobody", cell(middle(row, "bytes_per_s", "all_idle")),
-                    cell(middle(row, "bytes_per_s", "all_idle_on_the_wire")), cell(middle(row, "frames_per_s", "idle", "median"), "{:.2f}"), with_spread(row, "cores", "server", form="{:.3f}"),
-                    times(row, "strokes", "to_others_pixels", "idle"), times(row, "strokes", "to_own_pixels"), times(row, "camera_to_last_byte"), cell(middle(row, "server_mib", "peak"))])
-    return table("Viewers at rest", ["idle", "views", "active", "bytes/s to all idle", "with WebSocket's", "frames/s an idle viewer", "server's cores", "stroke → idle viewers' pixels, p50 / p95 ms",
-                                     "→ own pixels", "camera → last byte", "MiB"], out)
+        out.append(
+            [
+                str(row["idle"]),
+                row["idle_views"],
+                f"{row['active']} {row['hands']}" if row["active"] else "nobody",
+                cell(middle(row, "bytes_per_s", "all_idle")),
+                cell(middle(row, "bytes_per_s", "all_idle_on_the_wire")),
+                cell(middle(row, "frames_per_s", "idle", "median"), "{:.2f}"),
+                with_spread(row, "cores", "server", form="{:.3f}"),
+                times(row, "strokes", "to_others_pixels", "idle"),
+                times(row, "strokes", "to_own_pixels"),
+                times(row, "camera_to_last_byte"),
+                cell(middle(row, "server_mib", "peak")),
+            ]
+        )
+    return table(
+        "Viewers at rest",
+        [
+            "idle",
+            "views",
+            "active",
+            "bytes/s to all idle",
+            "with WebSocket's",
+            "frames/s an idle viewer",
+            "server's cores",
+            "stroke → idle viewers' pixels, p50 / p95 ms",
+            "→ own pixels",
+            "camera → last byte",
+            "MiB",
+        ],
+        out,
+    )
 
 
 def stalled_table(data):
     out = []
     for row in rows_of(data, "stalled"):
-        beside = next((r for r in rows_of(data, "active") if (r["link"], r["active"], r["hands"]) == (row["link"], row["active"], row["hands"])), None)
+        beside = next(
+            (
+                r
+                for r in rows_of(data, "active")
+                if (r["link"], r["active"], r["hands"])
+                == (row["link"], row["active"], row["hands"])
+            ),
+            None,
+        )
         for what, each in (("", beside), ("one stalled", row)):
             if each:
-                out.append([str(row["active"]), row["hands"], what or "all read", with_spread(each, "frames_per_s", "turning", "median"), with_spread(each, "frames_per_s", "painting", "median"),
-                            times(each, "camera_to_last_byte"), times(each, "strokes", "to_own_pixels"), with_spread(each, "frames_per_cpu_s"), cell(middle(each, "server_mib", "peak"))])
-    return table("One who reads nothing", ["active", "hands", "", "turning, frames/s", "painting, frames/s", "camera → last byte, p50 / p95 ms", "stroke → own pixels", "frames a CPU second", "MiB"], out)
+                out.append(
+                    [
+                        str(row["active"]),
+                        row["hands"],
+                        what or "all read",
+                        with_spread(each, "frames_per_s", "turning", "median"),
+                        with_spread(each, "frames_per_s", "painting", "median"),
+                        times(each, "camera_to_last_byte"),
+                        times(each, "strokes", "to_own_pixels"),
+                        with_spread(each, "frames_per_cpu_s"),
+                        cell(middle(each, "server_mib", "peak")),
+                    ]
+                )
+    return table(
+        "One who reads nothing",
+        [
+            "active",
+            "hands",
+            "",
+            "turning, frames/s",
+            "painting, frames/s",
+            "camera → last byte, p50 / p95 ms",
+            "stroke → own pixels",
+            "frames a CPU second",
+            "MiB",
+        ],
+        out,
+    )
 
 
 def peer_table(data):
@@ -201,13 +378,30 @@ def peer_table(data):
     out = []
     for row in rows:
         path = "camera_to_picture" if row["program"] == "paraview" else "camera_to_last_byte"
-        cells = [peer_title(row), with_spread(row, "frames_per_s") if row is peer else with_spread(row, "frames_per_s", "turning", "median"), times(row, path), with_spread(row, "frames_per_cpu_s")]
+        cells = [
+            peer_title(row),
+            with_spread(row, "frames_per_s")
+            if row is peer
+            else with_spread(row, "frames_per_s", "turning", "median"),
+            times(row, path),
+            with_spread(row, "frames_per_cpu_s"),
+        ]
         if peer:
-            cells += ["" if row is peer else f"**{middle(row, 'frames_per_cpu_s') / middle(peer, 'frames_per_cpu_s'):.1f}**",
-                      "" if row is peer else f"**{middle(row, path, 'ms_p95') / middle(peer, 'camera_to_picture', 'ms_p95'):.2f}**"]
+            cells += [
+                ""
+                if row is peer
+                else f"**{middle(row, 'frames_per_cpu_s') / middle(peer, 'frames_per_cpu_s'):.1f}**",
+                ""
+                if row is peer
+                else f"**{middle(row, path, 'ms_p95') / middle(peer, 'camera_to_picture', 'ms_p95'):.2f}**",
+            ]
         out.append(cells)
-    return table(f"One viewer beside ParaView's web engine, {data['triangles']:,} triangles",
-                 ["", "frames/s", "camera → picture, p50 / p95 ms", "frames a CPU second"] + (["× ParaView's", "p95 / ParaView's"] if peer else []), out)
+    return table(
+        f"One viewer beside ParaView's web engine, {data['triangles']:,} triangles",
+        ["", "frames/s", "camera → picture, p50 / p95 ms", "frames a CPU second"]
+        + (["× ParaView's", "p95 / ParaView's"] if peer else []),
+        out,
+    )
 
 
 def main():
@@ -217,8 +411,22 @@ def main():
     out = Path(sys.argv[2]) if len(sys.argv) == 3 else source.parent
     data = json.loads(source.read_text())
     about = f"{data['model'].split('/')[-1]}, {data['triangles']:,} triangles, {data['layers']} layer{'s' if data['layers'] != 1 else ''}, {data['window']}"
-    draw(data, out / f"{source.stem}-times.svg", f"From a camera and from a stroke to pixels: {about}", "milliseconds: medians, up to the 95th percentile", TIMES, time_point)
-    draw(data, out / f"{source.stem}-rates.svg", f"Pictures: {about}", "pictures a second", RATES, rate_point)
+    draw(
+        data,
+        out / f"{source.stem}-times.svg",
+        f"From a camera and from a stroke to pixels: {about}",
+        "milliseconds: medians, up to the 95th percentile",
+        TIMES,
+        time_point,
+    )
+    draw(
+        data,
+        out / f"{source.stem}-rates.svg",
+        f"Pictures: {about}",
+        "pictures a second",
+        RATES,
+        rate_point,
+    )
     draw_peer(data, out / f"{source.stem}-peer.svg")
     print("\n".join(active_table(data) + idle_table(data) + stalled_table(data) + peer_table(data)))
     for missing in data.get("not_run", []):

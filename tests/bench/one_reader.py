@@ -37,8 +37,13 @@ LIST_F = "n in (" + ",".join(["1"] * 1900) + ")"
 def begin(server, path, body, token):
     text = json.dumps(body).encode()
     link = socket.create_connection((server.host, server.port))
-    link.sendall((f"POST /api/v1{path} HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer {token}\r\nContent-Type: application/json\r\n"
-                  f"Content-Length: {len(text)}\r\n\r\n").encode() + text)
+    link.sendall(
+        (
+            f"POST /api/v1{path} HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer {token}\r\nContent-Type: application/json\r\n"
+            f"Content-Length: {len(text)}\r\n\r\n"
+        ).encode()
+        + text
+    )
     return link
 
 
@@ -46,7 +51,15 @@ def timed(server, path, body, token=None, headers=None):
     link = http.client.HTTPConnection(server.host, server.port, timeout=600)
     data = body if isinstance(body, bytes) else json.dumps(body).encode()
     start = time.monotonic()
-    link.request("POST", "/api/v1" + path, body=data, headers={"Authorization": "Bearer " + (token or server.token), "Content-Type": "application/json"})
+    link.request(
+        "POST",
+        "/api/v1" + path,
+        body=data,
+        headers={
+            "Authorization": "Bearer " + (token or server.token),
+            "Content-Type": "application/json",
+        },
+    )
     answer = link.getresponse()
     answer.read()
     took = time.monotonic() - start
@@ -71,7 +84,9 @@ def until_idle(server):
 
 def frame(site):
     model = site.get(M).json()
-    large, small = ({"camera": camera_from(model, (0.2, -1, 0.6), *size)} for size in ((8192, 8192), (320, 180)))
+    large, small = (
+        {"camera": camera_from(model, (0.2, -1, 0.6), *size)} for size in ((8192, 8192), (320, 180))
+    )
     timed(site, M + "/frame", small)
     alone = [timed(site, M + "/frame", small)[0] for _ in range(10)]
     with PeakGrowth(site) as growth:
@@ -79,7 +94,13 @@ def frame(site):
         time.sleep(2)
         beside = [timed(site, M + "/frame", small)[0] for _ in range(10)]
         gone = leave(site, links)
-    return {"alone_s": statistics.median(alone), "beside_s": statistics.median(beside), "beside_longest_s": max(beside), "memory_mb": growth.mb, "idle_after_leaving_s": gone}
+    return {
+        "alone_s": statistics.median(alone),
+        "beside_s": statistics.median(beside),
+        "beside_longest_s": max(beside),
+        "memory_mb": growth.mb,
+        "idle_after_leaving_s": gone,
+    }
 
 
 def listed(site):
@@ -116,7 +137,11 @@ def points(site):
     timed(site, M + "/positions", body)
     used = processor_seconds(site.process.pid)
     took = [timed(site, M + "/positions", body) for _ in range(5)]
-    return {"s": min(each for each, _ in took), "processor_s": (processor_seconds(site.process.pid) - used) / 5, "status": took[0][1]}
+    return {
+        "s": min(each for each, _ in took),
+        "processor_s": (processor_seconds(site.process.pid) - used) / 5,
+        "status": took[0][1],
+    }
 
 
 def stopping(site, body):
@@ -133,10 +158,16 @@ def stopping(site, body):
 class Site(StrataServer):
     def __enter__(self):
         super().__enter__()
-        self.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=4096)
+        self.import_model(
+            folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=4096
+        )
         for name, kind in (("k", "u8"), ("n", "f32")):
             self.ok("POST", M + "/layers", {"name": name, "type": kind, "resolution": 4096})
-            self.ok("POST", f"{M}/layers/{name}/edits", {"op": "fill", "mode": "where", "where": "true", "value": 7})
+            self.ok(
+                "POST",
+                f"{M}/layers/{name}/edits",
+                {"op": "fill", "mode": "where", "where": "true", "value": 7},
+            )
         self.eve = self.add_person("eve", "curator")
         return self
 
@@ -145,7 +176,9 @@ CASES = {"frame": frame, "list": listed, "leave": leaving, "empty": empty, "poin
 
 
 def main():
-    reads = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    reads = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     reads.add_argument("--json")
     reads.add_argument("--only", default="frame,list,leave,empty,points,stop")
     asked = reads.parse_args()
@@ -162,7 +195,11 @@ def main():
         for name in ("conditions", "pictures"):
             with Site() as site:
                 camera = camera_from(site.get(M).json(), (0.2, -1, 0.6), 8192, 8192)
-                body = [("/select", {"where": LONG})] if name == "conditions" else [("/frame", {"camera": camera})]
+                body = (
+                    [("/select", {"where": LONG})]
+                    if name == "conditions"
+                    else [("/frame", {"camera": camera})]
+                )
                 found["stop"][name + "_s"] = stopping(site, body)
         print("stop", json.dumps(found["stop"]), flush=True)
     if asked.json:

@@ -19,7 +19,16 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 from support.machine import machine, processor_seconds
 from support.strata_server import StrataServer, wait_for
 
-KINDS = ["height", "slope", "azimuth", "mean_curvature", "gaussian_curvature", "roughness", "ambient_occlusion", "boundary_distance"]
+KINDS = [
+    "height",
+    "slope",
+    "azimuth",
+    "mean_curvature",
+    "gaussian_curvature",
+    "roughness",
+    "ambient_occlusion",
+    "boundary_distance",
+]
 CANCELLED_AFTER = (0.25, 0.5, 0.85)
 LONG_S = 3600
 
@@ -61,12 +70,20 @@ def measure(server, what, path, body):
     forget_peak(server)
     start, used = time.monotonic(), processor_seconds(server.process.pid)
     job, silence = follow(server, server.ok("POST", path, body).json()["id"], what)
-    figures = {"what": what, "seconds": time.monotonic() - start, "cpu_seconds": processor_seconds(server.process.pid) - used,
-               "peak_mib": peak_mib(server), "silence_s": silence}
+    figures = {
+        "what": what,
+        "seconds": time.monotonic() - start,
+        "cpu_seconds": processor_seconds(server.process.pid) - used,
+        "peak_mib": peak_mib(server),
+        "silence_s": silence,
+    }
     if job["state"] != "done":
         figures["refused"] = job["problem"]["title"]
-    print(f"{what:20} {figures['seconds']:6.1f} s   {figures['cpu_seconds']:6.1f} s of processors   {figures['peak_mib']:6.0f} MiB   "
-          f"silent for {silence:4.1f} s{' (' + figures['refused'] + ')' if 'refused' in figures else ''}", flush=True)
+    print(
+        f"{what:20} {figures['seconds']:6.1f} s   {figures['cpu_seconds']:6.1f} s of processors   {figures['peak_mib']:6.0f} MiB   "
+        f"silent for {silence:4.1f} s{' (' + figures['refused'] + ')' if 'refused' in figures else ''}",
+        flush=True,
+    )
     return figures, job
 
 
@@ -87,40 +104,89 @@ def main():
     parser.add_argument("scan")
     parser.add_argument("--unit", default="mm")
     parser.add_argument("--resolution", type=int, default=4096)
-    parser.add_argument("--from", dest="other", help="another version of the scan: the distance to it, and a transfer of all layers to it")
+    parser.add_argument(
+        "--from",
+        dest="other",
+        help="another version of the scan: the distance to it, and a transfer of all layers to it",
+    )
     parser.add_argument("--kinds", help="only these, separated by commas")
-    parser.add_argument("--cancel", action="store_true", help="how soon a job ends that is cancelled, too")
+    parser.add_argument(
+        "--cancel", action="store_true", help="how soon a job ends that is cancelled, too"
+    )
     parser.add_argument("--json", help="write the figures here")
     asked = parser.parse_args()
     rows = []
     with StrataServer() as server:
-        model = server.import_model(read(asked.scan), os.path.basename(asked.scan), name="Model", unit=asked.unit)
+        model = server.import_model(
+            read(asked.scan), os.path.basename(asked.scan), name="Model", unit=asked.unit
+        )
         print(f"{asked.scan}: {model['triangles']} triangles, {asked.resolution}² texels")
         path = f"/models/{model['id']}"
-        measure(server, "the first, uncounted", path + "/layers", {"name": "first", "resolution": asked.resolution, "compute": {"kind": "height"}})
+        measure(
+            server,
+            "the first, uncounted",
+            path + "/layers",
+            {"name": "first", "resolution": asked.resolution, "compute": {"kind": "height"}},
+        )
         kinds = [{"kind": kind} for kind in (asked.kinds.split(",") if asked.kinds else KINDS)]
         if asked.other:
-            other = server.import_model(read(asked.other), os.path.basename(asked.other), name="Other", unit=asked.unit)
+            other = server.import_model(
+                read(asked.other), os.path.basename(asked.other), name="Other", unit=asked.unit
+            )
             kinds.append({"kind": "model_distance", "model": str(other["id"])})
         for recipe in kinds:
             body = {"name": recipe["kind"], "resolution": asked.resolution, "compute": recipe}
             figures, job = measure(server, recipe["kind"], path + "/layers", body)
             if asked.cancel and job["state"] == "done":
-                times = [seconds_to_cancel(server, path + "/layers", {**body, "name": "never"}, share * figures["seconds"]) for share in CANCELLED_AFTER]
+                times = [
+                    seconds_to_cancel(
+                        server,
+                        path + "/layers",
+                        {**body, "name": "never"},
+                        share * figures["seconds"],
+                    )
+                    for share in CANCELLED_AFTER
+                ]
                 figures["cancel_s"] = max((t for t in times if t is not None), default=None)
-                print(f"{'':20} cancelled, it ended after " + ", ".join("(was done)" if t is None else f"{t:.1f} s" for t in times), flush=True)
+                print(
+                    f"{'':20} cancelled, it ended after "
+                    + ", ".join("(was done)" if t is None else f"{t:.1f} s" for t in times),
+                    flush=True,
+                )
             for layer in job.get("layers", []):
-                server.ok("DELETE", f"{path}/layers/{layer}")  # so that each is measured beside the first alone
+                # so that each is measured beside the first alone
+                server.ok("DELETE", f"{path}/layers/{layer}")
             rows.append(figures)
         if asked.other:
-            diagonal_mm = sum((high - low) ** 2 for low, high in zip(model["bounds"]["min"], model["bounds"]["max"])) ** 0.5 * {"mm": 1, "cm": 10, "m": 1000}[asked.unit]
-            figures, job = measure(server, "transfer, one layer", f"/models/{other['id']}/transfer",
-                                   {"from": str(model["id"]), "tolerance_mm": diagonal_mm / 500, "layers": ["first"]})
+            diagonal_mm = (
+                sum(
+                    (high - low) ** 2
+                    for low, high in zip(model["bounds"]["min"], model["bounds"]["max"])
+                )
+                ** 0.5
+                * {"mm": 1, "cm": 10, "m": 1000}[asked.unit]
+            )
+            figures, job = measure(
+                server,
+                "transfer, one layer",
+                f"/models/{other['id']}/transfer",
+                {"from": str(model["id"]), "tolerance_mm": diagonal_mm / 500, "layers": ["first"]},
+            )
             print(job.get("report"))
             rows.append(figures)
     if asked.json:
         with open(asked.json, "w", encoding="utf-8") as file:
-            json.dump({"machine": machine(), "scan": os.path.basename(asked.scan), "triangles": model["triangles"], "resolution": asked.resolution, "results": rows}, file, indent=1)
+            json.dump(
+                {
+                    "machine": machine(),
+                    "scan": os.path.basename(asked.scan),
+                    "triangles": model["triangles"],
+                    "resolution": asked.resolution,
+                    "results": rows,
+                },
+                file,
+                indent=1,
+            )
             file.write("\n")
 
 

@@ -23,15 +23,23 @@ def owner_link(server):
     assert server.stop() == 0
     server.start()
     later = server.link
-    assert "/login?link=" in earlier and "/login?link=" in later and earlier != later, (earlier, later)
+    assert "/login?link=" in earlier and "/login?link=" in later and earlier != later, (
+        earlier,
+        later,
+    )
 
     def opened(link):
         browser = Browser(server)
-        return browser, browser.request("GET", "/" + link[link.index("/login"):])
+        return browser, browser.request("GET", "/" + link[link.index("/login") :])
 
     browser, answer = opened(later)
     assert answer.status == 303 and answer.headers["Location"] == "/", answer
-    assert uncoloured(browser.ok("GET", "/me").json()) == {"user": "owner", "full_name": "", "role": "owner", "has_password": False}
+    assert uncoloured(browser.ok("GET", "/me").json()) == {
+        "user": "owner",
+        "full_name": "",
+        "role": "owner",
+        "has_password": False,
+    }
     for link in (earlier, later + "x"):
         assert opened(link)[1].status == 401, link
     other, answer = opened(later)
@@ -50,9 +58,26 @@ def invitations(server):
     """A link is good once, for a week, for one person, and is no token."""
     made = server.ok("POST", "/users", {"user": "Ada", "full_name": "Ada L.", "role": "annotator"})
     invitation, secret = made.json(), secret_of(made.json())
-    assert made.headers["Location"] == "/api/v1/users/Ada" and made.headers["Cache-Control"] == "no-store"
-    assert invitation["user"] == {**invitation["user"], "user": "Ada", "role": "annotator", "state": "invited", "full_name": "Ada L."}, invitation
-    for name, status in (("ada", 409), ("ADA", 409), ("", 422), ("a b", 422), ("<b>", 422), ("x" * 65, 422), ("owner", 409)):
+    assert (
+        made.headers["Location"] == "/api/v1/users/Ada"
+        and made.headers["Cache-Control"] == "no-store"
+    )
+    assert invitation["user"] == {
+        **invitation["user"],
+        "user": "Ada",
+        "role": "annotator",
+        "state": "invited",
+        "full_name": "Ada L.",
+    }, invitation
+    for name, status in (
+        ("ada", 409),
+        ("ADA", 409),
+        ("", 422),
+        ("a b", 422),
+        ("<b>", 422),
+        ("x" * 65, 422),
+        ("owner", 409),
+    ):
         assert server.post("/users", {"user": name}).status == status, name
     refused = server.post("/users", {"user": "boss", "role": "owner"})
     assert refused.status == 422 and refused.json()["field"] == "role", refused
@@ -60,23 +85,47 @@ def invitations(server):
     assert Browser(server).request("POST", "/login", {"token": secret}).status == 401
     shown = Browser(server).ok("POST", "/invitations/show", {"invitation": secret}).json()
     assert shown["user"] == "Ada", shown
-    for password, title in (("short", "Password too short"), ("ünßé", "Password too short"), ("ada ada 1", "Password too short"), ("xxAda123456", "Password too easy")):
-        refused = Browser(server).request("POST", "/invitations/accept", {"invitation": secret, "password": password})
-        assert refused.status == 422 and refused.json()["field"] == "password" and refused.json()["title"] == title, (password, refused)
+    for password, title in (
+        ("short", "Password too short"),
+        ("ünßé", "Password too short"),
+        ("ada ada 1", "Password too short"),
+        ("xxAda123456", "Password too easy"),
+    ):
+        refused = Browser(server).request(
+            "POST", "/invitations/accept", {"invitation": secret, "password": password}
+        )
+        assert (
+            refused.status == 422
+            and refused.json()["field"] == "password"
+            and refused.json()["title"] == title
+        ), (password, refused)
     ada = join(server, invitation, full_name="Ada Lovelace")
     me = ada.ok("GET", "/me").json()
-    assert uncoloured(me) == {"user": "Ada", "full_name": "Ada Lovelace", "role": "annotator", "has_password": True}, me
+    assert uncoloured(me) == {
+        "user": "Ada",
+        "full_name": "Ada Lovelace",
+        "role": "annotator",
+        "has_password": True,
+    }, me
     for path in ("show", "accept"):
         body = {"invitation": secret, **({"password": PASSWORD} if path == "accept" else {})}
         assert Browser(server).request("POST", "/invitations/" + path, body).status == 401, "used"
     # A new link makes the earlier one worthless, and the password good until another is chosen.
     first = server.ok("POST", "/users/ada/invite").json()
     second = server.ok("POST", "/users/Ada/invite").json()
-    assert Browser(server).request("POST", "/invitations/show", {"invitation": secret_of(first)}).status == 401
+    assert (
+        Browser(server)
+        .request("POST", "/invitations/show", {"invitation": secret_of(first)})
+        .status
+        == 401
+    )
     assert Browser(server).sign_in("ada", PASSWORD).status == 200
     other = join(server, second, OTHER)
     assert ada.request("GET", "/me").status == 401, "a new password ends the sessions of before"
-    assert Browser(server).sign_in("ada", PASSWORD).status == 401 and Browser(server).sign_in("ADA", OTHER).status == 200
+    assert (
+        Browser(server).sign_in("ada", PASSWORD).status == 401
+        and Browser(server).sign_in("ADA", OTHER).status == 200
+    )
     return other
 
 
@@ -85,11 +134,28 @@ def roles(server, ada):
     vera = join(server, server.ok("POST", "/users", {"user": "vera"}).json())
     assert vera.ok("GET", "/me").json()["role"] == "viewer"
     carl = join(server, server.ok("POST", "/users", {"user": "carl", "role": "curator"}).json())
-    anne = join(server, server.ok("POST", "/users", {"user": "anne", "role": "administrator"}).json())
-    calls = {"look": ("GET", M, None, 200), "paint": ("POST", L + "/edits", FILL, 200), "layer": ("POST", M + "/layers", {"name": "New"}, 201),
-             "people": ("GET", "/users", None, 200), "project": ("POST", "/projects", {"name": "P"}, 201)}
-    may = {"viewer": {"look"}, "annotator": {"look", "paint"}, "curator": {"look", "paint", "layer"}, "administrator": set(calls)}
-    for browser, role in ((vera, "viewer"), (ada, "annotator"), (carl, "curator"), (anne, "administrator")):
+    anne = join(
+        server, server.ok("POST", "/users", {"user": "anne", "role": "administrator"}).json()
+    )
+    calls = {
+        "look": ("GET", M, None, 200),
+        "paint": ("POST", L + "/edits", FILL, 200),
+        "layer": ("POST", M + "/layers", {"name": "New"}, 201),
+        "people": ("GET", "/users", None, 200),
+        "project": ("POST", "/projects", {"name": "P"}, 201),
+    }
+    may = {
+        "viewer": {"look"},
+        "annotator": {"look", "paint"},
+        "curator": {"look", "paint", "layer"},
+        "administrator": set(calls),
+    }
+    for browser, role in (
+        (vera, "viewer"),
+        (ada, "annotator"),
+        (carl, "curator"),
+        (anne, "administrator"),
+    ):
         for what, (method, path, body, good) in calls.items():
             status = browser.request(method, path, body).status
             assert status == (good if what in may[role] else 403), (role, what, status)
@@ -97,12 +163,22 @@ def roles(server, ada):
     assert {edit["user"] for edit in history} == {"Ada", "carl", "anne"}, history
     # Administrators: not themselves, not the owner, nothing above themselves.
     for path in ("/users/anne", "/users/owner"):
-        for method, body in (("PATCH", {"role": "viewer"}), ("PATCH", {"disabled": True}), ("DELETE", None)):
+        for method, body in (
+            ("PATCH", {"role": "viewer"}),
+            ("PATCH", {"disabled": True}),
+            ("DELETE", None),
+        ):
             assert anne.request(method, path, body).status == 409, (method, path)
     assert anne.request("PATCH", "/users/ada", {"role": "owner"}).status == 422
     server.ok("POST", "/users", {"user": "amos", "role": "administrator"})
-    for method, path, body in (("PATCH", "/users/amos", {"disabled": True}), ("DELETE", "/users/amos", None), ("POST", "/users/amos/invite", None)):
-        assert anne.request(method, path, body).status == 403, "one administrator does not let themselves in as another"
+    for method, path, body in (
+        ("PATCH", "/users/amos", {"disabled": True}),
+        ("DELETE", "/users/amos", None),
+        ("POST", "/users/amos/invite", None),
+    ):
+        assert (
+            anne.request(method, path, body).status == 403
+        ), "one administrator does not let themselves in as another"
     server.ok("DELETE", "/users/amos")
     assert anne.request("PATCH", "/users/nobody", {"role": "viewer"}).status == 404
     assert anne.request("PATCH", "/users/ada", {}).status == 422
@@ -133,11 +209,15 @@ def roles(server, ada):
 
 def slow_body(server):
     """Who is shut out while their request is under way does nothing with it."""
-    boss = join(server, server.ok("POST", "/users", {"user": "boss", "role": "administrator"}).json())
+    boss = join(
+        server, server.ok("POST", "/users", {"user": "boss", "role": "administrator"}).json()
+    )
     body = b'{"user": "mole", "role": "administrator"}'
     with socket.create_connection((server.host, server.port), timeout=LONG_S) as link:
-        link.sendall(f"POST /api/v1/users HTTP/1.1\r\nHost: {server.host}:{server.port}\r\nOrigin: {server.url}\r\nCookie: {boss.cookie}\r\nConnection: close\r\n"
-                     f"Content-Type: application/json\r\nExpect: 100-continue\r\nContent-Length: {len(body)}\r\n\r\n".encode())
+        link.sendall(
+            f"POST /api/v1/users HTTP/1.1\r\nHost: {server.host}:{server.port}\r\nOrigin: {server.url}\r\nCookie: {boss.cookie}\r\nConnection: close\r\n"
+            f"Content-Type: application/json\r\nExpect: 100-continue\r\nContent-Length: {len(body)}\r\n\r\n".encode()
+        )
         assert link.recv(100).startswith(b"HTTP/1.1 100"), "it was let in"
         server.ok("DELETE", "/users/boss")
         link.sendall(body)
@@ -149,7 +229,11 @@ def sessions(server, ada):
     phone = Browser(server, "Mozilla/5.0 (Android 15) Chrome/130")
     assert phone.sign_in("ada", OTHER).status == 200
     listed = phone.ok("GET", "/me/sessions").json()["sessions"]
-    assert len(listed) == 2 and [each["current"] for each in listed] == [True, False] and "Android" in listed[0]["agent"], listed
+    assert (
+        len(listed) == 2
+        and [each["current"] for each in listed] == [True, False]
+        and "Android" in listed[0]["agent"]
+    ), listed
     ada.ok("DELETE", f"/me/sessions/{listed[0]['id']}")
     assert phone.request("GET", "/me").status == 401
     assert ada.request("DELETE", f"/me/sessions/{listed[0]['id']}").status == 404
@@ -157,9 +241,16 @@ def sessions(server, ada):
     assert not set(each["id"] for each in of_owner) & set(each["id"] for each in listed)
     phone.sign_in("ada", OTHER)
     ada.ok("DELETE", "/me/sessions")
-    assert phone.request("GET", "/me").status == 401 and ada.ok("GET", "/me/sessions").json()["total"] == 1
+    assert (
+        phone.request("GET", "/me").status == 401
+        and ada.ok("GET", "/me/sessions").json()["total"] == 1
+    )
     phone.sign_in("ada", OTHER)
-    for body, field in (({"password": PASSWORD}, "current"), ({"current": "wrong", "password": PASSWORD}, "current"), ({"current": OTHER, "password": "short"}, "password")):
+    for body, field in (
+        ({"password": PASSWORD}, "current"),
+        ({"current": "wrong", "password": PASSWORD}, "current"),
+        ({"current": OTHER, "password": "short"}, "password"),
+    ):
         refused = ada.request("POST", "/me/password", body)
         assert refused.status == 422 and refused.json()["field"] == field, refused
     ada.ok("POST", "/me/password", {"current": OTHER, "password": PASSWORD})
@@ -177,46 +268,96 @@ def tokens(server, ada, anne):
     """A script's token does what both it and its person may, and opens no session."""
     made = ada.ok("POST", "/me/tokens", {"name": "nightly", "role": "viewer", "days": 3}).json()
     secret = made["secret"]
-    assert made["token"]["role"] == "viewer" and made["token"]["expires"] > made["token"]["created"], made
-    assert server.get(M, token=secret).status == 200 and server.post(L + "/edits", FILL, token=secret).status == 403
+    assert (
+        made["token"]["role"] == "viewer" and made["token"]["expires"] > made["token"]["created"]
+    ), made
+    assert (
+        server.get(M, token=secret).status == 200
+        and server.post(L + "/edits", FILL, token=secret).status == 403
+    )
     assert ada.request("POST", "/me/tokens", {"name": "more", "role": "curator"}).status == 403
-    assert server.post("/me/tokens", {"name": "more", "role": "annotator"}, token=secret).status == 403, "a token makes no stronger one"
+    assert (
+        server.post("/me/tokens", {"name": "more", "role": "annotator"}, token=secret).status == 403
+    ), "a token makes no stronger one"
     refused = Browser(server).request("POST", "/login", {"token": secret})
     assert refused.status == 403 and "script" in refused.json()["detail"], refused
-    for method, path, body in (("POST", "/me/password", {"current": PASSWORD, "password": OTHER}), ("GET", "/me/sessions", None), ("DELETE", "/me/sessions", None),
-                               ("GET", "/me/tokens", None), ("PATCH", "/me", {"full_name": "x"}), ("DELETE", f"/me/tokens/{made['token']['id']}", None)):
+    for method, path, body in (
+        ("POST", "/me/password", {"current": PASSWORD, "password": OTHER}),
+        ("GET", "/me/sessions", None),
+        ("DELETE", "/me/sessions", None),
+        ("GET", "/me/tokens", None),
+        ("PATCH", "/me", {"full_name": "x"}),
+        ("DELETE", f"/me/tokens/{made['token']['id']}", None),
+    ):
         assert server.request(method, path, body, token=secret).status == 403, (method, path)
     assert server.get("/me", token=secret).json()["role"] == "viewer"
     painting = ada.ok("POST", "/me/tokens", {"name": "painter"}).json()
     assert server.post(L + "/edits", FILL, token=painting["secret"]).status == 200
     anne.ok("PATCH", "/users/ada", {"role": "viewer"})
-    assert server.post(L + "/edits", FILL, token=painting["secret"]).status == 403, "no more than its person"
+    assert (
+        server.post(L + "/edits", FILL, token=painting["secret"]).status == 403
+    ), "no more than its person"
     anne.ok("PATCH", "/users/ada", {"role": "annotator"})
     listed = ada.ok("GET", "/me/tokens").json()
-    assert [each["name"] for each in listed["tokens"]] == ["painter", "nightly"] and all("last_used" in each for each in listed["tokens"]), listed
+    assert [each["name"] for each in listed["tokens"]] == ["painter", "nightly"] and all(
+        "last_used" in each for each in listed["tokens"]
+    ), listed
     assert secret not in str(listed)
     # One for a project alone, as curator at most, whoever makes it.
     server.ok("POST", "/projects", {"name": "Tower"})
     refused = ada.request("POST", "/me/tokens", {"name": "t", "project": "nowhere"})
     assert refused.status == 404 and refused.json()["field"] == "project", refused
-    for who, role, status in ((ada, "curator", 403), (anne, "administrator", 422), (anne, "guest", 422)):
+    for who, role, status in (
+        (ada, "curator", 403),
+        (anne, "administrator", 422),
+        (anne, "guest", 422),
+    ):
         refused = who.request("POST", "/me/tokens", {"name": "t", "project": "tower", "role": role})
         assert refused.status == status and refused.json()["field"] == "role", refused
     tower = anne.ok("POST", "/me/tokens", {"name": "of the tower", "project": "tower"}).json()
-    only, default = tower["secret"], anne.ok("POST", "/me/tokens", {"name": "of the first", "project": "default", "role": "annotator"}).json()["secret"]
+    only, default = (
+        tower["secret"],
+        anne.ok(
+            "POST",
+            "/me/tokens",
+            {"name": "of the first", "project": "default", "role": "annotator"},
+        ).json()["secret"],
+    )
     assert tower["token"]["role"] == "curator" and tower["token"]["project"] == "tower", tower
-    assert [project["slug"] for project in server.get("/projects", token=only).json()["projects"]] == ["tower"]
-    assert server.get(M, token=only).status == 404 and server.get("/users", token=only).status == 403
-    table = server.post("/projects/tower/tables", {"name": "Finds", "columns": [{"name": "Code"}]}, token=only)
-    assert table.status == 201 and server.request("DELETE", f"/tables/{table.json()['slug']}", token=only).status == 204, table
-    assert server.post(L + "/edits", FILL, token=default).status == 200 and server.get("/projects/tower", token=default).status == 404
+    assert [
+        project["slug"] for project in server.get("/projects", token=only).json()["projects"]
+    ] == ["tower"]
+    assert (
+        server.get(M, token=only).status == 404 and server.get("/users", token=only).status == 403
+    )
+    table = server.post(
+        "/projects/tower/tables", {"name": "Finds", "columns": [{"name": "Code"}]}, token=only
+    )
+    assert (
+        table.status == 201
+        and server.request("DELETE", f"/tables/{table.json()['slug']}", token=only).status == 204
+    ), table
+    assert (
+        server.post(L + "/edits", FILL, token=default).status == 200
+        and server.get("/projects/tower", token=default).status == 404
+    )
     server.ok("DELETE", "/projects/tower")
-    assert [each["name"] for each in anne.ok("GET", "/me/tokens").json()["tokens"]] == ["of the first"]
-    wait_for(lambda: server.get("/me", token=only).status == 401, "the token to be gone with its project")  # remembered for some seconds
+    assert [each["name"] for each in anne.ok("GET", "/me/tokens").json()["tokens"]] == [
+        "of the first"
+    ]
+    # remembered for some seconds
+    wait_for(
+        lambda: server.get("/me", token=only).status == 401, "the token to be gone with its project"
+    )
     anne.ok("DELETE", f"/me/tokens/{anne.ok('GET', '/me/tokens').json()['tokens'][0]['id']}")
     managing = anne.ok("POST", "/me/tokens", {"name": "manager"}).json()["secret"]
-    assert server.get("/users", token=managing).status == 200 and server.post("/users/ada/invite", token=managing).status == 403
-    assert anne.request("DELETE", f"/me/tokens/{made['token']['id']}").status == 404, "somebody else's"
+    assert (
+        server.get("/users", token=managing).status == 200
+        and server.post("/users/ada/invite", token=managing).status == 403
+    )
+    assert (
+        anne.request("DELETE", f"/me/tokens/{made['token']['id']}").status == 404
+    ), "somebody else's"
     ada.ok("DELETE", f"/me/tokens/{made['token']['id']}")
     assert server.get(M, token=secret).status == 401
     assert server.post(L + "/edits", FILL, token=painting["secret"]).status == 200
@@ -229,8 +370,13 @@ def deletion(server, anne):
     number = server.ok("GET", "/users/ada").json()["id"]
     anne.ok("DELETE", "/users/ada")
     after = server.ok("GET", L + "/edits").json()["edits"]
-    assert mine and [edit["sequence"] for edit in after if edit["user"] == f"former-{number}"] == mine, after
-    assert server.get("/users/ada").status == 404 and "ada" not in str(server.ok("GET", "/users").json()).lower()
+    assert (
+        mine and [edit["sequence"] for edit in after if edit["user"] == f"former-{number}"] == mine
+    ), after
+    assert (
+        server.get("/users/ada").status == 404
+        and "ada" not in str(server.ok("GET", "/users").json()).lower()
+    )
     assert Browser(server).sign_in("ada", PASSWORD).status == 401
     assert Browser(server).sign_in(f"former-{number}", PASSWORD).status == 401
     assert server.post("/users", {"user": f"former-{number}"}).status == 409
@@ -245,56 +391,127 @@ def guessing(server, vera):
     assert vera.request("GET", "/me").status == 200
     # Others come in meanwhile, from another address.
     anne = Browser(server)
-    assert anne.request("POST", "/login", {"user": "anne", "password": PASSWORD}, **{"X-Forwarded-For": "10.9.8.7"}).status == 200
-    for body in ({"user": "vera"}, {"password": "x"}, {"user": "vera", "password": "x", "token": "y"}, {}, {"user": ["vera"], "password": {}}):
+    assert (
+        anne.request(
+            "POST",
+            "/login",
+            {"user": "anne", "password": PASSWORD},
+            **{"X-Forwarded-For": "10.9.8.7"},
+        ).status
+        == 200
+    )
+    for body in (
+        {"user": "vera"},
+        {"password": "x"},
+        {"user": "vera", "password": "x", "token": "y"},
+        {},
+        {"user": ["vera"], "password": {}},
+    ):
         assert Browser(server).request("POST", "/login", body).status == 422, body
 
 
 def commands(server):
     """The same from the server's own machine, while it runs."""
+
     def strata(*words, entered=None, code=0):
-        done = subprocess.run([server.binary, *words, "--data", server.data], capture_output=True, text=True, check=False, timeout=LONG_S, input=entered)
+        done = subprocess.run(
+            [server.binary, *words, "--data", server.data],
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=LONG_S,
+            input=entered,
+        )
         assert done.returncode == code, (words, done)
         return done.stdout + done.stderr
 
-    link = re.search(r"http://here/join#(\S+)", strata("user", "add", "Max", "--url", "http://here"))
-    assert Browser(server).ok("POST", "/invitations/show", {"invitation": link[1]}).json()["role"] == "annotator"
-    assert "too short" in strata("user", "password", "max", "--password-stdin", entered="short\n", code=1)
+    link = re.search(
+        r"http://here/join#(\S+)", strata("user", "add", "Max", "--url", "http://here")
+    )
+    assert (
+        Browser(server).ok("POST", "/invitations/show", {"invitation": link[1]}).json()["role"]
+        == "annotator"
+    )
+    assert "too short" in strata(
+        "user", "password", "max", "--password-stdin", entered="short\n", code=1
+    )
     strata("user", "password", "max", "--password-stdin", entered="a horse, a kingdom\n")
     assert server.get("/users/max").json()["state"] == "active"
     strata("user", "role", "max", "guest")
     assert re.search(r"Max +guest +active", strata("user", "list"))
     project = server.ok("POST", "/projects", {"name": "Villa"}).json()["slug"]
     strata("user", "role", "max", "annotator", "--project", project)
-    assert re.search(r"Max +annotator", strata("user", "list", "--project", project)) and re.search(r"Max +guest", strata("user", "list"))
-    for role, place in (("administrator", project), ("guest", project), ("viewer", "nowhere"), ("none", "nowhere")):
-        assert "strata: " in strata("user", "role", "max", role, "--project", place, code=1), (role, place)
-    assert "annotator" in strata("user", "list", "--project", project), "what was refused changed nothing"
+    assert re.search(r"Max +annotator", strata("user", "list", "--project", project)) and re.search(
+        r"Max +guest", strata("user", "list")
+    )
+    for role, place in (
+        ("administrator", project),
+        ("guest", project),
+        ("viewer", "nowhere"),
+        ("none", "nowhere"),
+    ):
+        assert "strata: " in strata("user", "role", "max", role, "--project", place, code=1), (
+            role,
+            place,
+        )
+    assert "annotator" in strata(
+        "user", "list", "--project", project
+    ), "what was refused changed nothing"
     strata("user", "role", "max", "none", "--project", project)
     assert strata("user", "list", "--project", project) == ""
-    for words in (("user", "role", "max", "none", "--project", project), ("user", "role", "max", "none"), ("user", "list", "--project", "nowhere")):
+    for words in (
+        ("user", "role", "max", "none", "--project", project),
+        ("user", "role", "max", "none"),
+        ("user", "list", "--project", "nowhere"),
+    ):
         assert "strata: " in strata(*words, code=1), words
     strata("user", "role", "max", "curator")
     listed = strata("user", "list")
     assert re.search(r"Max +curator +active", listed) and "owner" in listed, listed
     secret = strata("token", "add", "report", "--user", "max", "--role", "viewer").strip()
     assert server.get("/me", token=secret).json()["role"] == "viewer"
-    assert re.search(r"curator +until .*nightly \(only default\)", strata("token", "add", "nightly", "--user", "max", "--project", "default") and strata("token", "list", "--user", "max"))
+    assert re.search(
+        r"curator +until .*nightly \(only default\)",
+        strata("token", "add", "nightly", "--user", "max", "--project", "default")
+        and strata("token", "list", "--user", "max"),
+    )
     strata("user", "role", "max", "viewer")
-    assert re.search(r"viewer +until .*watch \(only default\)", strata("token", "add", "watch", "--user", "max", "--project", "default") and strata("token", "list", "--user", "max"))
+    assert re.search(
+        r"viewer +until .*watch \(only default\)",
+        strata("token", "add", "watch", "--user", "max", "--project", "default")
+        and strata("token", "list", "--user", "max"),
+    )
     strata("user", "role", "max", "annotator", "--project", "default")
-    assert re.search(r"annotator +until .*brush \(only default\)", strata("token", "add", "brush", "--user", "max", "--project", "default") and strata("token", "list", "--user", "max"))
-    for words in (("--project", "nowhere"), ("--project", "default", "--role", "administrator"), ("--project", "default", "--role", "curator")):
+    assert re.search(
+        r"annotator +until .*brush \(only default\)",
+        strata("token", "add", "brush", "--user", "max", "--project", "default")
+        and strata("token", "list", "--user", "max"),
+    )
+    for words in (
+        ("--project", "nowhere"),
+        ("--project", "default", "--role", "administrator"),
+        ("--project", "default", "--role", "curator"),
+    ):
         assert "strata: " in strata("token", "add", "x", "--user", "max", *words, code=1), words
     number = re.search(r"(\d+) +viewer .*report", strata("token", "list", "--user", "max"))[1]
     strata("token", "revoke", number, "--user", "max")
     assert "report" not in strata("token", "list", "--user", "max")
-    for words in (("user", "role", "owner", "viewer"), ("user", "disable", "owner"), ("user", "remove", "owner"), ("user", "remove", "nobody"), ("user", "add", "max"), ("user", "add", "a b"),
-                  ("token", "add", "x", "--user", "max", "--role", "administrator"), ("token", "revoke", number, "--user", "max")):
+    for words in (
+        ("user", "role", "owner", "viewer"),
+        ("user", "disable", "owner"),
+        ("user", "remove", "owner"),
+        ("user", "remove", "nobody"),
+        ("user", "add", "max"),
+        ("user", "add", "a b"),
+        ("token", "add", "x", "--user", "max", "--role", "administrator"),
+        ("token", "revoke", number, "--user", "max"),
+    ):
         assert "strata: " in strata(*words, code=1), words
     strata("user", "role", "max", "king", code=2)
     strata("user", "add", "nobody", "--password-stdin", entered="short", code=1)
-    assert server.get("/users/nobody").status == 404, "without a password that will do there is no account"
+    assert (
+        server.get("/users/nobody").status == 404
+    ), "without a password that will do there is no account"
     strata("user", "remove", "max")
     assert server.get("/users/max").status == 404
 
@@ -304,7 +521,12 @@ def reach(server):
     assert server.stop() == 0
 
     def serve():
-        done = subprocess.Popen([server.binary, "serve", "--data", server.data, "--listen", "0.0.0.0:0"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        done = subprocess.Popen(
+            [server.binary, "serve", "--data", server.data, "--listen", "0.0.0.0:0"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         first = done.stdout.readline()
         done.terminate()
         return first, done.communicate(timeout=LONG_S)[1]
@@ -312,7 +534,12 @@ def reach(server):
     started, _ = serve()
     assert started.startswith("listening on http://0.0.0.0:"), started
     for name in ("anne",):
-        subprocess.run([server.binary, "user", "disable", name, "--data", server.data], check=True, timeout=LONG_S, capture_output=True)
+        subprocess.run(
+            [server.binary, "user", "disable", name, "--data", server.data],
+            check=True,
+            timeout=LONG_S,
+            capture_output=True,
+        )
     started, said = serve()
     assert not started and "strata user add" in said, (started, said)
 

@@ -20,7 +20,9 @@ PHOTO = b"%PDF-1.4\n" + bytes(range(256)) * 2000
 
 
 def strata(*words, **more):
-    return subprocess.run([os.environ["STRATA_BINARY"], *words], capture_output=True, text=True, check=False, **more)
+    return subprocess.run(
+        [os.environ["STRATA_BINARY"], *words], capture_output=True, text=True, check=False, **more
+    )
 
 
 def refused(*words, told):
@@ -31,11 +33,25 @@ def refused(*words, told):
 def make_site(server):
     model = server.import_model(folded_grid(30), "sheet.ply", name="Sheet", unit="mm")
     server.ok("POST", M + "/layers", {"name": "moisture", "type": "f32", "resolution": 2048})
-    server.ok("POST", M + "/layers", {"name": "cracks", "type": "u8", "kind": "database", "resolution": 2048,
-                                      "columns": [{"name": "note", "kind": "text"}, {"name": "report", "kind": "document"}]})
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "cracks",
+            "type": "u8",
+            "kind": "database",
+            "resolution": 2048,
+            "columns": [{"name": "note", "kind": "text"}, {"name": "report", "kind": "document"}],
+        },
+    )
     for note in ("größer", "'; DROP TABLE x; --", ""):
         server.ok("POST", "/tables/cracks/records", {"values": {"note": note}})
-    server.ok("POST", "/tables/cracks/records/1/attachments?name=report.pdf&column=report", PHOTO, headers={"Content-Type": "application/pdf"})
+    server.ok(
+        "POST",
+        "/tables/cracks/records/1/attachments?name=report.pdf&column=report",
+        PHOTO,
+        headers={"Content-Type": "application/pdf"},
+    )
     server.add_person("ada", "annotator")
     return camera_from(model, (0.2, 0.3, 1))
 
@@ -44,8 +60,16 @@ class Painters:
     """Three who paint until they are told to stop."""
 
     def __init__(self, server, camera):
-        self.acknowledged, self.changed, self.stopping, self.faults = [], threading.Condition(), False, []
-        self.threads = [threading.Thread(target=self.paint, args=(server, camera, number)) for number in range(3)]
+        self.acknowledged, self.changed, self.stopping, self.faults = (
+            [],
+            threading.Condition(),
+            False,
+            [],
+        )
+        self.threads = [
+            threading.Thread(target=self.paint, args=(server, camera, number))
+            for number in range(3)
+        ]
         for thread in self.threads:
             thread.start()
 
@@ -55,9 +79,23 @@ class Painters:
             while not self.stopping:
                 n += 1
                 layer, value = ("moisture", 0.01 * n) if n % 2 else ("cracks", 1 + n % 3)
-                edit = {"op": "stroke", "value": value, "camera": camera, "radius_px": 6 + n % 9,
-                        "path": [[150 + 37 * n % 300, 100 + 53 * (n + number) % 250], [180 + 29 * n % 300, 120 + 31 * n % 250]]}
-                done = server.ok("POST", f"{M}/layers/{layer}/edits", edit, headers={"Idempotency-Key": str(uuid.uuid4())}, connection=link).json()
+                edit = {
+                    "op": "stroke",
+                    "value": value,
+                    "camera": camera,
+                    "radius_px": 6 + n % 9,
+                    "path": [
+                        [150 + 37 * n % 300, 100 + 53 * (n + number) % 250],
+                        [180 + 29 * n % 300, 120 + 31 * n % 250],
+                    ],
+                }
+                done = server.ok(
+                    "POST",
+                    f"{M}/layers/{layer}/edits",
+                    edit,
+                    headers={"Idempotency-Key": str(uuid.uuid4())},
+                    connection=link,
+                ).json()
                 with self.changed:
                     self.acknowledged.append(done["sequence"])
                     self.changed.notify_all()
@@ -68,7 +106,9 @@ class Painters:
 
     def wait_for(self, count):
         with self.changed:
-            assert self.changed.wait_for(lambda: self.faults or len(self.acknowledged) >= count, 180), "nobody paints"
+            assert self.changed.wait_for(
+                lambda: self.faults or len(self.acknowledged) >= count, 180
+            ), "nobody paints"
             return list(self.acknowledged)
 
     def end(self):
@@ -83,24 +123,39 @@ def contents(server, sequence):
     layers = {}
     for layer in ("moisture", "cracks"):
         history = server.ok("GET", f"{M}/layers/{layer}/edits?limit=1000").json()["edits"]
-        layers[layer] = (server.ok("GET", f"{M}/layers/{layer}/texels.npy?at={sequence}").body,
-                         [edit for edit in history if edit["sequence"] <= sequence])
+        layers[layer] = (
+            server.ok("GET", f"{M}/layers/{layer}/texels.npy?at={sequence}").body,
+            [edit for edit in history if edit["sequence"] <= sequence],
+        )
     attachments = server.ok("GET", "/tables/cracks/records/1/attachments").json()["attachments"]
     model = server.ok("GET", M).json()
-    return (layers, server.ok("GET", "/tables/cracks/records").json()["records"],
-            [server.ok("GET", f"/attachments/{each['id']}").body for each in attachments],
-            server.ok("GET", f"{M}/source/sheet.ply").body, model["id"], model["atlas"])
+    return (
+        layers,
+        server.ok("GET", "/tables/cracks/records").json()["records"],
+        [server.ok("GET", f"/attachments/{each['id']}").body for each in attachments],
+        server.ok("GET", f"{M}/source/sheet.ply").body,
+        model["id"],
+        model["atlas"],
+    )
 
 
 def check_goes_on(server, camera, newest):
     """People sign in with their passwords, undo what they did before, and keys and numbers are not given again."""
-    signed = server.request("POST", "/login", {"user": "ada", "password": "ada and seven blue herons"}, headers={"Origin": server.url}, token=False)
+    signed = server.request(
+        "POST",
+        "/login",
+        {"user": "ada", "password": "ada and seven blue herons"},
+        headers={"Origin": server.url},
+        token=False,
+    )
     assert signed.status == 200, signed
     edit = {"op": "stroke", "value": 3, "camera": camera, "radius_px": 9, "path": [[320, 240]]}
     assert server.ok("POST", M + "/layers/cracks/edits", edit).json()["sequence"] == newest + 1
     server.ok("POST", M + "/layers/cracks/undo")
     server.ok("POST", M + "/layers/cracks/undo")
-    assert server.ok("POST", "/tables/cracks/records", {"values": {"note": "new"}}).json()["key"] == 4
+    assert (
+        server.ok("POST", "/tables/cracks/records", {"values": {"note": "new"}}).json()["key"] == 4
+    )
 
 
 def check_bad_backups(whole, data, folder):
@@ -127,40 +182,76 @@ def check_bad_backups(whole, data, folder):
             change(content)
             with open(manifest, "w", encoding="utf-8") as file:
                 json.dump(content, file)
+
         return apply
 
     def garbage(_, manifest):
         with open(manifest, "wb") as file:
             file.write(b"\xff" * 100)
 
-    for name, change, told in (("cut", cut, "bytes; "), ("flipped", flip, "checksum differs"), ("garbage", garbage, "manifest.json is not"),
-                               ("newer", edit(lambda m: m.update(schema_version=10**6)), "Newer backup"),
-                               ("format", edit(lambda m: m.update(format=99)), "Another format"),
-                               ("types", edit(lambda m: m.update(tables=[1])), "manifest.json is not"),
-                               ("rows", edit(lambda m: m["tables"]["public.edits"].update(rows=1)), "public.edits is not what"),
-                               ("missing", edit(lambda m: m["tables"].update({"public.gone": {"rows": 0, "digest": "0"}})), "public.gone is not what"),
-                               ("sequence", edit(lambda m: m["sequences"].update({next(iter(m["sequences"])): 10**9})), "numbers again")):
+    for name, change, told in (
+        ("cut", cut, "bytes; "),
+        ("flipped", flip, "checksum differs"),
+        ("garbage", garbage, "manifest.json is not"),
+        ("newer", edit(lambda m: m.update(schema_version=10**6)), "Newer backup"),
+        ("format", edit(lambda m: m.update(format=99)), "Another format"),
+        ("types", edit(lambda m: m.update(tables=[1])), "manifest.json is not"),
+        (
+            "rows",
+            edit(lambda m: m["tables"]["public.edits"].update(rows=1)),
+            "public.edits is not what",
+        ),
+        (
+            "missing",
+            edit(lambda m: m["tables"].update({"public.gone": {"rows": 0, "digest": "0"}})),
+            "public.gone is not what",
+        ),
+        (
+            "sequence",
+            edit(lambda m: m["sequences"].update({next(iter(m["sequences"])): 10**9})),
+            "numbers again",
+        ),
+    ):
         bad = copy(name, change)
         refused("restore", bad, "--data", data, told=told)
-        assert not os.path.exists(os.path.join(data, "postgres")) and not os.path.exists(os.path.join(data, "restoring")), os.listdir(data)
+        assert not os.path.exists(os.path.join(data, "postgres")) and not os.path.exists(
+            os.path.join(data, "restoring")
+        ), os.listdir(data)
         shutil.rmtree(bad)
     refused("restore", folder, "--data", data, told="No backup")
 
 
 def check_killed_restore(whole, data):
     """Cut short, a restore leaves nothing that a server would start on, and can be done again."""
-    child = subprocess.Popen([os.environ["STRATA_BINARY"], "restore", whole, "--data", data], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    wait_for(lambda: os.path.exists(os.path.join(data, "restoring", "postgres", "pgdata")) or child.poll() is not None, "the restore to begin")
+    child = subprocess.Popen(
+        [os.environ["STRATA_BINARY"], "restore", whole, "--data", data],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    wait_for(
+        lambda: os.path.exists(os.path.join(data, "restoring", "postgres", "pgdata"))
+        or child.poll() is not None,
+        "the restore to begin",
+    )
     child.send_signal(signal.SIGKILL)
     child.wait()
-    assert not os.path.exists(os.path.join(data, "postgres")), "it was quicker than its end: make the site larger"
+    assert not os.path.exists(
+        os.path.join(data, "postgres")
+    ), "it was quicker than its end: make the site larger"
 
 
 def check_full_disk(server, folder):
     """No room for the dump: refused, and no folder that looks like a backup."""
     small = os.path.join(folder, "small")
     os.mkdir(small)
-    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", small], capture_output=True, check=False).returncode != 0:
+    if (
+        subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", small],
+            capture_output=True,
+            check=False,
+        ).returncode
+        != 0
+    ):
         print("SKIPPED: a full disk (no right to mount)")
         return
     try:
@@ -182,7 +273,10 @@ def check_other_database(server, whole):
     refused("restore", whole, "--database", "host=", told="strata: ")
     again = strata("backup", whole + "-copy", "--database", copy)
     assert again.returncode == 0, again
-    manifests = [json.load(open(os.path.join(each, "manifest.json"), encoding="utf-8")) for each in (whole, whole + "-copy")]
+    manifests = [
+        json.load(open(os.path.join(each, "manifest.json"), encoding="utf-8"))
+        for each in (whole, whole + "-copy")
+    ]
     assert manifests[0]["tables"] == manifests[1]["tables"]
     assert sorted(os.listdir(whole + "-copy")) == ["database.dump", "manifest.json"]
 
@@ -211,13 +305,24 @@ def main():
             try:
                 check_bad_backups(whole, second.data, folder)
                 check_killed_restore(whole, second.data)
-                done = wait_for(lambda: (lambda done: done if done.returncode == 0 else None)(strata("restore", whole, "--data", second.data)),
-                                "the second try to restore")
+                done = wait_for(
+                    lambda: (lambda done: done if done.returncode == 0 else None)(
+                        strata("restore", whole, "--data", second.data)
+                    ),
+                    "the second try to restore",
+                )
                 assert "every table is what was backed up" in done.stdout, done
                 with second:
-                    newest = max(edit["sequence"] for layer in ("moisture", "cracks")
-                                 for edit in second.ok("GET", f"{M}/layers/{layer}/edits?limit=1000").json()["edits"])
-                    assert newest >= max(before), "an edit that was acknowledged before the backup is missing"
+                    newest = max(
+                        edit["sequence"]
+                        for layer in ("moisture", "cracks")
+                        for edit in second.ok("GET", f"{M}/layers/{layer}/edits?limit=1000").json()[
+                            "edits"
+                        ]
+                    )
+                    assert newest >= max(
+                        before
+                    ), "an edit that was acknowledged before the backup is missing"
                     assert contents(second, newest) == contents(first, newest)
                     check_goes_on(second, camera, newest)
                     assert second.stop() == 0
@@ -230,7 +335,13 @@ def main():
             done = strata("backup", quiet, "--data", first.data)
             assert done.returncode == 0, done
             first.assert_clean_log()
-        refused("backup", os.path.join(folder, "none"), "--data", os.path.join(folder, "nothing"), told="No database")
+        refused(
+            "backup",
+            os.path.join(folder, "none"),
+            "--data",
+            os.path.join(folder, "nothing"),
+            told="No database",
+        )
         assert strata("backup").returncode == 2
     finally:
         shutil.rmtree(folder, ignore_errors=True)

@@ -15,17 +15,38 @@ BINARY = os.environ["STRATA_BINARY"]
 
 
 def strata(*words, **environment):
-    return subprocess.run([BINARY, *words], capture_output=True, text=True, check=False, timeout=LONG_S, env={**os.environ, **environment})
+    return subprocess.run(
+        [BINARY, *words],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=LONG_S,
+        env={**os.environ, **environment},
+    )
 
 
 def check_usage(folder):
     data = os.path.join(folder, "unused")
-    for words, environment in ((("serve", "--listen", "nonsense"), {}), (("serve", "--listen", "127.0.0.1:99999"), {}),
-                               (("serve",), {"STRATA_LISTEN": "nonsense"}), (("serve", "--nonsense"), {}), ((), {}),
-                               (("import", "--resolution", "1024", "a.ply"), {}), (("nonsense",), {})):
+    for words, environment in (
+        (("serve", "--listen", "nonsense"), {}),
+        (("serve", "--listen", "127.0.0.1:99999"), {}),
+        (("serve",), {"STRATA_LISTEN": "nonsense"}),
+        (("serve", "--nonsense"), {}),
+        ((), {}),
+        (("import", "--resolution", "1024", "a.ply"), {}),
+        (("nonsense",), {}),
+    ):
         done = strata(*words, **{"STRATA_DATA": data, **environment})
         assert done.returncode == 2 and done.stderr, (words, done)
-    done = strata("import", os.path.join(folder, "nothing.ply"), "--server", "http://127.0.0.1:1", "--token", "t", STRATA_DATA=data)
+    done = strata(
+        "import",
+        os.path.join(folder, "nothing.ply"),
+        "--server",
+        "http://127.0.0.1:1",
+        "--token",
+        "t",
+        STRATA_DATA=data,
+    )
     assert done.returncode == 1 and done.stderr, done
     assert not os.path.exists(data)
     os.chmod(folder, 0o755)  # PostgreSQL does not run as root, so its user must reach the folder
@@ -56,20 +77,38 @@ def check_other_servers(folder):
 
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), Other) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
-        for said in ({"POST": b"<html>"}, {"POST": b"[]"}, {"POST": b'{"name":"x"}'}, {"POST": b'{"id":1}', "/api/v1/jobs/1": b"<html>"},
-                     {"POST": b'{"id":1}', "/api/v1/jobs/1": b'{"state":7,"progress":0}'},
-                     {"POST": b'{"id":1}', "/api/v1/jobs/1": b'{"state":"done","progress":1}'},
-                     {"POST": b'{"id":1}', "/api/v1/jobs/1": b'{"state":"failed","progress":1,"problem":[]}'},
-                     {"POST": b'{"id":1}', "/api/v1/jobs/1": b'{"state":"done","progress":1,"model":5}', "/api/v1/models/5": b"hello"}):
+        for said in (
+            {"POST": b"<html>"},
+            {"POST": b"[]"},
+            {"POST": b'{"name":"x"}'},
+            {"POST": b'{"id":1}', "/api/v1/jobs/1": b"<html>"},
+            {"POST": b'{"id":1}', "/api/v1/jobs/1": b'{"state":7,"progress":0}'},
+            {"POST": b'{"id":1}', "/api/v1/jobs/1": b'{"state":"done","progress":1}'},
+            {
+                "POST": b'{"id":1}',
+                "/api/v1/jobs/1": b'{"state":"failed","progress":1,"problem":[]}',
+            },
+            {
+                "POST": b'{"id":1}',
+                "/api/v1/jobs/1": b'{"state":"done","progress":1,"model":5}',
+                "/api/v1/models/5": b"hello",
+            },
+        ):
             answers.clear()
             answers.update(said)
-            done = strata("import", scan, "--server", f"http://127.0.0.1:{server.server_port}", "--token", "t")
+            done = strata(
+                "import", scan, "--server", f"http://127.0.0.1:{server.server_port}", "--token", "t"
+            )
             assert done.returncode == 1 and "strata: " in done.stderr, (said, done)
         server.shutdown()
 
 
 def listing(folder):
-    return sorted(os.path.join(root, name) for root, folders, files in os.walk(folder) for name in folders + files)
+    return sorted(
+        os.path.join(root, name)
+        for root, folders, files in os.walk(folder)
+        for name in folders + files
+    )
 
 
 def check_doctor(folder):
@@ -79,7 +118,11 @@ def check_doctor(folder):
     assert not os.path.exists(data), "doctor made the data folder"
     with StrataServer() as server:
         done = strata("doctor", "--data", server.data)
-        assert done.returncode == 0 and "a server is running" in done.stdout and "FAIL" not in done.stdout, done
+        assert (
+            done.returncode == 0
+            and "a server is running" in done.stdout
+            and "FAIL" not in done.stdout
+        ), done
         assert server.get("//readyz").status == 200
         assert server.stop() == 0
         before = listing(server.data)

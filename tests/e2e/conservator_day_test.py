@@ -41,7 +41,9 @@ def near(value, expected, share=0.02):
 def paint(server, model, layer, value, x, y, radius):
     """A disc around a place of the wall."""
     path = f"{model}/layers/{layer}/readings?" + urllib.parse.urlencode({"radius_mm": radius})
-    return server.ok("POST", path, f"x,y,z,value\n{x},{y},0,{value}\n", headers={"Content-Type": "text/csv"}).json()
+    return server.ok(
+        "POST", path, f"x,y,z,value\n{x},{y},0,{value}\n", headers={"Content-Type": "text/csv"}
+    ).json()
 
 
 def rows_of(text):
@@ -52,24 +54,73 @@ def set_up(server):
     """Nine o'clock: the scans, the words, the tables."""
     server.ok("POST", "/projects", {"name": "Chapel"})
     for name in ("North wall", "South wall"):
-        server.import_model(folded_grid(fold=0.001), "wall.ply", name=name, unit="mm", project="chapel")
-    report = server.ok("POST", "/projects/chapel/terms?name=Damage", TERMS, headers={"Content-Type": "text/turtle"}, expect=(201,)).json()
+        server.import_model(
+            folded_grid(fold=0.001), "wall.ply", name=name, unit="mm", project="chapel"
+        )
+    report = server.ok(
+        "POST",
+        "/projects/chapel/terms?name=Damage",
+        TERMS,
+        headers={"Content-Type": "text/turtle"},
+        expect=(201,),
+    ).json()
     assert report["created"] == 3, report
-    changed = server.ok("POST", "/tables/damage/terms", MORE_TERMS, headers={"Content-Type": "text/csv"}).json()
+    changed = server.ok(
+        "POST", "/tables/damage/terms", MORE_TERMS, headers={"Content-Type": "text/csv"}
+    ).json()
     assert (changed["created"], changed["changed"]) == (0, 2), changed
     tree = server.ok("GET", "/tables/damage/terms?lang=es").json()["terms"]
     keys = {term["code"]: term["key"] for term in tree}
     names = {term["code"]: term["name"] for term in tree}
     assert names == {"loss": "Pérdida", "flaking": "Descamación", "salts": "Sales"}, tree
     found = server.ok("GET", "/tables/damage/terms?q=descam").json()["terms"]
-    assert [term["code"] for term in found] == ["loss", "flaking"], "what is looked for, below what it belongs to"
-    server.ok("POST", "/projects/chapel/tables", {"name": "Places", "columns": [
-        {"name": "Name", "required": True, "unique": True}, {"name": "Damage", "kind": "term", "target": "damage"}, {"name": "Depth", "kind": "numeric", "unit": "mm"},
-        {"name": "Urgency", "kind": "enumeration", "choices": ["watch", "now"]}, {"name": "Seen", "kind": "date"}, {"name": "Photos", "kind": "picture"}]})
+    assert [term["code"] for term in found] == [
+        "loss",
+        "flaking",
+    ], "what is looked for, below what it belongs to"
+    server.ok(
+        "POST",
+        "/projects/chapel/tables",
+        {
+            "name": "Places",
+            "columns": [
+                {"name": "Name", "required": True, "unique": True},
+                {"name": "Damage", "kind": "term", "target": "damage"},
+                {"name": "Depth", "kind": "numeric", "unit": "mm"},
+                {"name": "Urgency", "kind": "enumeration", "choices": ["watch", "now"]},
+                {"name": "Seen", "kind": "date"},
+                {"name": "Photos", "kind": "picture"},
+            ],
+        },
+    )
     for model in (NORTH, SOUTH):
-        server.ok("POST", model + "/layers", {"name": "Damage", "kind": "database", "type": "u16", "table": "damage", "resolution": 2048})
-        server.ok("POST", model + "/layers", {"name": "Places", "kind": "database", "type": "u16", "table": "places", "resolution": 2048})
-        server.ok("POST", model + "/layers", {"name": "Moisture", "type": "f32", "unit": "%", "resolution": 2048})
+        server.ok(
+            "POST",
+            model + "/layers",
+            {
+                "name": "Damage",
+                "kind": "database",
+                "type": "u16",
+                "table": "damage",
+                "resolution": 2048,
+            },
+        )
+        server.ok(
+            "POST",
+            model + "/layers",
+            {
+                "name": "Places",
+                "kind": "database",
+                "type": "u16",
+                "table": "places",
+                "resolution": 2048,
+            },
+        )
+        server.ok(
+            "POST",
+            model + "/layers",
+            {"name": "Moisture", "type": "f32", "unit": "%", "resolution": 2048},
+        )
     return keys
 
 
@@ -78,12 +129,19 @@ def look_and_paint(server, keys):
     paint(server, NORTH, "damage", keys["flaking"], 30, 30, 12)
     paint(server, NORTH, "damage", keys["salts"], 70, 70, 10)
     paint(server, SOUTH, "damage", keys["flaking"], 50, 50, 20)
-    # A crack along the foot of the wall, with the brush: pixels of a camera that looks straight at it.
+    # A crack along the foot of the wall, with the brush: pixels of a camera that looks straight at
+    # it.
     camera = camera_from(server.get(SOUTH).json(), (0, 0, 1), up=(0, 1, 0))
     distance = -camera["view"][14]
     mm_of_pixel = 2 * distance / camera["projection"][5] / camera["height"]
     y = camera["height"] / 2 + 40 / mm_of_pixel  # 40 mm below the middle
-    crack = {"op": "stroke", "value": keys["loss"], "camera": camera, "radius_mm": 2, "path": [[320 - 30 / mm_of_pixel, y], [320 + 30 / mm_of_pixel, y]]}
+    crack = {
+        "op": "stroke",
+        "value": keys["loss"],
+        "camera": camera,
+        "radius_mm": 2,
+        "path": [[320 - 30 / mm_of_pixel, y], [320 + 30 / mm_of_pixel, y]],
+    }
     near(server.ok("POST", SOUTH + "/layers/damage/edits", crack).json()["area_m2"], swept(2, 60))
     # And one stroke too many, which is taken back.
     before = server.get(SOUTH + "/layers/damage/statistics").json()
@@ -91,10 +149,26 @@ def look_and_paint(server, keys):
     assert server.get(SOUTH + "/layers/damage/statistics").json()["keys"] != before["keys"]
     server.ok("POST", SOUTH + "/layers/damage/undo")
     assert server.get(SOUTH + "/layers/damage/statistics").json()["keys"] == before["keys"]
-    places = [("Apse", "flaking", 3, "now"), ("Door", "salts", 1, "watch"), ("Window", "flaking", 5, "watch")]
+    places = [
+        ("Apse", "flaking", 3, "now"),
+        ("Door", "salts", 1, "watch"),
+        ("Window", "flaking", 5, "watch"),
+    ]
     for name, damage, depth, urgency in places:
-        server.ok("POST", "/tables/places/records",
-                  {"values": {"name": name, "damage": keys[damage], "depth": depth, "urgency": urgency, "seen": "2024-05-02"}}, expect=(201,))
+        server.ok(
+            "POST",
+            "/tables/places/records",
+            {
+                "values": {
+                    "name": name,
+                    "damage": keys[damage],
+                    "depth": depth,
+                    "urgency": urgency,
+                    "seen": "2024-05-02",
+                }
+            },
+            expect=(201,),
+        )
     paint(server, NORTH, "places", 1, 30, 30, 15)
     paint(server, NORTH, "places", 2, 70, 70, 8)
     paint(server, SOUTH, "places", 3, 50, 50, 20)
@@ -106,27 +180,54 @@ def look_and_paint(server, keys):
 def add_photos(server):
     """A folder of photos finds its places by the names."""
     names = ["apse_before_1.png", "door_before_1.png", "crypt_before_1.png"]
-    match = server.ok("POST", "/tables/places/attachments/match", {"pattern": "{name}_{view}_{n}.png", "column": "name", "names": names}).json()
-    assert [(each["name"], each["key"]) for each in match["matched"]] == [(names[0], 1), (names[1], 2)], match
+    match = server.ok(
+        "POST",
+        "/tables/places/attachments/match",
+        {"pattern": "{name}_{view}_{n}.png", "column": "name", "names": names},
+    ).json()
+    assert [(each["name"], each["key"]) for each in match["matched"]] == [
+        (names[0], 1),
+        (names[1], 2),
+    ], match
     assert [each["name"] for each in match["unmatched"]] == [names[2]], match
     for each in match["matched"]:
         picture = png(40, 30, lambda x, y, key=each["key"]: (60 * key, 100, 3 * y))
-        server.ok("POST", f"/tables/places/records/{each['key']}/attachments?" + urllib.parse.urlencode({"name": each["name"]}), picture, expect=(201,))
+        server.ok(
+            "POST",
+            f"/tables/places/records/{each['key']}/attachments?"
+            + urllib.parse.urlencode({"name": each["name"]}),
+            picture,
+            expect=(201,),
+        )
     [photo] = server.ok("GET", "/tables/places/records/1/attachments").json()["attachments"]
     assert (photo["name"], photo["column"], photo["width"]) == (names[0], "photos", 40), photo
-    assert server.ok("GET", f"/attachments/{photo['id']}?thumbnail=64").headers["Content-Type"] == "image/jpeg"
+    assert (
+        server.ok("GET", f"/attachments/{photo['id']}?thumbnail=64").headers["Content-Type"]
+        == "image/jpeg"
+    )
 
 
 def ask(server, keys):
     """In the afternoon: which, where, how much."""
+
     def found(text, path="/tables/places"):
-        answer = server.ok("GET", f"{path}/records?" + urllib.parse.urlencode({"filter": text})).json()
+        answer = server.ok(
+            "GET", f"{path}/records?" + urllib.parse.urlencode({"filter": text})
+        ).json()
         return {each["values"]["name"]: each.get("area_m2") for each in answer["records"]}
 
     assert set(found("damage.code = 'flaking' and depth > 2")) == {"Apse", "Window"}
     assert set(found("urgency = 'now' or seen < date('2024-01-01')")) == {"Apse"}
     near(found("urgency = 'now'", NORTH + "/layers/places")["Apse"], disc(15))
-    near(server.ok("POST", NORTH + "/select", {"where": "places.urgency = 'now' and damage.code = 'flaking' and moisture > 50"}).json()["area_m2"], disc(6), 0.03)
+    near(
+        server.ok(
+            "POST",
+            NORTH + "/select",
+            {"where": "places.urgency = 'now' and damage.code = 'flaking' and moisture > 50"},
+        ).json()["area_m2"],
+        disc(6),
+        0.03,
+    )
     extent = server.ok("POST", SOUTH + "/layers/places/extent", {"filter": "depth > 2"}).json()
     near(extent["area_m2"], disc(20) + disc(5))
     # Both walls together: the apse is one place.
@@ -135,7 +236,9 @@ def ask(server, keys):
     near(areas[1], disc(15) + disc(5))
     near(areas[3], disc(20))
     # What lies in which place, in m².
-    cross = server.ok("POST", NORTH + "/cross-table", {"rows": "damage", "columns": "places"}).json()
+    cross = server.ok(
+        "POST", NORTH + "/cross-table", {"rows": "damage", "columns": "places"}
+    ).json()
     flaking, salts = cross["rows"].index(keys["flaking"]), cross["rows"].index(keys["salts"])
     apse, door = cross["columns"].index(1), cross["columns"].index(2)
     near(cross["area_m2"][flaking][apse], disc(12))
@@ -146,23 +249,65 @@ def ask(server, keys):
 def weigh(server, keys):
     """A risk is computed, and follows what is seen."""
     expression = "if(places.urgency = 'now', 2, 1) * reclass(moisture, 0, 30, 1, 60, 2)"
-    risk = server.ok("POST", NORTH + "/layers", {"name": "Risk", "expression": expression, "type": "u8", "resolution": 2048}, expect=(201,)).json()
+    risk = server.ok(
+        "POST",
+        NORTH + "/layers",
+        {"name": "Risk", "expression": expression, "type": "u8", "resolution": 2048},
+        expect=(201,),
+    ).json()
     assert risk["inputs"] == ["moisture", "places"] and not risk["stale"], risk
-    near(server.ok("POST", NORTH + "/select", {"where": "risk = 4"}).json()["area_m2"], disc(6), 0.03)
-    near(server.ok("POST", NORTH + "/select", {"where": "risk = 2"}).json()["area_m2"], disc(15) - disc(6), 0.03)
+    near(
+        server.ok("POST", NORTH + "/select", {"where": "risk = 4"}).json()["area_m2"], disc(6), 0.03
+    )
+    near(
+        server.ok("POST", NORTH + "/select", {"where": "risk = 2"}).json()["area_m2"],
+        disc(15) - disc(6),
+        0.03,
+    )
     then = server.get(NORTH + "/layers/risk").json()["sequence"]
     server.ok("PATCH", "/tables/places/records/1", {"values": {"urgency": "watch"}})
     assert server.get(NORTH + "/layers/risk").json()["stale"]
     server.ok("POST", NORTH + "/layers/risk/compute")
-    near(server.ok("POST", NORTH + "/select", {"where": "risk = 2"}).json()["area_m2"], disc(6), 0.03)
-    near(server.ok("POST", NORTH + "/select", {"where": "risk = 4", "at": then}).json()["area_m2"], disc(6), 0.03)
+    near(
+        server.ok("POST", NORTH + "/select", {"where": "risk = 2"}).json()["area_m2"], disc(6), 0.03
+    )
+    near(
+        server.ok("POST", NORTH + "/select", {"where": "risk = 4", "at": then}).json()["area_m2"],
+        disc(6),
+        0.03,
+    )
     server.ok("POST", "/tables/places/undo")
     # The picture for the report: by urgency, hatched, the urgent ones alone.
-    server.ok("PATCH", NORTH + "/layers/places", {"palette": {"mode": "categorical", "column": "urgency", "points": [
-        {"at": 0, "value": "now", "color": "#d55e00", "pattern": "hatch", "spacing_mm": 2}, {"at": 1, "value": "watch", "color": "#56b4e9"}]}})
+    server.ok(
+        "PATCH",
+        NORTH + "/layers/places",
+        {
+            "palette": {
+                "mode": "categorical",
+                "column": "urgency",
+                "points": [
+                    {
+                        "at": 0,
+                        "value": "now",
+                        "color": "#d55e00",
+                        "pattern": "hatch",
+                        "spacing_mm": 2,
+                    },
+                    {"at": 1, "value": "watch", "color": "#56b4e9"},
+                ],
+            }
+        },
+    )
     camera = camera_from(server.get(NORTH).json(), (0, 0, 1), up=(0, 1, 0))
     highlight = [{"layer": "places", "highlight": {"filter": "urgency = 'now'", "isolate": True}}]
-    pictures = [server.ok("POST", NORTH + "/frame", {"camera": camera, "layers": ["places"], "format": "png", **more}).body for more in ({}, {"highlights": highlight})]
+    pictures = [
+        server.ok(
+            "POST",
+            NORTH + "/frame",
+            {"camera": camera, "layers": ["places"], "format": "png", **more},
+        ).body
+        for more in ({}, {"highlights": highlight})
+    ]
     assert pictures[0] != pictures[1] and all(each.startswith(b"\x89PNG") for each in pictures)
 
 
@@ -172,19 +317,41 @@ def report(server, keys):
     by_class = {each["key"]: each for each in answer["quantities"]}
     near(by_class[keys["flaking"]]["area_m2"], disc(12))
     near(by_class[keys["salts"]]["area_m2"], disc(10))
-    assert by_class[keys["flaking"]]["pieces"] == 1 and by_class[keys["flaking"]]["class"] == "Flaking", by_class
+    assert (
+        by_class[keys["flaking"]]["pieces"] == 1 and by_class[keys["flaking"]]["class"] == "Flaking"
+    ), by_class
     near(answer["sum"]["area_m2"], disc(12) + disc(10))
     near(answer["sum"]["share"], (disc(12) + disc(10)) / 0.01)
     lines = rows_of(server.ok("GET", NORTH + "/layers/damage/quantities?f=csv").body)
-    assert lines[-1]["class"] == "total" and abs(float(lines[-1]["area_m2"]) - answer["sum"]["area_m2"]) < 1e-12, lines
+    assert (
+        lines[-1]["class"] == "total"
+        and abs(float(lines[-1]["area_m2"]) - answer["sum"]["area_m2"]) < 1e-12
+    ), lines
     book = Workbook(server.ok("GET", NORTH + "/layers/damage/quantities?f=xlsx").body)
-    assert [each["class"] for each in book.records] == ["Flaking", "Salts", "total"] and book.records[0]["pieces"] == 1, book.records
+    assert [each["class"] for each in book.records] == [
+        "Flaking",
+        "Salts",
+        "total",
+    ] and book.records[0]["pieces"] == 1, book.records
     near(book.records[2]["area (cm²)"], 1e4 * answer["sum"]["area_m2"], 1e-12)
-    [crack] = [each for each in server.ok("GET", SOUTH + "/layers/damage/quantities").json()["quantities"] if each["key"] == keys["loss"]]
+    [crack] = [
+        each
+        for each in server.ok("GET", SOUTH + "/layers/damage/quantities").json()["quantities"]
+        if each["key"] == keys["loss"]
+    ]
     near(crack["area_m2"], swept(2, 60))
     places = rows_of(server.ok("GET", "/tables/places/records?f=csv").body)
-    assert [each["name"] for each in places] == ["Apse", "Door", "Window"] and places[2]["depth"] == "5", places
-    texels = rows_of(server.ok("GET", NORTH + "/layers/moisture/texels.csv?" + urllib.parse.urlencode({"where": "moisture > 50", "cell": "5mm"})).body)
+    assert [each["name"] for each in places] == ["Apse", "Door", "Window"] and places[2][
+        "depth"
+    ] == "5", places
+    texels = rows_of(
+        server.ok(
+            "GET",
+            NORTH
+            + "/layers/moisture/texels.csv?"
+            + urllib.parse.urlencode({"where": "moisture > 50", "cell": "5mm"}),
+        ).body
+    )
     near(sum(float(each["area_m2"]) for each in texels), disc(6), 0.03)
 
 
@@ -199,7 +366,9 @@ def main():
         before = server.ok("GET", "/tables/places/quantities").json()
         assert server.stop() == 0
         server.start()
-        assert server.ok("GET", "/tables/places/quantities").json() == before, "tomorrow all of it is there"
+        assert (
+            server.ok("GET", "/tables/places/quantities").json() == before
+        ), "tomorrow all of it is there"
         report(server, keys)
         assert server.stop() == 0
         server.assert_clean_log()

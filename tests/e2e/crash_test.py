@@ -18,11 +18,20 @@ from support.painters import Book, HttpPainter, LivePainter
 from support.strata_server import StrataServer, wait_for
 
 KILLS = int(os.environ.get("STRATA_CRASH_KILLS", "20"))  # of each kind
-LAYERS = [("marks", "u8", 2048, [1, 2, 3, 255]), ("depth", "f32", 2048, [0.0, 1.5, -2.25, 3e7]),
-          ("shift", "i16", 2048, [-32768, -5, 12, 32767])]
+LAYERS = [
+    ("marks", "u8", 2048, [1, 2, 3, 255]),
+    ("depth", "f32", 2048, [0.0, 1.5, -2.25, 3e7]),
+    ("shift", "i16", 2048, [-32768, -5, 12, 32767]),
+]
 # What the log may say while PostgreSQL is being killed.
-FAULT_WORDS = ["PostgreSQL stopped", "unexpected postmaster exit", "a commit failed and is tried again", "took back", "could not be loaded again",
-               "could not be kept for repeats"]
+FAULT_WORDS = [
+    "PostgreSQL stopped",
+    "unexpected postmaster exit",
+    "a commit failed and is tried again",
+    "took back",
+    "could not be loaded again",
+    "could not be kept for repeats",
+]
 
 
 class Crashes:
@@ -37,29 +46,47 @@ class Crashes:
 
     def make_layers(self, suffix):
         for name, kind, resolution, _ in LAYERS:
-            self.server.ok("POST", self.path + "/layers", {"name": name + suffix, "type": kind, "resolution": resolution})
+            self.server.ok(
+                "POST",
+                self.path + "/layers",
+                {"name": name + suffix, "type": kind, "resolution": resolution},
+            )
 
     def texels(self, layer, at=None):
         query = "" if at is None else f"?at={at}"
-        answer = wait_for(lambda: (lambda a: a if a.status != 503 else None)(
-            self.server.get(f"{self.path}/layers/{layer}/texels.npy{query}")), "texels")
+        answer = wait_for(
+            lambda: (lambda a: a if a.status != 503 else None)(
+                self.server.get(f"{self.path}/layers/{layer}/texels.npy{query}")
+            ),
+            "texels",
+        )
         assert answer.status == 200, answer
         return Raster(answer.body)
 
     def painters(self):
-        cameras = [camera_from(self.model, direction) for direction in ([0, -0.2, 1], [0.8, 0.3, 0.6], [-0.7, -0.9, 0.5])]
+        cameras = [
+            camera_from(self.model, direction)
+            for direction in ([0, -0.2, 1], [0.8, 0.3, 0.6], [-0.7, -0.9, 0.5])
+        ]
         layers = [(name, values) for name, _, _, values in LAYERS]
         kinds = [HttpPainter] * 4 + [LivePainter] * 2
-        return [kind(self.server, self.model["id"], layers, cameras, self.book, seed) for seed, kind in enumerate(kinds)]
+        return [
+            kind(self.server, self.model["id"], layers, cameras, self.book, seed)
+            for seed, kind in enumerate(kinds)
+        ]
 
     def history(self):
         found = {}
         for name, *_ in LAYERS:
             offset = 0
             while True:
-                page = self.server.ok("GET", f"{self.path}/layers/{name}/edits?limit=1000&offset={offset}").json()
+                page = self.server.ok(
+                    "GET", f"{self.path}/layers/{name}/edits?limit=1000&offset={offset}"
+                ).json()
                 for row in page["edits"]:
-                    assert row["sequence"] not in found, f"sequence {row['sequence']} is in the history twice"
+                    assert (
+                        row["sequence"] not in found
+                    ), f"sequence {row['sequence']} is in the history twice"
                     found[row["sequence"]] = (name, row)
                 offset += len(page["edits"])
                 if not page["edits"] or offset >= page["total"]:
@@ -77,15 +104,21 @@ class Crashes:
 
     def check_known(self):
         for layer, at in self.random.sample(sorted(self.known), min(2, len(self.known))):
-            assert self.texels(layer, at).digest == self.known[layer, at], f"{layer} at {at} is not what it was before the kill"
+            assert (
+                self.texels(layer, at).digest == self.known[layer, at]
+            ), f"{layer} at {at} is not what it was before the kill"
 
     def check_repeats(self):
         """Edits that were saved, sent again: the first answer, and nothing new in the history."""
         with self.book.lock:
             sample = self.random.sample(self.book.repeats, min(3, len(self.book.repeats)))
         for path, edit, key, first in sample:
-            answer = wait_for(lambda: (lambda a: a if a.status != 503 else None)(
-                self.server.post(path, edit, headers={"Idempotency-Key": key})), "a repeat")
+            answer = wait_for(
+                lambda: (lambda a: a if a.status != 503 else None)(
+                    self.server.post(path, edit, headers={"Idempotency-Key": key})
+                ),
+                "a repeat",
+            )
             assert (answer.status, answer.json()) == (200, first), (answer, first)
 
     def check_history(self):
@@ -95,7 +128,10 @@ class Crashes:
         for sequence, (layer, _, answer) in acknowledged.items():
             assert sequence in found, f"edit {sequence} was reported saved and is gone"
             name, row = found[sequence]
-            assert name == layer and row["texels_changed"] == answer["texels_changed"], (row, answer)
+            assert name == layer and row["texels_changed"] == answer["texels_changed"], (
+                row,
+                answer,
+            )
         assert sorted(found) == list(range(1, len(found) + 1)), "the sequences have gaps"
         return found
 
@@ -117,7 +153,9 @@ class Crashes:
     def kill_database(self):
         pid = wait_for(self.server.postmaster, "a postmaster")
         os.kill(pid, signal.SIGKILL)
-        wait_for(lambda: self.server.postmaster() not in (None, pid), "PostgreSQL to be started again")
+        wait_for(
+            lambda: self.server.postmaster() not in (None, pid), "PostgreSQL to be started again"
+        )
 
     def run(self):
         painters = self.painters()
@@ -132,7 +170,10 @@ class Crashes:
                 self.book.wait_for_more(1)
                 self.check_known()
                 self.check_repeats()
-            print(f"{KILLS} kills of the {name}: {time.monotonic() - begun:.1f} s, {len(self.book.edits)} edits saved", flush=True)
+            print(
+                f"{KILLS} kills of the {name}: {time.monotonic() - begun:.1f} s, {len(self.book.edits)} edits saved",
+                flush=True,
+            )
         self.book.stopping.set()
         for painter in painters:
             painter.join(180)
@@ -140,12 +181,16 @@ class Crashes:
         assert not self.book.faults, self.book.faults[:5]
 
         found = self.check_history()
-        assert sorted(found) == sorted(self.book.edits), "an edit is in the history that nobody sent"
+        assert sorted(found) == sorted(
+            self.book.edits
+        ), "an edit is in the history that nobody sent"
         for sequence in self.random.sample(sorted(self.book.edits), 12):
             self.check_whole(sequence)
         newest = {name: self.texels(name) for name, *_ in LAYERS}
         for name, raster in newest.items():
-            assert raster.digest == self.texels(name, max(found)).digest, f"{name}: now is not the newest sequence"
+            assert (
+                raster.digest == self.texels(name, max(found)).digest
+            ), f"{name}: now is not the newest sequence"
         self.compare_with_replay(newest)
 
     def compare_with_replay(self, newest):
@@ -157,7 +202,12 @@ class Crashes:
             connection = self.server.connect()
             for name, edit in edits:
                 if name == layer:
-                    self.server.ok("POST", f"{self.path}/layers/{name}-replayed/edits", edit, connection=connection)
+                    self.server.ok(
+                        "POST",
+                        f"{self.path}/layers/{name}-replayed/edits",
+                        edit,
+                        connection=connection,
+                    )
 
         failures = []
 
@@ -165,7 +215,9 @@ class Crashes:
             try:
                 replay(layer)
                 wrong = newest[layer].differences(self.texels(layer + "-replayed"))
-                assert not wrong, f"{layer}: {len(wrong)} texels differ from the replay, for example {wrong[:3]}"
+                assert (
+                    not wrong
+                ), f"{layer}: {len(wrong)} texels differ from the replay, for example {wrong[:3]}"
             except BaseException as error:  # pylint: disable=broad-except
                 failures.append(error)
 
@@ -184,7 +236,9 @@ def main():
         crashes.run()
         assert server.stop() == 0, "SIGTERM did not end the server well"
         server.assert_clean_log(FAULT_WORDS)
-    print(f"{len(crashes.book.edits)} edits survived {2 * KILLS} kills; {len(crashes.known)} old states were compared")
+    print(
+        f"{len(crashes.book.edits)} edits survived {2 * KILLS} kills; {len(crashes.known)} old states were compared"
+    )
 
 
 main()

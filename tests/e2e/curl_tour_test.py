@@ -44,19 +44,33 @@ def main():
         with open(os.path.join(folder, "scan.ply"), "wb") as file:
             file.write(bumpy_ball())
         os.symlink(os.path.join(ROOT, "scripts"), os.path.join(folder, "scripts"))
-        done = subprocess.run(["bash", "-c", tour_of_readme()], cwd=folder, capture_output=True, text=True, check=False,
-                              env={**server.environment(), "STRATA_URL": server.url})
-        assert done.returncode == 0, f"the tour ended with {done.returncode}:\n{done.stdout}\n{done.stderr}"
+        done = subprocess.run(
+            ["bash", "-c", tour_of_readme()],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=False,
+            env={**server.environment(), "STRATA_URL": server.url},
+        )
+        assert (
+            done.returncode == 0
+        ), f"the tour ended with {done.returncode}:\n{done.stdout}\n{done.stderr}"
         model, layer, edit, point, statistics = json_values(done.stdout)
 
         assert (model["slug"], model["unit"], model["unit_assumed"]) == ("scan", "mm", False), model
         assert (layer["slug"], layer["type"], layer["resolution"]) == ("cracks", "u8", 4096), layer
         assert edit["sequence"] == 1 and edit["texels_changed"] > 1000, edit
         assert point["hit"] and point["values"]["cracks"] == {"valid": True, "value": 7}, point
-        assert abs(statistics["area_m2"] - edit["area_m2"]) <= 0.02 * edit["area_m2"], (statistics["area_m2"], edit)
+        assert abs(statistics["area_m2"] - edit["area_m2"]) <= 0.02 * edit["area_m2"], (
+            statistics["area_m2"],
+            edit,
+        )
         assert statistics["texels"] == edit["texels_changed"], (statistics["texels"], edit)
-        assert [key["key"] for key in statistics["keys"]] == [7] and statistics["mean"] == 7, statistics
-        # 80 pixels of path with a radius of 20 are 4457 pixels of 0.21 mm, on a surface that faces the camera.
+        assert [key["key"] for key in statistics["keys"]] == [7] and statistics[
+            "mean"
+        ] == 7, statistics
+        # 80 pixels of path with a radius of 20 are 4457 pixels of 0.21 mm, on a surface that faces
+        # the camera.
         assert 1.8e-4 < edit["area_m2"] < 2.2e-4, edit
 
         check_files(folder, server)
@@ -64,7 +78,9 @@ def main():
         assert [edit["op"] for edit in history] == ["import", "stroke"], history
         assert server.stop() == 0
         server.assert_clean_log()
-    print(f"the tour painted {edit['area_m2'] * 1e6:.0f} mm²; the statistics say {statistics['area_m2'] * 1e6:.0f} mm²")
+    print(
+        f"the tour painted {edit['area_m2'] * 1e6:.0f} mm²; the statistics say {statistics['area_m2'] * 1e6:.0f} mm²"
+    )
 
 
 def check_files(folder, server):
@@ -77,8 +93,15 @@ def check_files(folder, server):
     for ending, magic in (("png", b"\x89PNG\r\n"), ("npy", b"\x93NUMPY")):
         answer = server.get(f"/models/scan/layers/cracks/texels.{ending}")
         assert answer.status == 200 and answer.body.startswith(magic), (ending, answer.status)
-    again = server.request("PUT", "/models/scan/layers/cracks/texels.tif", raster, headers={"Content-Type": "image/tiff"})
-    assert again.status == 200 and again.json()["texels_changed"] == 0, "what was exported changes nothing when it is imported"
+    again = server.request(
+        "PUT",
+        "/models/scan/layers/cracks/texels.tif",
+        raster,
+        headers={"Content-Type": "image/tiff"},
+    )
+    assert (
+        again.status == 200 and again.json()["texels_changed"] == 0
+    ), "what was exported changes nothing when it is imported"
 
 
 main()

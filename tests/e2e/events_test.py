@@ -24,31 +24,60 @@ def main():
     with StrataServer() as server:
         server.import_model(folded_grid(), "sheet.ply", name="Sheet", unit="mm")
         viewer = server.add_person("vera", "viewer")
-        early = server.ok("POST", M + "/layers", {"name": "Early", "type": "u8", "resolution": 2048}).json()["id"]
+        early = server.ok(
+            "POST", M + "/layers", {"name": "Early", "type": "u8", "resolution": 2048}
+        ).json()["id"]
         reader, of_viewer = reader_of(server).listening(), reader_of(server, viewer).listening()
 
-        ids, paint = {}, lambda name, where: server.ok("POST", f"{M}/layers/{name}/edits", {"op": "fill", "mode": "where", "where": where, "value": 1})
-        for name, more in (("Cracks", {}), ("Secret", {"visibility": "private"}), ("Units", {"kind": "database", "columns": [{"name": "Label"}]})):
-            ids[name] = server.ok("POST", M + "/layers", {"name": name, "type": "u8", "resolution": 2048, **more}).json()["id"]
+        ids, paint = {}, lambda name, where: server.ok(
+            "POST",
+            f"{M}/layers/{name}/edits",
+            {"op": "fill", "mode": "where", "where": where, "value": 1},
+        )
+        for name, more in (
+            ("Cracks", {}),
+            ("Secret", {"visibility": "private"}),
+            ("Units", {"kind": "database", "columns": [{"name": "Label"}]}),
+        ):
+            ids[name] = server.ok(
+                "POST", M + "/layers", {"name": name, "type": "u8", "resolution": 2048, **more}
+            ).json()["id"]
             if name == "Units":
                 server.ok("POST", "/tables/units/records", {"key": 1, "values": {"label": "Wall"}})
             paint(name.lower(), "x < 20")
         server.ok("POST", M + "/comments", {"text": "Since when?", "position": [50, 50, 0]})
         server.ok("PATCH", M, {"name": "The sheet"})
         heard = reader.until(lambda event: event["data"]["kind"] == "model")
-        told = [(event["data"]["kind"], event["data"]["op"], event["data"].get("layer")) for event in heard]
+        told = [
+            (event["data"]["kind"], event["data"]["op"], event["data"].get("layer"))
+            for event in heard
+        ]
         assert ("layer", "created", early) not in told, "what was before is not told"
-        for each in (("layer", "created", ids["Cracks"]), ("edit", "fill", ids["Cracks"]), ("layer", "created", ids["Secret"]), ("edit", "fill", ids["Secret"])):
+        for each in (
+            ("layer", "created", ids["Cracks"]),
+            ("edit", "fill", ids["Cracks"]),
+            ("layer", "created", ids["Secret"]),
+            ("edit", "fill", ids["Secret"]),
+        ):
             assert each in told, (each, told)
-        assert told.index(("layer", "created", ids["Cracks"])) < told.index(("edit", "fill", ids["Cracks"]))
+        assert told.index(("layer", "created", ids["Cracks"])) < told.index(
+            ("edit", "fill", ids["Cracks"])
+        )
         kinds = [kind for kind, *_ in told]
         assert {"records", "comment", "model", "edit", "layer"} <= set(kinds), kinds
         assert len({event["id"] for event in heard}) >= len(heard) - 1, "each has its own place"
-        fills = [event["data"] for event in heard if event["data"].get("layer") == ids["Cracks"] and event["data"]["kind"] == "edit"]
+        fills = [
+            event["data"]
+            for event in heard
+            if event["data"].get("layer") == ids["Cracks"] and event["data"]["kind"] == "edit"
+        ]
         assert fills[0]["user"] and fills[0]["count"] == 1 and fills[0]["area_m2"] > 0, fills
 
         seen = of_viewer.until(lambda event: event["data"]["kind"] == "model")
-        assert all(event["data"].get("layer") != ids["Secret"] and "Secret" not in json.dumps(event) for event in seen), seen
+        assert all(
+            event["data"].get("layer") != ids["Secret"] and "Secret" not in json.dumps(event)
+            for event in seen
+        ), seen
         assert any(painted(ids["Cracks"])(event) for event in seen)
 
         # A line that goes on is told again, with what it is now.
@@ -56,7 +85,8 @@ def main():
         again = reader.until(painted(ids["Cracks"]))[-1]["data"]
         assert again["id"] == fills[0]["id"] and again["count"] == 2, again
 
-        # Cut off, and while the server was away: whoever comes back with the last id misses nothing, and hears no line as it was told before.
+        # Cut off, and while the server was away: whoever comes back with the last id misses
+        # nothing, and hears no line as it was told before.
         after = reader.last
         reader.close()
         paint("units", "y > 80")
@@ -72,7 +102,10 @@ def main():
         out = reader_of(server, viewer).listening()
         server.ok("PATCH", "/users/vera", {"disabled": True})
         assert out.ended.wait(LONG_S)
-        for path, headers, status in ((M + "/events", {"Last-Event-ID": "yesterday"}, 400), ("/models/nothing/events", {}, 404)):
+        for path, headers, status in (
+            (M + "/events", {"Last-Event-ID": "yesterday"}, 400),
+            ("/models/nothing/events", {}, 404),
+        ):
             answer = server.request("GET", path, headers=headers)
             assert answer.status == status and answer.json()["detail"], answer
         assert server.request("GET", M + "/events", token=None).status == 401

@@ -12,7 +12,6 @@ import xml.etree.ElementTree as xml
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import numpy
-
 from support import tiff
 from support.cameras import camera_from
 from support.meshes import bumpy_ball, folded_grid
@@ -30,7 +29,9 @@ BARE = {"legend": False, "light": UNLIT, "looks": [], "title": "", "credit": ""}
 
 
 def figure(server, expect=200, token=True, model="sheet", lang="", **wish):
-    answer = server.request("POST", f"/models/{model}/figures" + (f"?lang={lang}" if lang else ""), wish, token=token)
+    answer = server.request(
+        "POST", f"/models/{model}/figures" + (f"?lang={lang}" if lang else ""), wish, token=token
+    )
     assert answer.status == expect, (wish, answer)
     return answer
 
@@ -53,12 +54,22 @@ def middle(found):
 
 
 def fill(server, where, value=1, layer="marks", model="sheet"):
-    server.ok("POST", f"/models/{model}/layers/{layer}/edits", {"op": "fill", "mode": "where", "where": where, "value": value})
+    server.ok(
+        "POST",
+        f"/models/{model}/layers/{layer}/edits",
+        {"op": "fill", "mode": "where", "where": where, "value": value},
+    )
 
 
 def dab(server, x, y, value=1, layer="marks", radius=2, model="sheet"):
     """A disc as seen from above, whatever lies below it."""
-    fill(server, f"(x - {x}) * (x - {x}) + (y - {y}) * (y - {y}) < {radius * radius}", value, layer, model)
+    fill(
+        server,
+        f"(x - {x}) * (x - {x}) + (y - {y}) * (y - {y}) < {radius * radius}",
+        value,
+        layer,
+        model,
+    )
 
 
 def lengths(server):
@@ -66,38 +77,93 @@ def lengths(server):
     and which is on the right the direction."""
     server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
     server.ok("POST", "/models/ball/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
-    sides = {"top": ("x", "y", "z > 0", 1), "bottom": ("x", "y", "z < 0", 1), "front": ("x", "z", "y < 0", 1), "back": ("x", "z", "y > 0", -1), "right": ("y", "z", "x > 0", 1),
-             "left": ("y", "z", "x < 0", -1)}
+    sides = {
+        "top": ("x", "y", "z > 0", 1),
+        "bottom": ("x", "y", "z < 0", 1),
+        "front": ("x", "z", "y < 0", 1),
+        "back": ("x", "z", "y > 0", -1),
+        "right": ("y", "z", "x > 0", 1),
+        "left": ("y", "z", "x < 0", -1),
+    }
     for value, (direction, (along, across, side, to_right)) in enumerate(sides.items(), 1):
         for place, radius in ((-15, 2), (15, 4)):
-            fill(server, f"{side} and ({along} - {place}) * ({along} - {place}) + {across} * {across} < {radius * radius}", value, model="ball")
+            fill(
+                server,
+                f"{side} and ({along} - {place}) * ({along} - {place}) + {across} * {across} < {radius * radius}",
+                value,
+                model="ball",
+            )
         palette = {"mode": "categorical", "points": [{"at": value, "color": "#ff0000"}]}
-        for scale, dpi, paper in ((1, 100, "a4"), (2, 200, "a5"), (0.5, 75, "a3"), (2.5, 144, "a4")):
-            rows = drawn(server, model="ball", direction=direction, scale=scale, dpi=dpi, paper=paper, layers=[{"layer": "marks", "palette": palette}], **BARE)
-            assert {*rows.shape[:2]} == {round(side / 25.4 * dpi) for side in PAPER[paper]}, (rows.shape, paper, dpi)
+        for scale, dpi, paper in (
+            (1, 100, "a4"),
+            (2, 200, "a5"),
+            (0.5, 75, "a3"),
+            (2.5, 144, "a4"),
+        ):
+            rows = drawn(
+                server,
+                model="ball",
+                direction=direction,
+                scale=scale,
+                dpi=dpi,
+                paper=paper,
+                layers=[{"layer": "marks", "palette": palette}],
+                **BARE,
+            )
+            assert {*rows.shape[:2]} == {round(side / 25.4 * dpi) for side in PAPER[paper]}, (
+                rows.shape,
+                paper,
+                dpi,
+            )
             found = spots(rows)
             left = found[:, 0] < (found[:, 0].min() + found[:, 0].max()) / 2
             apart = (middle(found[~left]) - middle(found[left]))[0] / dpi * 25.4 * scale
             assert abs(apart - 30) < 25.4 / dpi * scale * 0.6 + 0.1, (direction, scale, dpi, apart)
-            assert ((~left).sum() > left.sum()) == (to_right > 0), (direction, left.sum(), (~left).sum())
+            assert ((~left).sum() > left.sum()) == (to_right > 0), (
+                direction,
+                left.sum(),
+                (~left).sum(),
+            )
     dab(server, 20, 50)
     plan = spots(drawn(server, direction="top", scale=1, dpi=100, layers=MARKS, **BARE))
     dab(server, 50, 90)  # y runs up the paper
-    assert middle(spots(drawn(server, direction="top", scale=1, dpi=100, layers=MARKS, **BARE)))[1] < middle(plan)[1] - 20
+    assert (
+        middle(spots(drawn(server, direction="top", scale=1, dpi=100, layers=MARKS, **BARE)))[1]
+        < middle(plan)[1] - 20
+    )
 
 
 def group_of(svg, name):
     """What an SVG draws under this name: paths as rows of x and y in millimetres on paper, and words."""
     group = next(each for each in xml.fromstring(svg).iter(SVG + "g") if each.get("id") == name)
-    paths = [numpy.array(re.findall(r"-?[\d.]+(?:e-?\d+)?", each.get("d")), float).reshape(-1, 2) for each in group.iter(SVG + "path")]
+    paths = [
+        numpy.array(re.findall(r"-?[\d.]+(?:e-?\d+)?", each.get("d")), float).reshape(-1, 2)
+        for each in group.iter(SVG + "path")
+    ]
     return paths, [each.text for each in group.iter(SVG + "text")]
 
 
 def bars(server):
     """The scale bar is so long on paper, in vectors and in pixels, as what it says is at that scale; from a find of a few centimetres at 5 : 1 to a site at 1 : 500."""
-    site = {"model": "site", "direction": "top", "paper": "a3", "orientation": "landscape", "layers": MARKS, **BARE}
+    site = {
+        "model": "site",
+        "direction": "top",
+        "paper": "a3",
+        "orientation": "landscape",
+        "layers": MARKS,
+        **BARE,
+    }
     server.import_model(folded_grid(), "site.ply", name="Site", unit="m")
-    server.ok("POST", "/models/site/layers", {"name": "Marks", "type": "u8", "resolution": 2048, "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000"}]}})
+    server.ok(
+        "POST",
+        "/models/site/layers",
+        {
+            "name": "Marks",
+            "type": "u8",
+            "resolution": 2048,
+            "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000"}]},
+        },
+    )
     for x, radius in ((20, 2), (80, 4)):
         dab(server, x, 50, radius=radius, model="site")
     for scale in (500, 350):
@@ -105,36 +171,78 @@ def bars(server):
         left = found[:, 0] < (found[:, 0].min() + found[:, 0].max()) / 2
         apart = (middle(found[~left]) - middle(found[left]))[0] / 100 * 25.4 * scale / 1000
         assert abs(apart - 60) < 0.00025 * scale, (scale, apart)
-    for scale, dpi, asked in ((500, 300, site), (350, 150, site), (1, 300, {"direction": "top"}), (0.2, 150, {"direction": "top", "paper": "a5"}), (2.5, 300, {"direction": "front"})):
-        steps, words = group_of(figure(server, format="svg", scale=scale, dpi=50, **asked).body, "scale-bar")
+    for scale, dpi, asked in (
+        (500, 300, site),
+        (350, 150, site),
+        (1, 300, {"direction": "top"}),
+        (0.2, 150, {"direction": "top", "paper": "a5"}),
+        (2.5, 300, {"direction": "front"}),
+    ):
+        steps, words = group_of(
+            figure(server, format="svg", scale=scale, dpi=50, **asked).body, "scale-bar"
+        )
         ends = numpy.concatenate(steps)
         low, high = ends.min(axis=0), ends.max(axis=0)
         number, unit = words[len(steps)].split()
         world_mm = float(number) * {"mm": 1, "cm": 10, "m": 1000, "km": 1e6}[unit]
         assert abs((high - low)[0] * scale - world_mm) < 1e-3 * world_mm, (scale, low, high, words)
-        assert [float(each) for each in words[:len(steps)]] == [float(number) * i / len(steps) for i in range(len(steps))], words
+        assert [float(each) for each in words[: len(steps)]] == [
+            float(number) * i / len(steps) for i in range(len(steps))
+        ], words
         # The same in pixels, outline and all.
         per_mm = dpi / 25.4
-        row = drawn(server, dpi=dpi, scale=scale, **asked)[round((low[1] + high[1]) / 2 * per_mm)].mean(axis=1) < 128
-        dark = numpy.nonzero(row[round((low[0] - 1) * per_mm):round((high[0] + 1) * per_mm)])[0]
-        assert abs(dark.max() + 1 - dark.min() - world_mm / scale * per_mm) < 0.2 * per_mm + 1.5, (scale, dpi, dark.min(), dark.max())
+        row = (
+            drawn(server, dpi=dpi, scale=scale, **asked)[
+                round((low[1] + high[1]) / 2 * per_mm)
+            ].mean(axis=1)
+            < 128
+        )
+        dark = numpy.nonzero(row[round((low[0] - 1) * per_mm) : round((high[0] + 1) * per_mm)])[0]
+        assert abs(dark.max() + 1 - dark.min() - world_mm / scale * per_mm) < 0.2 * per_mm + 1.5, (
+            scale,
+            dpi,
+            dark.min(),
+            dark.max(),
+        )
 
 
 def north(server):
     """The arrow points along what lies north of something, whichever axis is up, from above and from below."""
-    palette = {"mode": "categorical", "points": [{"at": 11, "color": "#ff0000"}, {"at": 12, "color": "#00ff00"}]}
-    asked = {"model": "ball", "scale": 1, "dpi": 100, "layers": [{"layer": "marks", "palette": palette}], **BARE}
-    for up, (east, ahead, height), direction, degrees in (("z", "xyz", "top", 0), ("z", "xyz", "top", 30), ("z", "xyz", "bottom", -100), ("y", "xzy", "top", 200), ("x", "yzx", "top", 75)):
+    palette = {
+        "mode": "categorical",
+        "points": [{"at": 11, "color": "#ff0000"}, {"at": 12, "color": "#00ff00"}],
+    }
+    asked = {
+        "model": "ball",
+        "scale": 1,
+        "dpi": 100,
+        "layers": [{"layer": "marks", "palette": palette}],
+        **BARE,
+    }
+    for up, (east, ahead, height), direction, degrees in (
+        ("z", "xyz", "top", 0),
+        ("z", "xyz", "top", 30),
+        ("z", "xyz", "bottom", -100),
+        ("y", "xzy", "top", 200),
+        ("x", "yzx", "top", 75),
+    ):
         server.ok("PATCH", "/models/ball", {"up": up, "north": str(degrees)})
         fill(server, "true", 0, model="ball")
         turn = math.radians(degrees)
         sign = -1 if up == "y" else 1  # y up: north is away from who looks along -z
         for value, away in ((11, 0), (12, 25)):
-            fill(server, f"{height} {'>' if direction == 'top' else '<'} 0 and ({east} - {away * math.sin(turn)}) * ({east} - {away * math.sin(turn)}) + "
-                         f"({ahead} - {sign * away * math.cos(turn)}) * ({ahead} - {sign * away * math.cos(turn)}) < 9", value, model="ball")
+            fill(
+                server,
+                f"{height} {'>' if direction == 'top' else '<'} 0 and ({east} - {away * math.sin(turn)}) * ({east} - {away * math.sin(turn)}) + "
+                f"({ahead} - {sign * away * math.cos(turn)}) * ({ahead} - {sign * away * math.cos(turn)}) < 9",
+                value,
+                model="ball",
+            )
         rows = drawn(server, direction=direction, **asked)
         to_north = middle(spots(rows, (0, 255, 0))) - middle(spots(rows))
-        arrow, words = group_of(figure(server, format="svg", direction=direction, **asked).body, "north")
+        arrow, words = group_of(
+            figure(server, format="svg", direction=direction, **asked).body, "north"
+        )
         tip, _, notch = arrow[0]
         assert words == ["N"]
         off = (math.degrees(math.atan2(*to_north) - math.atan2(*(tip - notch))) + 180) % 360 - 180
@@ -143,37 +251,70 @@ def north(server):
 
 def seams(server):
     """A3 at 600 dpi, the largest: the drawing is made of parts of three inches, and together they are the picture of few."""
-    asked = {"direction": "top", "scale": 0.35, "paper": "a3", "orientation": "landscape", "layers": MARKS, **BARE}
+    asked = {
+        "direction": "top",
+        "scale": 0.35,
+        "paper": "a3",
+        "orientation": "landscape",
+        "layers": MARKS,
+        **BARE,
+    }
     fine, coarse = drawn(server, dpi=600, **asked), drawn(server, dpi=100, **asked).astype(int)
     assert fine.shape == (7016, 9921, 3), fine.shape
     rows, columns = coarse.shape[0] - 2, coarse.shape[1] - 2
-    means = fine[:6 * rows, :6 * columns].reshape(rows, 6, columns, 6, 3).mean(axis=(1, 3))[1:, 1:]
-    around = numpy.stack([coarse[1 + dy:rows + dy, 1 + dx:columns + dx] for dy in (-1, 0, 1) for dx in (-1, 0, 1)])
+    means = (
+        fine[: 6 * rows, : 6 * columns].reshape(rows, 6, columns, 6, 3).mean(axis=(1, 3))[1:, 1:]
+    )
+    around = numpy.stack(
+        [
+            coarse[1 + dy : rows + dy, 1 + dx : columns + dx]
+            for dy in (-1, 0, 1)
+            for dx in (-1, 0, 1)
+        ]
+    )
     differs = ((means < around.min(axis=0) - 12) | (means > around.max(axis=0) + 12)).any(axis=2)
     in_frame = differs[45:700, 45:1115]
     assert in_frame.mean() < 0.0005, in_frame.mean()
     # Along the borders of parts the surface goes on as smoothly as elsewhere.
     corner, part = round(10 / 25.4 * 600), 3 * 600
     for axis, low, high in ((0, 300, 4100), (1, 1500, 5500)):  # all of it surface
-        steps = abs(numpy.diff(fine[300:4100, 1500:5500].sum(axis=2), axis=axis)).mean(axis=1 - axis)
+        steps = abs(numpy.diff(fine[300:4100, 1500:5500].sum(axis=2), axis=axis)).mean(
+            axis=1 - axis
+        )
         borders = [at - low - 1 for at in range(corner, high, part) if at > low]
-        assert len(borders) >= 2 and steps[borders].max() <= numpy.delete(steps, borders).max(), (axis, steps[borders], steps.max())
+        assert len(borders) >= 2 and steps[borders].max() <= numpy.delete(steps, borders).max(), (
+            axis,
+            steps[borders],
+            steps.max(),
+        )
 
 
 def kinds(server, folder):
-    wish = {"direction": "top", "dpi": 150, "caption": "Of <2024> & later — Ψ", "credit": "Museum", "title": "Sheet 7"}
+    wish = {
+        "direction": "top",
+        "dpi": 150,
+        "caption": "Of <2024> & later — Ψ",
+        "credit": "Museum",
+        "title": "Sheet 7",
+    }
     pdf = figure(server, format="pdf", **wish)
     assert pdf.headers["Content-Type"] == "application/pdf" and pdf.body[:5] == b"%PDF-"
-    assert re.fullmatch(r"attachment; filename\*=UTF-8''sheet-top-1-1\.pdf", pdf.headers["Content-Disposition"]), pdf.headers
+    assert re.fullmatch(
+        r"attachment; filename\*=UTF-8''sheet-top-1-1\.pdf", pdf.headers["Content-Disposition"]
+    ), pdf.headers
     assert int(pdf.headers["Strata-Sequence"]) == int(pdf.headers["Strata-Durable-Sequence"])
     path = os.path.join(folder, "sheet.pdf")
     with open(path, "wb") as out:
         out.write(pdf.body)
-    words = subprocess.run(["pdftotext", "-layout", path, "-"], capture_output=True, check=True, text=True).stdout
+    words = subprocess.run(
+        ["pdftotext", "-layout", path, "-"], capture_output=True, check=True, text=True
+    ).stdout
     for expected in ("Sheet 7", "Of <2024> & later — Ψ", "Museum", "1:1", "Marks", "One mark"):
         assert expected in words.replace(" : ", ":"), (expected, words)
     facts = subprocess.run(["pdfinfo", path], capture_output=True, check=True, text=True).stdout
-    assert re.search(r"Page size:\s+(595\.\d+ x 841\.\d+|841\.\d+ x 595\.\d+) pts \(A4\)", facts) and re.search(r"Pages:\s+1\n", facts), facts
+    assert re.search(
+        r"Page size:\s+(595\.\d+ x 841\.\d+|841\.\d+ x 595\.\d+) pts \(A4\)", facts
+    ) and re.search(r"Pages:\s+1\n", facts), facts
     # What the PDF draws lies where the TIFF has it.
     bare = {"direction": "top", "dpi": 72, **BARE}
     with open(path, "wb") as out:
@@ -185,7 +326,9 @@ def kinds(server, folder):
     ends = [[spots(rows).min(axis=0), spots(rows).max(axis=0)] for rows in (of_pdf, of_tiff)]
     assert len(spots(of_tiff)) > 50 and abs(numpy.subtract(*ends)).max() <= 2, ends
     coarse = {**wish, "dpi": 50}
-    assert (numpy.array(pixels(figure(server, format="png", **coarse).body)) == drawn(server, **coarse)).all()
+    assert (
+        numpy.array(pixels(figure(server, format="png", **coarse).body)) == drawn(server, **coarse)
+    ).all()
 
     svg = figure(server, format="svg", **wish).body
     root = xml.fromstring(svg)
@@ -195,42 +338,92 @@ def kinds(server, folder):
     texts = [each.text for each in root.iter(name("text"))]
     assert "Of <2024> & later — Ψ" in texts and "One mark" in texts, texts
     image = next(root.iter(name("image")))
-    assert image.get("href").startswith("data:image/jpeg;base64,") and root.get("width") in ("210mm", "297mm")
+    assert image.get("href").startswith("data:image/jpeg;base64,") and root.get("width") in (
+        "210mm",
+        "297mm",
+    )
 
     tags = tiff.read(figure(server, format="tiff", **wish).body)[1]
     assert tags[269] == "Sheet 7" and tags[315] == "Museum", tags
 
     # The legend tells of what is there: no class, and no layer, of which nothing is painted.
     server.ok("POST", M + "/layers", {"name": "Bare", "type": "u8", "resolution": 2048})
-    points = [{"at": at, "color": color, "label": label} for at, color, label in ((1, "#ff0000", "One mark"), (2, "#00ff00", "Nowhere"))]
-    shown = figure(server, format="svg", dpi=50, layers=[{"layer": "marks", "palette": {"mode": "categorical", "points": points}}]).body
+    points = [
+        {"at": at, "color": color, "label": label}
+        for at, color, label in ((1, "#ff0000", "One mark"), (2, "#00ff00", "Nowhere"))
+    ]
+    shown = figure(
+        server,
+        format="svg",
+        dpi=50,
+        layers=[{"layer": "marks", "palette": {"mode": "categorical", "points": points}}],
+    ).body
     assert b">One mark<" in shown and b">Nowhere<" not in shown and b">Bare<" not in shown
     server.ok("DELETE", M + "/layers/bare")
 
-    # A model that says where north is gets an arrow in the plan, and none in an elevation that looks north.
+    # A model that says where north is gets an arrow in the plan, and none in an elevation that
+    # looks north.
     server.ok("PATCH", M, {"north": "30"})
     for direction, shown in (("top", True), ("front", False)):
-        groups = {each.get("id") for each in xml.fromstring(figure(server, format="svg", dpi=50, direction=direction).body).iter(name("g"))}
+        groups = {
+            each.get("id")
+            for each in xml.fromstring(
+                figure(server, format="svg", dpi=50, direction=direction).body
+            ).iter(name("g"))
+        }
         assert ("north" in groups) == shown, (direction, groups)
 
 
 def names(server):
     """What records are called, at their places; of terms too; what is private is not there."""
-    server.ok("POST", M + "/layers", {"name": "Units", "type": "u16", "kind": "database", "resolution": 2048,
-                                      "columns": [{"name": "Label", "kind": "text"}, {"name": "Depth", "kind": "numeric", "unit": "cm"}]})
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "Units",
+            "type": "u16",
+            "kind": "database",
+            "resolution": 2048,
+            "columns": [
+                {"name": "Label", "kind": "text"},
+                {"name": "Depth", "kind": "numeric", "unit": "cm"},
+            ],
+        },
+    )
     for key, x, y in ((1, 20, 20), (2, 80, 20), (3, 50, 80)):
-        server.ok("POST", "/tables/units/records", {"key": key, "values": {"label": f"Unit {key}", "depth": key * 1.5}})
+        server.ok(
+            "POST",
+            "/tables/units/records",
+            {"key": key, "values": {"label": f"Unit {key}", "depth": key * 1.5}},
+        )
         dab(server, x, y, key, "units", 8)
     server.ok("POST", "/tables/units/records", {"key": 4, "values": {"label": "nowhere"}})
-    wish = {"direction": "top", "format": "svg", "dpi": 60, "scale": 1, "labels": {"layer": "units", "column": "label"}}
+    wish = {
+        "direction": "top",
+        "format": "svg",
+        "dpi": 60,
+        "scale": 1,
+        "labels": {"layer": "units", "column": "label"},
+    }
 
     def told(**more):
-        group = [each for each in xml.fromstring(figure(server, **{**wish, **more}).body).iter(SVG + "g") if each.get("id") == "labels"]
-        return {each.text: (float(each.get("x")), float(each.get("y"))) for each in group[0]} if group else {}
+        group = [
+            each
+            for each in xml.fromstring(figure(server, **{**wish, **more}).body).iter(SVG + "g")
+            if each.get("id") == "labels"
+        ]
+        return (
+            {each.text: (float(each.get("x")), float(each.get("y"))) for each in group[0]}
+            if group
+            else {}
+        )
 
     at = told()
     assert set(at) == {"Unit 1", "Unit 2", "Unit 3"}, at
-    assert abs(at["Unit 2"][0] - at["Unit 1"][0] - 60) < 6 and abs(at["Unit 1"][1] - at["Unit 3"][1] - 60) < 6, at
+    assert (
+        abs(at["Unit 2"][0] - at["Unit 1"][0] - 60) < 6
+        and abs(at["Unit 1"][1] - at["Unit 3"][1] - 60) < 6
+    ), at
     assert set(told(labels={"layer": "units", "column": "depth"})) == {"1.5 cm", "3 cm", "4.5 cm"}
     assert set(told(scale=50)) < set(at), "at 2 mm there is room for one"
     return wish
@@ -239,16 +432,36 @@ def names(server):
 def legends(server):
     """The legend has what the drawing shows: not what an opaque layer covers wholly, nor what is out of it; with classes that are lines and points alone."""
     for name in ("Low", "High"):
-        points = [{"at": at, "color": color, "label": f"{name} {at}"} for at, color in ((1, "#2040ff"), (2, "#20c040"))]
-        server.ok("POST", M + "/layers", {"name": name, "type": "u8", "resolution": 2048, "palette": {"mode": "categorical", "points": points}})
+        points = [
+            {"at": at, "color": color, "label": f"{name} {at}"}
+            for at, color in ((1, "#2040ff"), (2, "#20c040"))
+        ]
+        server.ok(
+            "POST",
+            M + "/layers",
+            {
+                "name": name,
+                "type": "u8",
+                "resolution": 2048,
+                "palette": {"mode": "categorical", "points": points},
+            },
+        )
     fill(server, "x < 50", 1, "low")
     fill(server, "x > 60", 2, "low")
     fill(server, "x < 55", 1, "high")
     others = [{"layer": layer, "visible": False} for layer in ("marks", "units")]
 
     def told(high={}, **more):
-        wish = {"direction": "top", "format": "svg", "dpi": 50, "scale": 1, "layers": [*others, {"layer": "high", **high}], **more}
+        wish = {
+            "direction": "top",
+            "format": "svg",
+            "dpi": 50,
+            "scale": 1,
+            "layers": [*others, {"layer": "high", **high}],
+            **more,
+        }
         return group_of(figure(server, **wish).body, "legend")[1]
+
     assert told() == ["High", "High 1", "Low", "Low 2"], told()
     server.ok("PATCH", M + "/layers/high", {"labels": {"de": "Oben"}})
     assert told(lang="de-AT") == ["Oben", "High 1", "Low", "Low 2"], told(lang="de-AT")
@@ -256,27 +469,78 @@ def legends(server):
     figure(server, 422, lang="x" * 36, direction="top")
     assert told({"opacity": 0.5}) == ["High", "High 1", "Low", "Low 1", "Low 2"]
     assert told({"visible": False}) == ["Low", "Low 1", "Low 2"]
-    hatched = {"palette": {"mode": "categorical", "points": [{"at": 1, "color": "#2040ff", "label": "Lines", "pattern": "hatch"}]}}
-    assert told(hatched) == ["High", "Lines", "Low", "Low 1", "Low 2"], "below a pattern the others are seen"
-    assert told(scale=0.1, paper="a5", center=[90, 50, 0]) == ["Low", "Low 2"], "on 15 mm around its right side"
+    hatched = {
+        "palette": {
+            "mode": "categorical",
+            "points": [{"at": 1, "color": "#2040ff", "label": "Lines", "pattern": "hatch"}],
+        }
+    }
+    assert told(hatched) == [
+        "High",
+        "Lines",
+        "Low",
+        "Low 1",
+        "Low 2",
+    ], "below a pattern the others are seen"
+    assert told(scale=0.1, paper="a5", center=[90, 50, 0]) == [
+        "Low",
+        "Low 2",
+    ], "on 15 mm around its right side"
     # Records that have lines alone are classes of the drawing, too.
-    table = server.ok("POST", "/projects/default/tables", {"name": "Cracks", "columns": [{"name": "Way", "kind": "line"}]}).json()
-    points = [{"at": at, "color": "#ff8000", "label": label} for at, label in ((1, "Crack"), (2, "Elsewhere"), (3, "Above"))]
-    server.ok("POST", M + "/layers", {"name": "Cracks", "kind": "database", "type": "u16", "table": table["slug"], "resolution": 2048, "palette": {"mode": "categorical", "points": points}})
+    table = server.ok(
+        "POST",
+        "/projects/default/tables",
+        {"name": "Cracks", "columns": [{"name": "Way", "kind": "line"}]},
+    ).json()
+    points = [
+        {"at": at, "color": "#ff8000", "label": label}
+        for at, label in ((1, "Crack"), (2, "Elsewhere"), (3, "Above"))
+    ]
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "Cracks",
+            "kind": "database",
+            "type": "u16",
+            "table": table["slug"],
+            "resolution": 2048,
+            "palette": {"mode": "categorical", "points": points},
+        },
+    )
     model = server.get(M).json()["id"]
     way = [{"model": model, "coordinates": [[80, 20, 0], [80, 80, 0]]}]
     above = [{"model": model, "coordinates": [[20, 20, 40], [20, 80, 40]]}]
     for key, values in ((1, {"way": way}), (2, {}), (3, {"way": above})):
         server.ok("POST", "/tables/cracks/records", {"key": key, "values": values})
-    assert told() == ["Cracks", "Crack", "Above", "High", "High 1", "Low", "Low 2"], "what hangs before the surface is drawn"
+    assert told() == [
+        "Cracks",
+        "Crack",
+        "Above",
+        "High",
+        "High 1",
+        "Low",
+        "Low 2",
+    ], "what hangs before the surface is drawn"
     assert "Above" not in told(direction="bottom"), "what lies behind it is not"
     # A long list goes on below its title.
     points = [{"at": at, "color": "#2040ff", "label": f"Class {at}"} for at in range(1, 61)]
-    server.ok("POST", M + "/layers", {"name": "Many", "type": "u8", "resolution": 2048, "palette": {"mode": "categorical", "points": points}})
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "Many",
+            "type": "u8",
+            "resolution": 2048,
+            "palette": {"mode": "categorical", "points": points},
+        },
+    )
     for at in range(1, 61):
         fill(server, f"x > {at * 1.5} and y > 3", at, "many")
     words = told(continued="(weiter)", paper="a3", orientation="portrait")
-    assert words.count("Many (weiter)") >= 1 and all(f"Class {at}" in words for at in range(1, 61)), words
+    assert words.count("Many (weiter)") >= 1 and all(
+        f"Class {at}" in words for at in range(1, 61)
+    ), words
     for name in ("low", "high", "cracks", "many"):
         server.ok("DELETE", f"{M}/layers/{name}")
 
@@ -291,13 +555,29 @@ def states_and_jobs(server, labels):
     assert figure(server, at=before, **wish).body == then != figure(server, **wish).body
     assert figure(server, token=viewer, at=before, **wish).body == then
 
-    started = server.request("POST", F, {**wish, "at": before}, headers={"Prefer": "respond-async, wait=10"}, token=viewer)
-    assert started.status == 202 and started.headers["Preference-Applied"] == "respond-async", started
+    started = server.request(
+        "POST",
+        F,
+        {**wish, "at": before},
+        headers={"Prefer": "respond-async, wait=10"},
+        token=viewer,
+    )
+    assert (
+        started.status == 202 and started.headers["Preference-Applied"] == "respond-async"
+    ), started
     job = f"/jobs/{started.json()['id']}"
     assert started.headers["Location"] == "/api/v1" + job
-    wait_for(lambda: server.request("GET", job, token=viewer).json()["state"] not in ("queued", "running"), "the figure")
+    wait_for(
+        lambda: server.request("GET", job, token=viewer).json()["state"]
+        not in ("queued", "running"),
+        "the figure",
+    )
     done = server.request("GET", job, token=viewer).json()
-    assert done["state"] == "done" and done["file"]["name"] == "sheet-top-1-1.png" and done["file"]["media_type"] == "image/png", done
+    assert (
+        done["state"] == "done"
+        and done["file"]["name"] == "sheet-top-1-1.png"
+        and done["file"]["media_type"] == "image/png"
+    ), done
     file = server.request("GET", job + "/file", token=viewer)
     assert file.status == 200 and file.body == then and len(then) == done["file"]["bytes"]
     for who in (other, True):  # it shows what the viewer sees, and is theirs
@@ -313,20 +593,39 @@ def states_and_jobs(server, labels):
         assert server.request("GET", job + "/file", token=who).status == 409
         assert server.request("DELETE", job, token=viewer if who is other else other).status == 403
         assert server.request("DELETE", job, token=ends).status == 200
-        wait_for(lambda: server.request("GET", job, token=who).json()["state"] == "cancelled", "the end of it")
+        wait_for(
+            lambda: server.request("GET", job, token=who).json()["state"] == "cancelled",
+            "the end of it",
+        )
         assert server.request("GET", job + "/file", token=who).status == 404
     kept = os.listdir(os.path.join(server.data, "uploads"))
     assert sum(each.endswith(".figure") for each in kept) == 1, kept
 
     # Edits go on while a figure is drawn; it shows none of them.
     answers = []
-    thread = threading.Thread(target=lambda: answers.append(figure(server, direction="top", dpi=600, format="png", layers=MARKS, scale=1, **BARE)))
+    thread = threading.Thread(
+        target=lambda: answers.append(
+            figure(server, direction="top", dpi=600, format="png", layers=MARKS, scale=1, **BARE)
+        )
+    )
     thread.start()
     for n in range(12):
         dab(server, 10 + 6 * n, 10)
     thread.join()
     sequence = int(answers[0].headers["Strata-Sequence"])
-    assert figure(server, at=sequence, direction="top", dpi=600, format="png", layers=MARKS, scale=1, **BARE).body == answers[0].body
+    assert (
+        figure(
+            server,
+            at=sequence,
+            direction="top",
+            dpi=600,
+            format="png",
+            layers=MARKS,
+            scale=1,
+            **BARE,
+        ).body
+        == answers[0].body
+    )
 
     # What is private shows in no figure of who does not see it: no colour, no legend, no label.
     server.ok("PATCH", M + "/layers/units", {"visibility": "private"})
@@ -341,35 +640,80 @@ def states_and_jobs(server, labels):
 def reviews(server):
     """What waits for review is hatched, and told in the legend, until it is accepted."""
     rita, vito = server.add_person("rita", "annotator"), server.add_person("vito", "viewer")
-    server.ok("POST", M + "/layers", {"name": "Finds", "type": "u8", "resolution": 2048, "review": True, "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000"}]}})
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "Finds",
+            "type": "u8",
+            "resolution": 2048,
+            "review": True,
+            "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000"}]},
+        },
+    )
     edits = M + "/layers/finds/edits"
-    wish = {"direction": "top", "scale": 1, "dpi": 100, "layers": [{"layer": "marks", "visible": False}], **BARE}
+    wish = {
+        "direction": "top",
+        "scale": 1,
+        "dpi": 100,
+        "layers": [{"layer": "marks", "visible": False}],
+        **BARE,
+    }
     fill(server, "x > 10 and x < 90 and y > 10 and y < 40", layer="finds")
     plain = drawn(server, **wish)
-    painted = server.request("POST", edits, {"op": "fill", "mode": "where", "where": "x > 10 and x < 90 and y > 60 and y < 90", "value": 1}, token=rita)
+    painted = server.request(
+        "POST",
+        edits,
+        {
+            "op": "fill",
+            "mode": "where",
+            "where": "x > 10 and x < 90 and y > 60 and y < 90",
+            "value": 1,
+        },
+        token=rita,
+    )
     assert painted.status == 200 and painted.json()["provisional"], painted
-    (left, top), (right, bottom) = spots(plain).min(axis=0).astype(int) + 4, spots(plain).max(axis=0).astype(int) - 4
+    (left, top), (right, bottom) = (
+        spots(plain).min(axis=0).astype(int) + 4,
+        spots(plain).max(axis=0).astype(int) - 4,
+    )
     up = round(50 / 25.4 * 100)  # from what is accepted to what waits
 
     def inks(rows, above):
-        part = rows[top - above:bottom - above, left:right].astype(int)
+        part = rows[top - above : bottom - above, left:right].astype(int)
         return [(abs(part - color).max(axis=2) < 60).mean() for color in (RED, (24, 24, 24))]
+
     rows = drawn(server, token=vito, **wish)
     assert inks(rows, 0) == [1, 0], inks(rows, 0)
     red, dark = inks(rows, up)
-    assert 0.3 < red < 0.8 and 0.1 < dark < 0.5, (red, dark)  # lines without a tint: the colour below is what it was
-    words = lambda **more: group_of(figure(server, format="svg", **{**wish, "legend": True, **more}).body, "legend")[1]
-    assert words().count("Provisional") == 1 and words(provisional="Vorläufig").count("Vorläufig") == 1, words()
+    # lines without a tint: the colour below is what it was
+    assert 0.3 < red < 0.8 and 0.1 < dark < 0.5, (red, dark)
+    words = lambda **more: group_of(
+        figure(server, format="svg", **{**wish, "legend": True, **more}).body, "legend"
+    )[1]
+    assert (
+        words().count("Provisional") == 1 and words(provisional="Vorläufig").count("Vorläufig") == 1
+    ), words()
     assert "Provisional" not in words(layers=[{"layer": "finds", "visible": False}])
     sequence = painted.json()["sequence"]  # as a moment of the past it is what was in force
-    assert "Provisional" not in words(at=sequence) and inks(drawn(server, at=sequence, **wish), up) == [1, 0]
+    assert "Provisional" not in words(at=sequence) and inks(
+        drawn(server, at=sequence, **wish), up
+    ) == [1, 0]
     server.ok("PATCH", M + "/layers/finds", {"visibility": "private"})
-    assert b"Provisional" not in figure(server, token=vito, format="svg", **{**wish, "legend": True}).body
+    assert (
+        b"Provisional"
+        not in figure(server, token=vito, format="svg", **{**wish, "legend": True}).body
+    )
     server.ok("POST", M + "/layers/finds/review", {"decision": "accept", "all": True})
-    assert "Provisional" not in words() and (drawn(server, **wish) == drawn(server, at=sequence, **wish)).all()
+    assert (
+        "Provisional" not in words()
+        and (drawn(server, **wish) == drawn(server, at=sequence, **wish)).all()
+    )
     # Where all of a layer was erased, no class of it is left, but that waits.
     server.ok("PATCH", M + "/layers/finds", {"visibility": "public"})
-    erased = server.request("POST", edits, {"op": "fill", "mode": "where", "where": "true", "erase": True}, token=rita)
+    erased = server.request(
+        "POST", edits, {"op": "fill", "mode": "where", "where": "true", "erase": True}, token=rita
+    )
     assert erased.status == 200 and words()[:2] == ["Finds", "Provisional"], (erased, words())
     for wrong in ("", "x" * 101, 3):
         assert figure(server, expect=422, provisional=wrong).json()["field"] == "provisional"
@@ -379,28 +723,63 @@ def reviews(server):
 def views(server):
     """A figure of a named view shows what the view does, from where it looks."""
     camera = {**camera_from(server.get(M).json(), (0, -1, 0.0)), "section": [[0, 1, 0, -50]]}
-    server.ok("POST", M + "/views", {"name": "Cut", "camera": camera, "light": UNLIT, "layers": [{"layer": "marks", "visible": False}], "looks": []})
+    server.ok(
+        "POST",
+        M + "/views",
+        {
+            "name": "Cut",
+            "camera": camera,
+            "light": UNLIT,
+            "layers": [{"layer": "marks", "visible": False}],
+            "looks": [],
+        },
+    )
     cut = drawn(server, view="cut", dpi=60, legend=False)
     assert not len(spots(cut))
     name = figure(server, view="cut", dpi=60, format="svg").headers["Content-Disposition"]
     assert name.startswith("attachment; filename*=UTF-8''sheet-cut-1-"), name
     hidden = {"layers": [{"layer": "marks", "visible": False}], "dpi": 60}
-    assert (cut == drawn(server, camera=camera, light=UNLIT, looks=[], legend=False, **hidden)).all()
-    assert (drawn(server, normal=[0, -2, 0], **hidden, **BARE) == drawn(server, direction="front", **hidden, **BARE)).all()
+    assert (
+        cut == drawn(server, camera=camera, light=UNLIT, looks=[], legend=False, **hidden)
+    ).all()
+    assert (
+        drawn(server, normal=[0, -2, 0], **hidden, **BARE)
+        == drawn(server, direction="front", **hidden, **BARE)
+    ).all()
 
 
 def refusals(server):
-    for wish, field in (({"view": "nothing"}, "view"), ({"view": "cut", "light": UNLIT}, "view"), ({"direction": "top", "normal": [0, 0, 1]}, "normal"),
-                        ({"normal": [0, 0, 0]}, "normal"), ({"scale": 0}, "scale"), ({"scale": 1e9}, "scale"), ({"dpi": 1200}, "dpi"), ({"dpi": 10}, "dpi"),
-                        ({"paper": "a0"}, "paper"), ({"direction": "north"}, "direction"), ({"format": "jpeg"}, "format"),
-                        ({"layers": [{"layer": "nothing"}]}, "layers[0].layer"), ({"looks": [{"look": "x"}]}, "looks[0].look"), ({"at": 10**9}, "at"),
-                        ({"labels": {"layer": "marks", "column": "x"}}, "labels.layer"), ({"labels": {"layer": "units", "column": "x"}}, "labels.column"),
-                        ({"title": "x" * 201}, "title"), ({"center": [1, 2]}, "center"), ({"nothing": 1}, None)):
+    for wish, field in (
+        ({"view": "nothing"}, "view"),
+        ({"view": "cut", "light": UNLIT}, "view"),
+        ({"direction": "top", "normal": [0, 0, 1]}, "normal"),
+        ({"normal": [0, 0, 0]}, "normal"),
+        ({"scale": 0}, "scale"),
+        ({"scale": 1e9}, "scale"),
+        ({"dpi": 1200}, "dpi"),
+        ({"dpi": 10}, "dpi"),
+        ({"paper": "a0"}, "paper"),
+        ({"direction": "north"}, "direction"),
+        ({"format": "jpeg"}, "format"),
+        ({"layers": [{"layer": "nothing"}]}, "layers[0].layer"),
+        ({"looks": [{"look": "x"}]}, "looks[0].look"),
+        ({"at": 10**9}, "at"),
+        ({"labels": {"layer": "marks", "column": "x"}}, "labels.layer"),
+        ({"labels": {"layer": "units", "column": "x"}}, "labels.column"),
+        ({"title": "x" * 201}, "title"),
+        ({"center": [1, 2]}, "center"),
+        ({"nothing": 1}, None),
+    ):
         answer = server.request("POST", F, wish)
         assert answer.status in (400, 404, 422) and answer.json()["detail"], (wish, answer)
         assert field is None or answer.json().get("field") == field, (wish, answer)
-    gone = {"view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -500, 1], "projection": [0.01, 0, 0, 0, 0, 0.01, 0, 0, 0, 0, -0.001, 0, 0, 0, -1, 1],
-            "width": 100, "height": 100, "section": [[0, 0, 1, -1000]]}
+    gone = {
+        "view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -500, 1],
+        "projection": [0.01, 0, 0, 0, 0, 0.01, 0, 0, 0, 0, -0.001, 0, 0, 0, -1, 1],
+        "width": 100,
+        "height": 100,
+        "section": [[0, 0, 1, -1000]],
+    }
     assert figure(server, expect=422, camera=gone).json()["field"] == "camera.section"
     assert server.request("POST", "/models/nothing/figures", {}).status == 404
     assert server.request("POST", F, {}, token=None).status == 401
@@ -410,8 +789,19 @@ def refusals(server):
 def main():
     with StrataServer() as server, tempfile.TemporaryDirectory() as folder:
         server.import_model(folded_grid(cells=40), "sheet.ply", name="Sheet", unit="mm")
-        server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8", "resolution": 2048,
-                                          "palette": {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000", "label": "One mark"}]}})
+        server.ok(
+            "POST",
+            M + "/layers",
+            {
+                "name": "Marks",
+                "type": "u8",
+                "resolution": 2048,
+                "palette": {
+                    "mode": "categorical",
+                    "points": [{"at": 1, "color": "#ff0000", "label": "One mark"}],
+                },
+            },
+        )
         lengths(server)
         bars(server)
         north(server)

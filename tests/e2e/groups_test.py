@@ -22,43 +22,114 @@ def give(server, project, group, role):
 
 
 def projects_of(person):
-    return {project["slug"]: (project["role"], project.get("groups")) for project in person.ok("GET", "/projects").json()["projects"]}
+    return {
+        project["slug"]: (project["role"], project.get("groups"))
+        for project in person.ok("GET", "/projects").json()["projects"]
+    }
 
 
 def making(server):
     """Made, read, renamed, filled and emptied; what is wrong is told, and changes nothing."""
     made = server.ok("POST", "/groups", {"name": "Students", "members": ["gus", "Vera", "GUS"]})
     students = made.json()
-    assert made.status == 201 and made.headers["Location"] == f"/api/v1/groups/{students['id']}", made
-    assert students == {"id": students["id"], "name": "Students", "members": [{"user": "Gus", "full_name": ""}, {"user": "Vera", "full_name": ""}], "projects": [], "losing": 0}, students
+    assert (
+        made.status == 201 and made.headers["Location"] == f"/api/v1/groups/{students['id']}"
+    ), made
+    assert students == {
+        "id": students["id"],
+        "name": "Students",
+        "members": [{"user": "Gus", "full_name": ""}, {"user": "Vera", "full_name": ""}],
+        "projects": [],
+        "losing": 0,
+    }, students
     path = f"/groups/{students['id']}"
-    assert server.ok("GET", "/groups").json() == {"groups": [{"id": students["id"], "name": "Students", "people": 2, "projects": 0}], "total": 1}
-    assert server.ok("PATCH", path, {"name": "Pupils", "remove": ["Vera"]}).json()["members"] == [{"user": "Gus", "full_name": ""}]
-    assert server.ok("GET", "/users/gus").json()["groups"] == ["Pupils"] and server.ok("GET", "/users/Vera").json()["groups"] == []
+    assert server.ok("GET", "/groups").json() == {
+        "groups": [{"id": students["id"], "name": "Students", "people": 2, "projects": 0}],
+        "total": 1,
+    }
+    assert server.ok("PATCH", path, {"name": "Pupils", "remove": ["Vera"]}).json()["members"] == [
+        {"user": "Gus", "full_name": ""}
+    ]
+    assert (
+        server.ok("GET", "/users/gus").json()["groups"] == ["Pupils"]
+        and server.ok("GET", "/users/Vera").json()["groups"] == []
+    )
     other = server.ok("POST", "/groups", {"name": "Excavation 2026"}).json()
-    assert [group["name"] for group in server.ok("GET", "/groups").json()["groups"]] == ["Excavation 2026", "Pupils"]
-    assert [group["name"] for group in server.ok("GET", "/groups?limit=1&offset=1").json()["groups"]] == ["Pupils"]
-    wrong = (({"name": "pUPILS"}, 409, "name"), ({"name": ""}, 422, "name"), ({"name": " x"}, 422, "name"), ({"name": "x" * 101}, 422, "name"), ({"name": 7}, 422, "name"), ({"name": None}, 422, "name"))
-    for body, status, field in wrong + (({}, 422, "name"), ({"name": "New", "members": ["nobody"]}, 422, "members"), ({"name": "New", "members": "Gus"}, 422, "members"),
-                                        ({"name": "New", "members": ["Gus"] * 101}, 422, "members"), ({"name": "New", "role": "curator"}, 422, "role"), ([], 422, None)):
+    assert [group["name"] for group in server.ok("GET", "/groups").json()["groups"]] == [
+        "Excavation 2026",
+        "Pupils",
+    ]
+    assert [
+        group["name"] for group in server.ok("GET", "/groups?limit=1&offset=1").json()["groups"]
+    ] == ["Pupils"]
+    wrong = (
+        ({"name": "pUPILS"}, 409, "name"),
+        ({"name": ""}, 422, "name"),
+        ({"name": " x"}, 422, "name"),
+        ({"name": "x" * 101}, 422, "name"),
+        ({"name": 7}, 422, "name"),
+        ({"name": None}, 422, "name"),
+    )
+    for body, status, field in wrong + (
+        ({}, 422, "name"),
+        ({"name": "New", "members": ["nobody"]}, 422, "members"),
+        ({"name": "New", "members": "Gus"}, 422, "members"),
+        ({"name": "New", "members": ["Gus"] * 101}, 422, "members"),
+        ({"name": "New", "role": "curator"}, 422, "role"),
+        ([], 422, None),
+    ):
         refused = server.post("/groups", body)
-        assert refused.status == status and (field is None or refused.json()["field"].startswith(field)), (body, refused)
-    for body, status, field in wrong[:1] + (({}, 422, None), ({"add": []}, 422, "add"), ({"add": ["Vera", "nobody"]}, 422, "add"), ({"remove": ["nobody"]}, 422, "remove"), ({"add": [""]}, 422, "add"),
-                                            ({"members": ["Vera"]}, 422, "members"), ({"name": "Changed", "add": ["\u212airk"]}, 422, "add")):
+        assert refused.status == status and (
+            field is None or refused.json()["field"].startswith(field)
+        ), (body, refused)
+    for body, status, field in wrong[:1] + (
+        ({}, 422, None),
+        ({"add": []}, 422, "add"),
+        ({"add": ["Vera", "nobody"]}, 422, "add"),
+        ({"remove": ["nobody"]}, 422, "remove"),
+        ({"add": [""]}, 422, "add"),
+        ({"members": ["Vera"]}, 422, "members"),
+        ({"name": "Changed", "add": ["\u212airk"]}, 422, "add"),
+    ):
         refused = server.request("PATCH", f"/groups/{other['id']}", body)
-        assert refused.status == status and (field is None or refused.json()["field"].startswith(field)), (body, refused)
-    assert server.ok("GET", f"/groups/{other['id']}").json() == other, "something of what was refused was done"
+        assert refused.status == status and (
+            field is None or refused.json()["field"].startswith(field)
+        ), (body, refused)
+    assert (
+        server.ok("GET", f"/groups/{other['id']}").json() == other
+    ), "something of what was refused was done"
     for raw in (b"", b"{", b'{"name": "\xff"}'):
-        assert server.post("/groups", raw, headers={"Content-Type": "application/json"}).status == 400, raw
+        assert (
+            server.post("/groups", raw, headers={"Content-Type": "application/json"}).status == 400
+        ), raw
     for ref in ("987654321", "0", "-1", "pupils", "1e3", "99999999999999999999", "%00"):
         for method, body in (("GET", None), ("PATCH", {"name": "x"}), ("DELETE", None)):
-            assert server.request(method, f"/groups/{ref}", body).status in (400, 404), (method, ref)
+            assert server.request(method, f"/groups/{ref}", body).status in (400, 404), (
+                method,
+                ref,
+            )
         for method, body in (("PUT", {"role": "viewer"}), ("DELETE", None)):
-            assert server.request(method, f"/projects/villa/groups/{ref}", body).status in (400, 404), (method, ref)
-    for body in ({"role": "administrator"}, {"role": "guest"}, {}, {"role": "viewer", "x": 1}, {"role": None}):
-        assert server.request("PUT", f"/projects/villa/groups/{other['id']}", body).status == 422, body
-    assert server.request("PUT", f"/projects/ghost/groups/{other['id']}", {"role": "viewer"}).status == 404
-    assert server.request("DELETE", f"/projects/villa/groups/{other['id']}").status == 404, "it has no role there"
+            assert server.request(method, f"/projects/villa/groups/{ref}", body).status in (
+                400,
+                404,
+            ), (method, ref)
+    for body in (
+        {"role": "administrator"},
+        {"role": "guest"},
+        {},
+        {"role": "viewer", "x": 1},
+        {"role": None},
+    ):
+        assert (
+            server.request("PUT", f"/projects/villa/groups/{other['id']}", body).status == 422
+        ), body
+    assert (
+        server.request("PUT", f"/projects/ghost/groups/{other['id']}", {"role": "viewer"}).status
+        == 404
+    )
+    assert (
+        server.request("DELETE", f"/projects/villa/groups/{other['id']}").status == 404
+    ), "it has no role there"
     assert server.get("/groups?q=x").status == 400
     server.ok("DELETE", f"/groups/{other['id']}")
     assert server.request("DELETE", f"/groups/{other['id']}").status == 404
@@ -68,40 +139,81 @@ def making(server):
 
 def foreign(server, group):
     """Who is no administrator reads and changes nothing of it; nor do scripts change anything."""
-    calls = [("GET", "/groups", None), ("POST", "/groups", {"name": "Mine"}), ("GET", f"/groups/{group}", None), ("PATCH", f"/groups/{group}", {"add": ["carl"]}), ("DELETE", f"/groups/{group}", None),
-             ("PUT", f"/projects/villa/groups/{group}", {"role": "curator"}), ("DELETE", f"/projects/villa/groups/{group}", None)]
+    calls = [
+        ("GET", "/groups", None),
+        ("POST", "/groups", {"name": "Mine"}),
+        ("GET", f"/groups/{group}", None),
+        ("PATCH", f"/groups/{group}", {"add": ["carl"]}),
+        ("DELETE", f"/groups/{group}", None),
+        ("PUT", f"/projects/villa/groups/{group}", {"role": "curator"}),
+        ("DELETE", f"/projects/villa/groups/{group}", None),
+    ]
     carl = Someone(server, "carl", "curator")
     for method, path, body in calls:
         assert carl.status(method, path, body) == 403, (method, path)
         assert Browser(server).request(method, path, body).status == 401, (method, path)
-        assert carl.request(method, path, body, Origin="https://evil.example").status == 403, (method, path)
+        assert carl.request(method, path, body, Origin="https://evil.example").status == 403, (
+            method,
+            path,
+        )
     root = server.ok("POST", "/me/tokens", {"name": "t", "days": 1}).json()["secret"]
     for method, path, body in calls:
-        assert server.request(method, path, body, token=root).status == (200 if method == "GET" else 403), (method, path)
+        assert server.request(method, path, body, token=root).status == (
+            200 if method == "GET" else 403
+        ), (method, path)
     anne = Someone(server, "anne", "administrator")
-    made = anne.ok("POST", "/groups", {"name": "By Anne", "members": ["anne", "owner"]}).json()["id"]
+    made = anne.ok("POST", "/groups", {"name": "By Anne", "members": ["anne", "owner"]}).json()[
+        "id"
+    ]
     for role in ("curator", None):
         give(server, "villa", made, role)
-    assert anne.ok("GET", "/me").json()["role"] == "administrator", "a group takes nothing from anybody"
+    assert (
+        anne.ok("GET", "/me").json()["role"] == "administrator"
+    ), "a group takes nothing from anybody"
     anne.ok("DELETE", f"/groups/{made}")
 
 
 def ladder(server, gus, villa, group):
     """By a group a guest may do in the villa what the role says, in turn from nothing to curator and back, and nothing in the forum."""
     model = "/models/" + villa["model"]["slug"]
-    tries = (("GET", model, None), ("POST", model + "/layers/marks/edits", FILL), ("PATCH", model, {"credit": "x"}), ("GET", "/projects/villa/members", None),
-             ("PUT", f"/projects/villa/groups/{group}", {"role": "curator"}), ("PATCH", f"/groups/{group}", {"name": "Mine"}))
-    for role, good in ((None, 0), ("viewer", 1), ("annotator", 2), ("curator", 4), ("viewer", 1), (None, 0)):
+    tries = (
+        ("GET", model, None),
+        ("POST", model + "/layers/marks/edits", FILL),
+        ("PATCH", model, {"credit": "x"}),
+        ("GET", "/projects/villa/members", None),
+        ("PUT", f"/projects/villa/groups/{group}", {"role": "curator"}),
+        ("PATCH", f"/groups/{group}", {"name": "Mine"}),
+    )
+    for role, good in (
+        (None, 0),
+        ("viewer", 1),
+        ("annotator", 2),
+        ("curator", 4),
+        ("viewer", 1),
+        (None, 0),
+    ):
         if role or good != 0 or projects_of(gus):
             give(server, "villa", group, role)
         for i, (method, path, body) in enumerate(tries):
             status = gus.status(method, path, body)
-            assert status == (200 if i < good else 403 if role or path.startswith("/groups") else 404), (role, method, path, status)
-        assert projects_of(gus) == ({"villa": (role, ["Students"])} if role else {}), (role, projects_of(gus))
-        assert ("Gus" in str(server.ok("GET", "/projects/villa/people").json())) == (role is not None)
+            assert status == (
+                200 if i < good else 403 if role or path.startswith("/groups") else 404
+            ), (role, method, path, status)
+        assert projects_of(gus) == ({"villa": (role, ["Students"])} if role else {}), (
+            role,
+            projects_of(gus),
+        )
+        assert ("Gus" in str(server.ok("GET", "/projects/villa/people").json())) == (
+            role is not None
+        )
     give(server, "villa", group, "curator")
-    token = gus.ok("POST", "/me/tokens", {"name": "t", "days": 1, "role": "viewer"}).json()["secret"]
-    assert server.get(model, token=token).status == 200 and server.request("PATCH", model, {"credit": "x"}, token=token).status == 403, "a token does no more than its own role"
+    token = gus.ok("POST", "/me/tokens", {"name": "t", "days": 1, "role": "viewer"}).json()[
+        "secret"
+    ]
+    assert (
+        server.get(model, token=token).status == 200
+        and server.request("PATCH", model, {"credit": "x"}, token=token).status == 403
+    ), "a token does no more than its own role"
     give(server, "villa", group, None)
     assert server.get(model, token=token).status == 404
 
@@ -112,23 +224,42 @@ def highest(server, gus, group):
     give(server, "villa", group, "annotator")
     give(server, "villa", diggers, "annotator")
     give(server, "forum", diggers, "viewer")
-    assert projects_of(gus) == {"villa": ("annotator", ["Diggers", "Students"]), "forum": ("viewer", ["Diggers"])}
+    assert projects_of(gus) == {
+        "villa": ("annotator", ["Diggers", "Students"]),
+        "forum": ("viewer", ["Diggers"]),
+    }
     gus.now("villa", "viewer")
-    assert projects_of(gus)["villa"] == ("annotator", ["Diggers", "Students"]), "a lower role of one's own takes nothing"
+    assert projects_of(gus)["villa"] == (
+        "annotator",
+        ["Diggers", "Students"],
+    ), "a lower role of one's own takes nothing"
     gus.now("villa", "curator")
     assert projects_of(gus)["villa"] == ("curator", None), "their own"
     listed = server.ok("GET", "/projects/villa/members").json()
     listed["members"] = [uncoloured(person) for person in listed["members"]]
-    assert listed == {"members": [{"user": "Gus", "full_name": "", "role": "curator"}],
-                      "groups": [{"id": diggers, "name": "Diggers", "people": 1, "role": "annotator"}, {"id": group, "name": "Students", "people": 1, "role": "annotator"}], "total": 1}, listed
+    assert listed == {
+        "members": [{"user": "Gus", "full_name": "", "role": "curator"}],
+        "groups": [
+            {"id": diggers, "name": "Diggers", "people": 1, "role": "annotator"},
+            {"id": group, "name": "Students", "people": 1, "role": "annotator"},
+        ],
+        "total": 1,
+    }, listed
     give(server, "villa", diggers, "curator")
     gus.now("villa", None)
     assert projects_of(gus)["villa"] == ("curator", ["Diggers"])
-    assert server.ok("GET", f"/groups/{diggers}").json()["losing"] == 1 and server.ok("GET", f"/groups/{group}").json()["losing"] == 0
+    assert (
+        server.ok("GET", f"/groups/{diggers}").json()["losing"] == 1
+        and server.ok("GET", f"/groups/{group}").json()["losing"] == 0
+    )
     # Who may look everywhere is told of a group only where it gives more.
     vera = Someone(server, "Vesta", "viewer")
     server.ok("PATCH", f"/groups/{diggers}", {"add": ["Vesta"]})
-    assert projects_of(vera) == {"default": ("viewer", None), "forum": ("viewer", None), "villa": ("curator", ["Diggers"])}
+    assert projects_of(vera) == {
+        "default": ("viewer", None),
+        "forum": ("viewer", None),
+        "villa": ("curator", ["Diggers"]),
+    }
     # Each way in which it ends counts at once.
     server.ok("PATCH", f"/groups/{diggers}", {"remove": ["gus"]})
     assert projects_of(gus) == {"villa": ("annotator", ["Students"])}
@@ -151,9 +282,17 @@ def ends_at_once(server, gus, villa, group):
         assert connection.hello(dpr=1, accept=["jpeg"])["role"] == "annotator"
         give(server, "villa", group, "viewer")
         connection.until_closed()
-    for end, again in ((lambda: server.ok("PATCH", f"/groups/{group}", {"remove": ["Gus"]}), lambda: server.ok("PATCH", f"/groups/{group}", {"add": ["Gus"]})),
-                       (lambda: give(server, "villa", group, None), lambda: give(server, "villa", group, "viewer")),
-                       (lambda: server.ok("DELETE", f"/groups/{group}"), None)):
+    for end, again in (
+        (
+            lambda: server.ok("PATCH", f"/groups/{group}", {"remove": ["Gus"]}),
+            lambda: server.ok("PATCH", f"/groups/{group}", {"add": ["Gus"]}),
+        ),
+        (
+            lambda: give(server, "villa", group, None),
+            lambda: give(server, "villa", group, "viewer"),
+        ),
+        (lambda: server.ok("DELETE", f"/groups/{group}"), None),
+    ):
         reader = EventReader(server, "/models/" + model, token).listening()
         with look() as connection:
             assert connection.hello(dpr=1, accept=["jpeg"])["role"] == "viewer"
@@ -175,20 +314,42 @@ def coming_and_going(server):
     """The invited come with groups; the deleted leave them; what was done is told, in each project."""
     group = server.ok("POST", "/groups", {"name": "Season"}).json()["id"]
     give(server, "forum", group, "annotator")
-    for groups, status in (([group, 987654321], 422), ([], 422), (["Season"], 422), ([0], 422), (group, 422)):
+    for groups, status in (
+        ([group, 987654321], 422),
+        ([], 422),
+        (["Season"], 422),
+        ([0], 422),
+        (group, 422),
+    ):
         refused = server.post("/users", {"user": "ida", "role": "guest", "groups": groups})
-        assert refused.status == status and refused.json()["field"].startswith("groups"), (groups, refused)
-    invitation = server.ok("POST", "/users", {"user": "ida", "role": "guest", "groups": [group]}).json()
+        assert refused.status == status and refused.json()["field"].startswith("groups"), (
+            groups,
+            refused,
+        )
+    invitation = server.ok(
+        "POST", "/users", {"user": "ida", "role": "guest", "groups": [group]}
+    ).json()
     assert invitation["user"]["groups"] == ["Season"], invitation
     ida = join(server, invitation)
     assert projects_of(ida) == {"forum": ("annotator", ["Season"])}
-    told = [line for line in server.ok("GET", "/projects/forum/activity").json()["activity"] if line["kind"] == "member" and line.get("group") == "Season"]
-    assert [(line["op"], line.get("person"), line["role"], line["user"]) for line in told] == [("added", "ida", "annotator", "owner"), ("added", None, "annotator", "owner")], told
+    told = [
+        line
+        for line in server.ok("GET", "/projects/forum/activity").json()["activity"]
+        if line["kind"] == "member" and line.get("group") == "Season"
+    ]
+    assert [(line["op"], line.get("person"), line["role"], line["user"]) for line in told] == [
+        ("added", "ida", "annotator", "owner"),
+        ("added", None, "annotator", "owner"),
+    ], told
     server.ok("DELETE", "/users/ida")
     assert server.ok("GET", f"/groups/{group}").json()["members"] == []
     server.ok("DELETE", f"/groups/{group}")
     last = server.ok("GET", "/projects/forum/activity").json()["activity"][0]
-    assert (last["kind"], last["op"], last["group"]) == ("member", "removed", "Season") and "person" not in last, last
+    assert (last["kind"], last["op"], last["group"]) == (
+        "member",
+        "removed",
+        "Season",
+    ) and "person" not in last, last
 
 
 def main():
@@ -205,7 +366,9 @@ def main():
         ends_at_once(server, gus, villa, group)
         coming_and_going(server)
         server.assert_clean_log()
-    print(f"groups: roles by groups, the highest counts, and ends at once; {doors_tried} doors closed afterwards")
+    print(
+        f"groups: roles by groups, the highest counts, and ends at once; {doors_tried} doors closed afterwards"
+    )
 
 
 if __name__ == "__main__":

@@ -27,10 +27,14 @@ def new_id():
 
 def check_upgrade(server):
     for what, model, more, status in (
-            ("no token", "grid", {"token": ""}, 401), ("unknown token", "grid", {"token": "x" * 48}, 401),
-            ("unknown model", "nothing", {}, 404), ("foreign origin", "grid", {"origin": "https://elsewhere.example"}, 403),
-            ("another subprotocol", "grid", {"subprotocol": "strata.v9"}, 400),
-            ("null origin", "grid", {"origin": "null"}, 403), ("like our origin", "grid", {"origin": server.url + ".example"}, 403)):
+        ("no token", "grid", {"token": ""}, 401),
+        ("unknown token", "grid", {"token": "x" * 48}, 401),
+        ("unknown model", "nothing", {}, 404),
+        ("foreign origin", "grid", {"origin": "https://elsewhere.example"}, 403),
+        ("another subprotocol", "grid", {"subprotocol": "strata.v9"}, 400),
+        ("null origin", "grid", {"origin": "null"}, 403),
+        ("like our origin", "grid", {"origin": server.url + ".example"}, 403),
+    ):
         try:
             LiveClient(server, model, **more)
         except Refused as refused:
@@ -44,14 +48,17 @@ def check_upgrade(server):
 
 def check_sign_out(server):
     """Who signs out is out everywhere: the connections of the session end, those of others live on."""
+
     def sign_in():
-        login = server.post("/login", {"token": server.token}, token=False, headers={"Origin": server.url})
+        login = server.post(
+            "/login", {"token": server.token}, token=False, headers={"Origin": server.url}
+        )
         return login.headers["Set-Cookie"].split(";")[0]
 
     mine, other = sign_in(), sign_in()
-    with LiveClient(server, "grid", token="", cookie=mine, origin=server.url) as one, \
-            LiveClient(server, "grid", token="", cookie=mine, origin=server.url) as two, \
-            LiveClient(server, "grid", token="", cookie=other, origin=server.url) as third:
+    with LiveClient(server, "grid", token="", cookie=mine, origin=server.url) as one, LiveClient(
+        server, "grid", token="", cookie=mine, origin=server.url
+    ) as two, LiveClient(server, "grid", token="", cookie=other, origin=server.url) as third:
         for live in (one, two, third):
             live.hello()
         server.ok("POST", "/logout", token=False, headers={"Cookie": mine, "Origin": server.url})
@@ -61,7 +68,15 @@ def check_sign_out(server):
                     live.receive()
             except Closed as closed:
                 assert closed.code == 1008, closed.code
-        third.send({"op": "pick", "id": "still here", "camera": camera_from(server.get(M).json(), [0, 0, 1], up=(0, 1, 0)), "x": 320, "y": 240})
+        third.send(
+            {
+                "op": "pick",
+                "id": "still here",
+                "camera": camera_from(server.get(M).json(), [0, 0, 1], up=(0, 1, 0)),
+                "x": 320,
+                "y": 240,
+            }
+        )
         assert third.receive_until("picked")["hit"]
     try:
         LiveClient(server, "grid", token="", cookie=mine, origin=server.url)
@@ -93,24 +108,59 @@ def check_bad_messages(server):
             tried += 1
         assert tried > 40, tried
 
-        for what, raw, status in (("binary", (2, b"\0\1\2"), 415), ("too large", (1, b" " * (300 * 1024)), 413),
-                                  ("too large and whole", (1, json.dumps({"op": "hello", "client": "x" * 300000}).encode()), 413)):
+        for what, raw, status in (
+            ("binary", (2, b"\0\1\2"), 415),
+            ("too large", (1, b" " * (300 * 1024)), 413),
+            (
+                "too large and whole",
+                (1, json.dumps({"op": "hello", "client": "x" * 300000}).encode()),
+                413,
+            ),
+        ):
             live.send_raw(*raw)
             problem = live.receive_until("problem")
             assert problem["status"] == status, (what, problem)
         camera = camera_from(server.get(M).json(), [0, 0, 1], up=(0, 1, 0))
-        stroke = {"op": "stroke.begin", "id": new_id(), "stroke": new_id(), "layer": "marks", "camera": camera, "radius_px": 5, "value": 3}
+        stroke = {
+            "op": "stroke.begin",
+            "id": new_id(),
+            "stroke": new_id(),
+            "layer": "marks",
+            "camera": camera,
+            "radius_px": 5,
+            "value": 3,
+        }
         for what, message, status in (
-                ("hello twice", {"op": "hello"}, 409),
-                ("a stroke that was not begun", {"op": "stroke.extend", "id": new_id(), "stroke": new_id(), "n": 0, "path": [[1, 1]]}, 404),
-                ("the end of none", {"op": "stroke.end", "id": new_id(), "stroke": new_id()}, 404),
-                ("an unknown layer", {**stroke, "layer": "nothing"}, 404), ("a layer that is a number", {**stroke, "layer": 999999}, 404),
-                ("a value too large", {**stroke, "value": 256}, 422), ("an undo of nothing", {"op": "undo", "id": new_id(), "layer": "marks"}, 409),
-                ("a view too many", {"op": "camera", "view_id": 15, "seq": 1, **camera}, 422),
-                ("settings of an unknown layer", {"op": "layers", "layers": [{"layer": "nothing"}]}, 404)):
+            ("hello twice", {"op": "hello"}, 409),
+            (
+                "a stroke that was not begun",
+                {
+                    "op": "stroke.extend",
+                    "id": new_id(),
+                    "stroke": new_id(),
+                    "n": 0,
+                    "path": [[1, 1]],
+                },
+                404,
+            ),
+            ("the end of none", {"op": "stroke.end", "id": new_id(), "stroke": new_id()}, 404),
+            ("an unknown layer", {**stroke, "layer": "nothing"}, 404),
+            ("a layer that is a number", {**stroke, "layer": 999999}, 404),
+            ("a value too large", {**stroke, "value": 256}, 422),
+            ("an undo of nothing", {"op": "undo", "id": new_id(), "layer": "marks"}, 409),
+            ("a view too many", {"op": "camera", "view_id": 15, "seq": 1, **camera}, 422),
+            (
+                "settings of an unknown layer",
+                {"op": "layers", "layers": [{"layer": "nothing"}]},
+                404,
+            ),
+        ):
             live.send(message)
             problem = live.receive_until("problem")
-            assert problem["status"] == status and problem.get("ref") == message.get("id"), (what, problem)
+            assert problem["status"] == status and problem.get("ref") == message.get("id"), (
+                what,
+                problem,
+            )
         # It still works.
         live.send({"op": "pick", "id": "p", "camera": camera, "x": 320, "y": 240})
         assert live.receive_until("picked")["hit"]
@@ -127,7 +177,9 @@ def check_bad_messages(server):
 
 def check_presence(server):
     """Who is here: names, colours, pointers with the brush in hand; whom somebody follows, and of cameras only theirs."""
-    with LiveClient(server, "grid") as one, LiveClient(server, "grid") as two, LiveClient(server, "grid") as three:
+    with LiveClient(server, "grid") as one, LiveClient(server, "grid") as two, LiveClient(
+        server, "grid"
+    ) as three:
         sessions = [live.hello()["session"] for live in (one, two, three)]
         model = server.get(M).json()
         camera = camera_from(model, [0, 0, 1], up=(0, 1, 0))
@@ -147,11 +199,15 @@ def check_presence(server):
             assert (problem["status"], problem["field"]) == (status, "follow"), problem
 
         users = heard(one, lambda users: set(users) == set(sessions))
-        assert {user["name"] for user in users.values()} == {"owner"} and len({user["color"] for user in users.values()}) == 1, users
+        assert {user["name"] for user in users.values()} == {"owner"} and len(
+            {user["color"] for user in users.values()}
+        ) == 1, users
 
         two.send({"op": "camera", "seq": 1, **camera, "section": [plane]})
         two.send({"op": "presence", "pointer": [320, 240], "radius": 0.25, "leading": True})
-        users = heard(one, lambda users: "pointer" in users[sessions[1]] and users[sessions[1]]["leading"])
+        users = heard(
+            one, lambda users: "pointer" in users[sessions[1]] and users[sessions[1]]["leading"]
+        )
         assert users[sessions[1]]["pointer"]["radius"] == 0.25, users
         assert not any("camera" in user or "following" in user for user in users.values()), users
 
@@ -159,8 +215,12 @@ def check_presence(server):
         refused(one, sessions[0], 409)
         one.send({"op": "presence", "follow": sessions[1]})
         users = heard(one, lambda users: "camera" in users[sessions[1]])
-        assert users[sessions[1]]["camera"] == {name: camera[name] for name in ("view", "projection", "width", "height")}, users
-        assert [user["session"] for user in users.values() if "camera" in user] == [sessions[1]], users
+        assert users[sessions[1]]["camera"] == {
+            name: camera[name] for name in ("view", "projection", "width", "height")
+        }, users
+        assert [user["session"] for user in users.values() if "camera" in user] == [
+            sessions[1]
+        ], users
         assert not users[sessions[0]]["leading"], "what is refused changes nothing"
         nearer = camera_from(model, [0.2, 0, 1], up=(0, 1, 0))
         two.send({"op": "camera", "view_id": 1, "seq": 1, **camera})
@@ -169,13 +229,20 @@ def check_presence(server):
 
         three.send({"op": "presence", "follow": sessions[0]})
         users = heard(two, lambda users: "following" in users[sessions[2]])
-        assert users[sessions[0]]["following"] == sessions[1] and users[sessions[2]]["following"] == sessions[0], users
-        assert not any("camera" in user for user in users.values()), "who follows nobody gets no camera"
+        assert (
+            users[sessions[0]]["following"] == sessions[1]
+            and users[sessions[2]]["following"] == sessions[0]
+        ), users
+        assert not any(
+            "camera" in user for user in users.values()
+        ), "who follows nobody gets no camera"
         refused(two, sessions[2], 409)
         two.socket.close()
         gone["session"] = sessions[1]
         users = heard(one, lambda users: sessions[1] not in users)
-        assert "following" not in users[sessions[0]] and users[sessions[2]]["following"] == sessions[0], users
+        assert (
+            "following" not in users[sessions[0]] and users[sessions[2]]["following"] == sessions[0]
+        ), users
 
 
 def check_colors(server):
@@ -205,7 +272,10 @@ def wait_for_picture(live, seq):
 def check_slow_client(server):
     """Two people who never read do not hold up a third: pictures and saved edits go on."""
     model = server.get(M).json()
-    cameras = [camera_from(model, [0.05 * turn, 0.2, 1], width=1280, height=720, up=(0, 1, 0)) for turn in range(12)]
+    cameras = [
+        camera_from(model, [0.05 * turn, 0.2, 1], width=1280, height=720, up=(0, 1, 0))
+        for turn in range(12)
+    ]
     slow = [LiveClient(server, "grid", receive_buffer=4096) for _ in range(2)]
     for live in slow:
         live.send({"op": "hello"})
@@ -221,8 +291,20 @@ def check_slow_client(server):
             wait_for_picture(live, turn + 1)
             for value in range(5):
                 identity = new_id()
-                live.send({"op": "edit", "id": identity, "layer": "marks",
-                           "edit": {"op": "stroke", "value": value + 1, "camera": camera, "radius_px": 30, "path": [[400 + 40 * turn, 300], [640, 360]]}})
+                live.send(
+                    {
+                        "op": "edit",
+                        "id": identity,
+                        "layer": "marks",
+                        "edit": {
+                            "op": "stroke",
+                            "value": value + 1,
+                            "camera": camera,
+                            "radius_px": 30,
+                            "path": [[400 + 40 * turn, 300], [640, 360]],
+                        },
+                    }
+                )
                 assert live.receive_until("saved", "unsaved", "problem")["op"] == "saved"
     for live in slow:
         live.socket.close()
@@ -233,10 +315,18 @@ def check_leaving(server):
     """What the views of many took the system has again when they have left."""
     model = server.get(M).json()
     with ExitStack() as people:
+
         def come(number):
             live = people.enter_context(LiveClient(server, "grid"))
             live.hello()
-            live.send({"op": "camera", "seq": 1, "moving": False, **camera_from(model, (0.3, number / VIEWERS, 1), 1280, 720)})
+            live.send(
+                {
+                    "op": "camera",
+                    "seq": 1,
+                    "moving": False,
+                    **camera_from(model, (0.3, number / VIEWERS, 1), 1280, 720),
+                }
+            )
             wait_for_picture(live, 1)
 
         come(0)
@@ -244,8 +334,12 @@ def check_leaving(server):
         for number in range(1, VIEWERS):
             come(number)
         most = resident_mb(server)
-        assert most > alone + 8 * VIEWERS, f"{VIEWERS} views at rest take only {most - alone:.0f} MB: this test shows nothing"
-    wait_for(lambda: resident_mb(server) < alone + (most - alone) / 2, "the memory of those who left")
+        assert (
+            most > alone + 8 * VIEWERS
+        ), f"{VIEWERS} views at rest take only {most - alone:.0f} MB: this test shows nothing"
+    wait_for(
+        lambda: resident_mb(server) < alone + (most - alone) / 2, "the memory of those who left"
+    )
 
 
 def check_end(server):
@@ -256,9 +350,16 @@ def check_end(server):
     def paint(seed):
         for number in range(10000):
             key = f"{seed} {number}"
-            edit = {"op": "fill", "mode": "where", "where": "true", "value": (seed * 40 + number) % 250 + 1}
+            edit = {
+                "op": "fill",
+                "mode": "where",
+                "where": "true",
+                "value": (seed * 40 + number) % 250 + 1,
+            }
             try:
-                answer = server.post(M + "/layers/other/edits", edit, headers={"Idempotency-Key": key})
+                answer = server.post(
+                    M + "/layers/other/edits", edit, headers={"Idempotency-Key": key}
+                )
             except OSError:
                 return
             except Exception as broken:  # pylint: disable=broad-except
@@ -292,7 +393,9 @@ def check_end(server):
     wait_for(lambda: server.postmaster() is None, "PostgreSQL to end with the server")
     assert all(getattr(answer, "status", 503) in (429, 503) for answer in refused), refused
     server.start()
-    kept = {row["sequence"] for row in server.get(M + "/layers/other/edits?limit=1000").json()["edits"]}
+    kept = {
+        row["sequence"] for row in server.get(M + "/layers/other/edits?limit=1000").json()["edits"]
+    }
     assert set(answered) <= kept, sorted(set(answered) - kept)
     return len(answered)
 
@@ -312,7 +415,9 @@ def main():
         answered = check_end(server)
         assert server.stop() == 0
         server.assert_clean_log()
-    print(f"upgrades, messages, slow clients; {answered} edits were answered before the end and are kept")
+    print(
+        f"upgrades, messages, slow clients; {answered} edits were answered before the end and are kept"
+    )
 
 
 main()

@@ -24,7 +24,11 @@ def query(path, **parameters):
 
 
 def geojson(value, x, y, size):
-    return {"type": "Feature", "properties": {"value": value}, "geometry": {"type": "Polygon", "coordinates": [[list(p) for p in square(x, y, size)]]}}
+    return {
+        "type": "Feature",
+        "properties": {"value": value},
+        "geometry": {"type": "Polygon", "coordinates": [[list(p) for p in square(x, y, size)]]},
+    }
 
 
 def texels(server, layer):
@@ -34,8 +38,14 @@ def texels(server, layer):
 def state(server):
     """What must stay as it is: every layer's texels, its history, and the records."""
     layers = [each["slug"] for each in server.get(M + "/layers").json()["layers"]]
-    return {layer: (texels(server, layer), server.get(f"{M}/layers/{layer}/edits").json()["total"]) for layer in layers}, \
-        server.get("/tables/units/edits").json()["total"], [each["key"] for each in server.get("/tables/units/records").json()["records"]]
+    return (
+        {
+            layer: (texels(server, layer), server.get(f"{M}/layers/{layer}/edits").json()["total"])
+            for layer in layers
+        },
+        server.get("/tables/units/edits").json()["total"],
+        [each["key"] for each in server.get("/tables/units/records").json()["records"]],
+    )
 
 
 def lock(server, layer, locked=True):
@@ -46,7 +56,10 @@ def lock(server, layer, locked=True):
 
 def is_refused(answer, name):
     problem = answer.json()
-    assert answer.status == 403 and problem["detail"] == f"The layer {name} is locked: a curator can unlock it.", answer
+    assert (
+        answer.status == 403
+        and problem["detail"] == f"The layer {name} is locked: a curator can unlock it."
+    ), answer
     assert problem["title"] == "Layer locked" and problem["field"] == "layer", answer
 
 
@@ -56,7 +69,9 @@ def check_doors(server, annotator, curator, camera):
     stroke = {"op": "stroke", "value": 11, **seen, "radius_px": 8, "path": [[300, 200], [340, 220]]}
     first = server.ok("POST", L + "/edits", stroke, token=annotator).json()["sequence"]
     server.ok("POST", L + "/edits", {**stroke, "value": 12, "path": [[320, 260]]}, token=annotator)
-    raster = {ending: server.ok("GET", f"{L}/texels.{ending}").body for ending in ("npy", "png", "tif")}
+    raster = {
+        ending: server.ok("GET", f"{L}/texels.{ending}").body for ending in ("npy", "png", "tif")
+    }
     server.ok("POST", L + "/edits", {**stroke, "value": 13, "path": [[360, 260]]}, token=annotator)
     server.ok("POST", L + "/undo", token=annotator)
     vertices = "".join(f"{n % 7}\n" for n in range(CELLS * CELLS)).encode()
@@ -66,19 +81,67 @@ def check_doors(server, annotator, curator, camera):
         ("redo", "POST", L + "/redo", None, {}),
         ("undo", "POST", L + "/undo", None, {}),
         ("stroke", "POST", L + "/edits", {**stroke, "value": 15}, {}),
-        ("eraser", "POST", L + "/edits", {"op": "stroke", "erase": True, **seen, "radius_mm": 2, "path": [[320, 210]]}, {}),
-        ("polygon", "POST", L + "/edits", {"op": "polygon", "value": 16, **seen, "path": [[250, 200], [390, 200], [320, 300]]}, {}),
+        (
+            "eraser",
+            "POST",
+            L + "/edits",
+            {"op": "stroke", "erase": True, **seen, "radius_mm": 2, "path": [[320, 210]]},
+            {},
+        ),
+        (
+            "polygon",
+            "POST",
+            L + "/edits",
+            {"op": "polygon", "value": 16, **seen, "path": [[250, 200], [390, 200], [320, 300]]},
+            {},
+        ),
         ("fill where", "POST", L + "/edits", fill, {}),
-        ("fill of a connected place", "POST", L + "/edits", {"op": "fill", "mode": "connected", "value": 17, "at": {**seen, "x": 320, "y": 240}}, {}),
-        ("fill of an island", "POST", L + "/edits", {"op": "fill", "mode": "island", "value": 18, "at": {"point": [50, 50, 0]}}, {}),
+        (
+            "fill of a connected place",
+            "POST",
+            L + "/edits",
+            {"op": "fill", "mode": "connected", "value": 17, "at": {**seen, "x": 320, "y": 240}},
+            {},
+        ),
+        (
+            "fill of an island",
+            "POST",
+            L + "/edits",
+            {"op": "fill", "mode": "island", "value": 18, "at": {"point": [50, 50, 0]}},
+            {},
+        ),
         ("texels.npy", "PUT", L + "/texels.npy", raster["npy"], {}),
         ("vertices.csv", "PUT", L + "/vertices.csv", vertices, {}),
         ("texels.png", "PUT", L + "/texels.png", raster["png"], {}),
-        ("readings", "POST", query(L + "/readings", radius_mm=4), b"x,y,z,value\n20,20,0,19\n", {"Content-Type": "text/csv"}),
+        (
+            "readings",
+            "POST",
+            query(L + "/readings", radius_mm=4),
+            b"x,y,z,value\n20,20,0,19\n",
+            {"Content-Type": "text/csv"},
+        ),
         ("texels.tif", "PUT", L + "/texels.tif", raster["tif"], {}),
-        ("a map of polygons", "POST", query(L + "/polygons", value=20), geojson(1, 10, 10, 20), map_file),
-        ("a map of pixels", "POST", L + "/picture", tiff(2, 2, lambda x, y: 21, kind="B", scale=10.0, origin=(40, 60)), {"Content-Type": "image/tiff"}),
-        ("select into", "POST", M + "/select", {"where": "cracks = 20", "into": {"layer": "cracks", "value": 22}}, {}),
+        (
+            "a map of polygons",
+            "POST",
+            query(L + "/polygons", value=20),
+            geojson(1, 10, 10, 20),
+            map_file,
+        ),
+        (
+            "a map of pixels",
+            "POST",
+            L + "/picture",
+            tiff(2, 2, lambda x, y: 21, kind="B", scale=10.0, origin=(40, 60)),
+            {"Content-Type": "image/tiff"},
+        ),
+        (
+            "select into",
+            "POST",
+            M + "/select",
+            {"where": "cracks = 20", "into": {"layer": "cracks", "value": 22}},
+            {},
+        ),
         ("restore", "POST", L + "/restore", {"sequence": first}, {}),
     ]
     lock(server, "cracks")
@@ -102,19 +165,44 @@ def check_settings(server, annotator, viewer):
         lock(server, "cracks", locked)
         before = server.get(L).json()
         for token in (annotator, viewer):
-            for change in ({"locked": not locked}, {"name": "Mine"}, {"description": "x"}, {"unit": "m"}, {"visible": False}, {"opacity": 0.1}, {"order": 9},
-                           {"type": "u16"}, {"palette": before["palette"]}, {"expression": "1"}):
+            for change in (
+                {"locked": not locked},
+                {"name": "Mine"},
+                {"description": "x"},
+                {"unit": "m"},
+                {"visible": False},
+                {"opacity": 0.1},
+                {"order": 9},
+                {"type": "u16"},
+                {"palette": before["palette"]},
+                {"expression": "1"},
+            ):
                 assert server.request("PATCH", L, change, token=token).status == 403, change
             assert server.request("DELETE", L, token=token).status == 403
-            assert server.post(M + "/layers", {"name": "New", "locked": False}, token=token).status == 403
+            assert (
+                server.post(M + "/layers", {"name": "New", "locked": False}, token=token).status
+                == 403
+            )
         assert server.get(L).json() == before
-    assert server.post(L + "/edits", {"op": "fill", "mode": "where", "where": "true", "value": 1}, token=viewer).status == 403
+    assert (
+        server.post(
+            L + "/edits", {"op": "fill", "mode": "where", "where": "true", "value": 1}, token=viewer
+        ).status
+        == 403
+    )
     stale = server.get(L).headers["ETag"]
     lock(server, "cracks", False)
     assert server.request("PATCH", L, {"locked": True}, headers={"If-Match": stale}).status == 412
     made = server.ok("POST", M + "/layers", {"name": "Handed in", "locked": True}).json()
     assert made["locked"] is True
-    is_refused(server.post(f"{M}/layers/handed-in/edits", {"op": "fill", "mode": "where", "where": "true", "value": 1}, token=annotator), "Handed in")
+    is_refused(
+        server.post(
+            f"{M}/layers/handed-in/edits",
+            {"op": "fill", "mode": "where", "where": "true", "value": 1},
+            token=annotator,
+        ),
+        "Handed in",
+    )
     server.ok("DELETE", f"{M}/layers/handed-in")
     print("settings: ok", flush=True)
 
@@ -122,7 +210,12 @@ def check_settings(server, annotator, viewer):
 def check_records(server, annotator, curator):
     """A record that is painted on a locked layer keeps its texels, on every layer."""
     for layer in ("units", "open-units"):
-        server.ok("POST", query(f"{M}/layers/{layer}/polygons", value=1), geojson(1, 10, 10, 20), headers={"Content-Type": "application/geo+json"})
+        server.ok(
+            "POST",
+            query(f"{M}/layers/{layer}/polygons", value=1),
+            geojson(1, 10, 10, 20),
+            headers={"Content-Type": "application/geo+json"},
+        )
     lock(server, "units")
     before = state(server)
     for texels_go in ("texels=clear", "texels=reassign&to=2"):
@@ -130,14 +223,34 @@ def check_records(server, annotator, curator):
             is_refused(server.request("DELETE", path + texels_go, token=annotator), "Units")
             assert state(server) == before, texels_go
     # It was not retired: it is painted, and changed, as before.
-    server.ok("POST", M + "/layers/open-units/edits", {"op": "fill", "mode": "where", "where": '"open-units" = 1', "value": 1}, token=annotator)
+    server.ok(
+        "POST",
+        M + "/layers/open-units/edits",
+        {"op": "fill", "mode": "where", "where": '"open-units" = 1', "value": 1},
+        token=annotator,
+    )
     server.ok("PATCH", "/tables/units/records/1", {"values": {"name": "One"}}, token=annotator)
     # Nor makes a map records for a layer that it may not paint.
     body, headers = geojson(5, 60, 60, 20), {"Content-Type": "application/geo+json"}
     before = state(server)
-    is_refused(server.request("POST", query(M + "/layers/units/polygons", attribute="value"), body, headers=headers, token=annotator), "Units")
+    is_refused(
+        server.request(
+            "POST",
+            query(M + "/layers/units/polygons", attribute="value"),
+            body,
+            headers=headers,
+            token=annotator,
+        ),
+        "Units",
+    )
     assert state(server) == before
-    server.ok("POST", query(M + "/layers/units/polygons", attribute="value"), body, headers=headers, token=curator)
+    server.ok(
+        "POST",
+        query(M + "/layers/units/polygons", attribute="value"),
+        body,
+        headers=headers,
+        token=curator,
+    )
     assert server.get("/tables/units/records/5").json()["values"]["name"] == "Moss"
     then = texels(server, "units")
     server.ok("DELETE", "/tables/units/records/1?texels=reassign&to=2", token=curator)
@@ -151,11 +264,18 @@ def check_records(server, annotator, curator):
 def check_computed(server, annotator, curator):
     server.ok("POST", M + "/layers", {"name": "Twice", "expression": "cracks * 2"})
     assert server.get(M + "/layers/twice").json()["locked"] is True, "what was computed is locked"
-    change = lambda value: server.ok("POST", query(L + "/readings", radius_mm=4), f"x,y,z,value\n80,80,0,{value}\n", headers={"Content-Type": "text/csv"})
+    change = lambda value: server.ok(
+        "POST",
+        query(L + "/readings", radius_mm=4),
+        f"x,y,z,value\n80,80,0,{value}\n",
+        headers={"Content-Type": "text/csv"},
+    )
     change(30)
     then = texels(server, "twice")
     is_refused(server.post(M + "/layers/twice/compute", token=annotator), "Twice")
-    assert texels(server, "twice") == then and server.get(M + "/layers/twice").json()["stale"] is True
+    assert (
+        texels(server, "twice") == then and server.get(M + "/layers/twice").json()["stale"] is True
+    )
     server.ok("POST", M + "/layers/twice/compute", token=curator)
     then = texels(server, "twice")
     # The server itself follows what the layer is computed from: the lock is for people.
@@ -165,8 +285,17 @@ def check_computed(server, annotator, curator):
     assert server.get(M + "/layers/twice").json()["locked"] is True
     # Who copies layers to another scan goes on there.
     server.import_model(folded_grid(fold=0.001), "again.ply", name="Again", unit="mm")
-    job = server.wait_for_job(server.ok("POST", "/models/again/transfer", {"from": "sheet", "layers": ["twice"], "tolerance_mm": 1}).json()["id"])
-    assert job["state"] == "done" and server.get(f"/models/again/layers/{job['layers'][0]}").json()["locked"] is False, job
+    job = server.wait_for_job(
+        server.ok(
+            "POST",
+            "/models/again/transfer",
+            {"from": "sheet", "layers": ["twice"], "tolerance_mm": 1},
+        ).json()["id"]
+    )
+    assert (
+        job["state"] == "done"
+        and server.get(f"/models/again/layers/{job['layers'][0]}").json()["locked"] is False
+    ), job
     print("computed: ok", flush=True)
 
 
@@ -176,20 +305,35 @@ def new():
 
 def check_live(server, annotator, curator, camera):
     lock(server, "cracks", False)
-    with LiveClient(server, "sheet", token=annotator) as ada, LiveClient(server, "sheet", token=curator) as carl:
+    with LiveClient(server, "sheet", token=annotator) as ada, LiveClient(
+        server, "sheet", token=curator
+    ) as carl:
         assert {each["slug"]: each["locked"] for each in ada.hello()["layers"]}["cracks"] is False
         carl.hello()
 
         def begin(live, value):
             stroke = new()
-            live.send({"op": "stroke.begin", "id": new(), "stroke": stroke, "layer": "cracks", "value": value, "camera": camera, "radius_px": 9})
+            live.send(
+                {
+                    "op": "stroke.begin",
+                    "id": new(),
+                    "stroke": stroke,
+                    "layer": "cracks",
+                    "value": value,
+                    "camera": camera,
+                    "radius_px": 9,
+                }
+            )
             return stroke
 
         def extend(live, stroke, n, place):
-            live.send({"op": "stroke.extend", "id": new(), "stroke": stroke, "n": n, "path": [place]})
+            live.send(
+                {"op": "stroke.extend", "id": new(), "stroke": stroke, "n": n, "path": [place]}
+            )
             return live.receive_until("saved", "problem")
 
-        # The lock falls while she paints: what is saved stays, the rest is refused, and she hears why.
+        # The lock falls while she paints: what is saved stays, the rest is refused, and she hears
+        # why.
         stroke = begin(ada, 41)
         saved = extend(ada, stroke, 0, [200, 200])
         assert saved["op"] == "saved", saved
@@ -201,16 +345,44 @@ def check_live(server, annotator, curator, camera):
         before = state(server)
         refused = extend(ada, stroke, 1, [260, 260])
         assert refused["op"] == "problem" and refused["status"] == 403, refused
-        assert refused["title"] == "Layer locked" and "a curator can unlock it" in refused["detail"] and refused["field"] == "layer", refused
-        changes = [{"op": "undo"}, {"op": "redo"},
-                   {"op": "edit", "edit": {"op": "fill", "mode": "where", "where": "true", "value": 42}},
-                   {"op": "edit", "edit": {"op": "stroke", "value": 43, "camera": camera, "radius_px": 9, "path": [[300, 300]]}},
-                   {"op": "edit", "edit": {"op": "polygon", "value": 44, "camera": camera, "path": [[250, 200], [390, 200], [320, 300]]}}]
+        assert (
+            refused["title"] == "Layer locked"
+            and "a curator can unlock it" in refused["detail"]
+            and refused["field"] == "layer"
+        ), refused
+        changes = [
+            {"op": "undo"},
+            {"op": "redo"},
+            {"op": "edit", "edit": {"op": "fill", "mode": "where", "where": "true", "value": 42}},
+            {
+                "op": "edit",
+                "edit": {
+                    "op": "stroke",
+                    "value": 43,
+                    "camera": camera,
+                    "radius_px": 9,
+                    "path": [[300, 300]],
+                },
+            },
+            {
+                "op": "edit",
+                "edit": {
+                    "op": "polygon",
+                    "value": 44,
+                    "camera": camera,
+                    "path": [[250, 200], [390, 200], [320, 300]],
+                },
+            },
+        ]
         for change in changes:
             message = {**change, "id": new(), "layer": "cracks"}
             ada.send(message)
             problem = ada.receive_until("saved", "problem")
-            assert problem["op"] == "problem" and problem["status"] == 403 and problem["ref"] == message["id"], (change, problem)
+            assert (
+                problem["op"] == "problem"
+                and problem["status"] == 403
+                and problem["ref"] == message["id"]
+            ), (change, problem)
         again = begin(ada, 45)
         assert extend(ada, again, 0, [210, 300])["status"] == 403
         assert state(server) == before
@@ -227,7 +399,9 @@ def check_live(server, annotator, curator, camera):
 def check_repeats(server, annotator):
     """What was saved before the lock fell is told again, also after a restart."""
     edit = {"op": "fill", "mode": "where", "where": "cracks > 0", "value": 50}
-    send = lambda: server.post(L + "/edits", edit, headers={"Idempotency-Key": KEPT}, token=annotator)
+    send = lambda: server.post(
+        L + "/edits", edit, headers={"Idempotency-Key": KEPT}, token=annotator
+    )
     first = send().json()
     lock(server, "cracks")
     for restarted in (False, True):
@@ -243,15 +417,28 @@ def check_repeats(server, annotator):
 
 def main():
     with StrataServer() as server:
-        model = server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048)
+        model = server.import_model(
+            folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
+        )
         camera = camera_from(model, (0, 0, 1), up=(0, 1, 0))
         legend = {"mode": "categorical", "points": [{"at": 5, "color": "#112233", "label": "Moss"}]}
         server.ok("POST", M + "/layers", {"name": "Cracks", "type": "u8"})
-        server.ok("POST", M + "/layers", {"name": "Units", "kind": "database", "type": "u16", "palette": legend})
-        server.ok("POST", M + "/layers", {"name": "Open units", "kind": "database", "type": "u16", "table": "units"})
+        server.ok(
+            "POST",
+            M + "/layers",
+            {"name": "Units", "kind": "database", "type": "u16", "palette": legend},
+        )
+        server.ok(
+            "POST",
+            M + "/layers",
+            {"name": "Open units", "kind": "database", "type": "u16", "table": "units"},
+        )
         for name in ("First", "Second"):
             server.ok("POST", "/tables/units/records", {"values": {"name": name}})
-        viewer, annotator, curator = (server.ok("POST", "/me/tokens", {"name": role, "role": role}).json()["secret"] for role in ("viewer", "annotator", "curator"))
+        viewer, annotator, curator = (
+            server.ok("POST", "/me/tokens", {"name": role, "role": role}).json()["secret"]
+            for role in ("viewer", "annotator", "curator")
+        )
         check_doors(server, annotator, curator, camera)
         check_settings(server, annotator, viewer)
         check_live(server, annotator, curator, camera)

@@ -7,8 +7,8 @@ import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.cameras import camera_from
-from support.meshes import bumpy_ball
 from support.maps import tiff
+from support.meshes import bumpy_ball
 from support.pictures import bmp, pixels, png, tga
 from support.strata_server import LONG_S, StrataServer
 
@@ -26,11 +26,26 @@ RED = {"Content-Type": "image/png"}
 def check_looks(server, camera):
     picture = png(64, 32, lambda x, y: (255, 0, 0))
     assert server.get(M + "/looks").json() == {"looks": [], "total": 0}
-    made = server.ok("POST", M + "/looks?name=UV+light&description=365+nm", picture, headers={**RED, "Idempotency-Key": "uv"})
+    made = server.ok(
+        "POST",
+        M + "/looks?name=UV+light&description=365+nm",
+        picture,
+        headers={**RED, "Idempotency-Key": "uv"},
+    )
     look = made.json()
     assert made.status == 201 and made.headers["Location"] == f"/api/v1{M}/looks/uv-light", made
-    assert (look["width"], look["height"], look["media_type"], look["visible"]) == (64, 32, "image/png", False), look
-    again = server.ok("POST", M + "/looks?name=UV+light&description=365+nm", picture, headers={**RED, "Idempotency-Key": "uv"})
+    assert (look["width"], look["height"], look["media_type"], look["visible"]) == (
+        64,
+        32,
+        "image/png",
+        False,
+    ), look
+    again = server.ok(
+        "POST",
+        M + "/looks?name=UV+light&description=365+nm",
+        picture,
+        headers={**RED, "Idempotency-Key": "uv"},
+    )
     assert again.json()["id"] == look["id"] and server.get(M + "/looks").json()["total"] == 1
 
     assert server.ok("GET", M + "/looks/uv-light/picture").body == picture
@@ -40,14 +55,37 @@ def check_looks(server, camera):
     center = lambda rows: rows[len(rows) // 2][len(rows[0]) // 2]
     plain = center(frame(server, camera=camera, light={"mode": "unlit"}))
     assert max(plain) - min(plain) < 30, "hidden until it is chosen"
-    assert center(frame(server, camera=camera, light={"mode": "unlit"}, looks=[{"look": "uv-light"}])) == (255, 0, 0)
-    half = center(frame(server, camera=camera, light={"mode": "unlit"}, looks=[{"look": look["id"], "opacity": 0.5}]))
+    assert center(
+        frame(server, camera=camera, light={"mode": "unlit"}, looks=[{"look": "uv-light"}])
+    ) == (255, 0, 0)
+    half = center(
+        frame(
+            server,
+            camera=camera,
+            light={"mode": "unlit"},
+            looks=[{"look": look["id"], "opacity": 0.5}],
+        )
+    )
     assert abs(half[1] - plain[1] / 2) < 3, (half, plain)
 
-    changed = server.ok("PATCH", M + "/looks/uv-light", {"visible": True, "name": "Ultraviolet"}, headers={"If-Match": made.headers["ETag"]})
+    changed = server.ok(
+        "PATCH",
+        M + "/looks/uv-light",
+        {"visible": True, "name": "Ultraviolet"},
+        headers={"If-Match": made.headers["ETag"]},
+    )
     assert changed.json()["name"] == "Ultraviolet" and changed.json()["slug"] == "uv-light"
-    assert server.request("PATCH", M + "/looks/uv-light", {"order": 3}, headers={"If-Match": made.headers["ETag"]}).status == 412
-    assert center(frame(server, camera=camera, light={"mode": "unlit"})) == (255, 0, 0), "now everyone sees it"
+    assert (
+        server.request(
+            "PATCH", M + "/looks/uv-light", {"order": 3}, headers={"If-Match": made.headers["ETag"]}
+        ).status
+        == 412
+    )
+    assert center(frame(server, camera=camera, light={"mode": "unlit"})) == (
+        255,
+        0,
+        0,
+    ), "now everyone sees it"
     assert center(frame(server, camera=camera, light={"mode": "unlit"}, looks=[])) == plain
 
     for what, method, path, body, headers, status in [
@@ -59,29 +97,99 @@ def check_looks(server, camera):
         ("unknown model", "POST", "/models/none/looks?name=x", picture, RED, 404),
         ("unknown look", "GET", M + "/looks/none", None, {}, 404),
         ("unknown look's picture", "GET", M + "/looks/none/picture", None, {}, 404),
-        ("a thumbnail too large", "GET", M + "/looks/uv-light/picture?thumbnail=100000", None, {}, 422),
+        (
+            "a thumbnail too large",
+            "GET",
+            M + "/looks/uv-light/picture?thumbnail=100000",
+            None,
+            {},
+            422,
+        ),
         ("an empty change", "PATCH", M + "/looks/uv-light", {}, {}, 422),
         ("too opaque", "PATCH", M + "/looks/uv-light", {"opacity": 2}, {}, 422),
-        ("an unknown look in a frame", "POST", M + "/frame", {"camera": camera, "looks": [{"look": "none"}]}, {}, 404),
-        ("a look twice in a frame", "POST", M + "/frame", {"camera": camera, "looks": [{"look": "uv-light"}] * 2}, {}, 422),
-        ("five looks in a frame", "POST", M + "/frame", {"camera": camera, "looks": [{"look": 1}] * 5}, {}, 422),
-        ("unknown light", "POST", M + "/frame", {"camera": camera, "light": {"mode": "disco"}}, {}, 422),
-        ("light from nowhere", "POST", M + "/frame", {"camera": camera, "light": {"mode": "raking", "direction": [0, 0, 0]}}, {}, 422),
-        ("seven planes", "POST", M + "/frame", {"camera": {**camera, "section": [[0, 0, 1, 0]] * 7}}, {}, 422),
-        ("a plane without a direction", "POST", M + "/frame", {"camera": {**camera, "section": [[0, 0, 0, 1]]}}, {}, 422),
+        (
+            "an unknown look in a frame",
+            "POST",
+            M + "/frame",
+            {"camera": camera, "looks": [{"look": "none"}]},
+            {},
+            404,
+        ),
+        (
+            "a look twice in a frame",
+            "POST",
+            M + "/frame",
+            {"camera": camera, "looks": [{"look": "uv-light"}] * 2},
+            {},
+            422,
+        ),
+        (
+            "five looks in a frame",
+            "POST",
+            M + "/frame",
+            {"camera": camera, "looks": [{"look": 1}] * 5},
+            {},
+            422,
+        ),
+        (
+            "unknown light",
+            "POST",
+            M + "/frame",
+            {"camera": camera, "light": {"mode": "disco"}},
+            {},
+            422,
+        ),
+        (
+            "light from nowhere",
+            "POST",
+            M + "/frame",
+            {"camera": camera, "light": {"mode": "raking", "direction": [0, 0, 0]}},
+            {},
+            422,
+        ),
+        (
+            "seven planes",
+            "POST",
+            M + "/frame",
+            {"camera": {**camera, "section": [[0, 0, 1, 0]] * 7}},
+            {},
+            422,
+        ),
+        (
+            "a plane without a direction",
+            "POST",
+            M + "/frame",
+            {"camera": {**camera, "section": [[0, 0, 0, 1]]}},
+            {},
+            422,
+        ),
     ]:
         answer = server.request(method, path, body, headers=headers)
         assert answer.status == status, f"{what}: {answer}"
 
     # Other formats are kept as a PNG of their pixels, and shown in a frame.
     blue = lambda x, y: (0, 0, 255)
-    for name, kind, other in (("tga", "image/x-tga", tga(8, 4, blue)), ("bmp", "image/bmp", bmp(8, 4, blue)),
-                              ("tiff", "image/tiff", tiff(8, 4, blue, kind="B", samples=3))):
-        made = server.ok("POST", M + f"/looks?name={name}", other, headers={"Content-Type": kind}).json()
+    for name, kind, other in (
+        ("tga", "image/x-tga", tga(8, 4, blue)),
+        ("bmp", "image/bmp", bmp(8, 4, blue)),
+        ("tiff", "image/tiff", tiff(8, 4, blue, kind="B", samples=3)),
+    ):
+        made = server.ok(
+            "POST", M + f"/looks?name={name}", other, headers={"Content-Type": kind}
+        ).json()
         assert (made["width"], made["height"], made["media_type"]) == (8, 4, "image/png"), made
-        assert set(sum(pixels(server.ok("GET", M + f"/looks/{name}/picture").body), [])) == {(0, 0, 255)}
-        assert center(frame(server, camera=camera, light={"mode": "unlit"}, looks=[{"look": name}])) == (0, 0, 255)
-        assert server.request("POST", M + "/looks?name=x", other[:-20], headers={"Content-Type": kind}).status == 422
+        assert set(sum(pixels(server.ok("GET", M + f"/looks/{name}/picture").body), [])) == {
+            (0, 0, 255)
+        }
+        assert center(
+            frame(server, camera=camera, light={"mode": "unlit"}, looks=[{"look": name}])
+        ) == (0, 0, 255)
+        assert (
+            server.request(
+                "POST", M + "/looks?name=x", other[:-20], headers={"Content-Type": kind}
+            ).status
+            == 422
+        )
         server.ok("DELETE", M + f"/looks/{name}")
     dds = server.request("POST", M + "/looks?name=x", b"DDS " + bytes(200), headers=RED)
     assert dds.status == 415 and "DDS" in dds.json()["detail"], dds
@@ -92,7 +200,10 @@ def check_looks(server, camera):
 
 
 def check_raking(server, camera):
-    left, right = (frame(server, camera=camera, light={"mode": "raking", "direction": [x, 0, 0.3]}) for x in (-1, 1))
+    left, right = (
+        frame(server, camera=camera, light={"mode": "raking", "direction": [x, 0, 0.3]})
+        for x in (-1, 1)
+    )
     row = len(left) // 2
     at = lambda rows, share: sum(rows[row][int(len(rows[0]) * share)])
     assert at(left, 0.42) > at(left, 0.58) + 60 and at(right, 0.58) > at(right, 0.42) + 60
@@ -101,13 +212,23 @@ def check_raking(server, camera):
 def check_section(server, camera):
     """A stroke's record holds its section: what is cut away takes no paint, and the answer is the same after a repeat."""
     server.ok("POST", M + "/layers", {"name": "Inside", "type": "u8", "resolution": 2048})
-    cut = {**camera, "section": [[0, 1, 0, 0]]}  # keeps y above 0: the half that is away from the eye
-    stroke = {"op": "stroke", "value": 1, "camera": cut, "radius_px": 400, "path": [[320, 240]], "through": True}
+    # keeps y above 0: the half that is away from the eye
+    cut = {**camera, "section": [[0, 1, 0, 0]]}
+    stroke = {
+        "op": "stroke",
+        "value": 1,
+        "camera": cut,
+        "radius_px": 400,
+        "path": [[320, 240]],
+        "through": True,
+    }
     painted = server.ok("POST", M + "/layers/inside/edits", stroke).json()
     whole = server.ok("GET", M).json()["area_m2"]
     assert 0.48 < painted["area_m2"] / whole < 0.52, (painted, whole)
     seen = {**stroke, "camera": cut, "through": False, "radius_px": 40, "value": 2}
-    assert server.ok("POST", M + "/layers/inside/edits", seen).json()["texels_changed"] == 0, "a solid's inside takes no paint"
+    assert (
+        server.ok("POST", M + "/layers/inside/edits", seen).json()["texels_changed"] == 0
+    ), "a solid's inside takes no paint"
     assert not server.ok("POST", M + "/pick", {"camera": cut, "x": 320, "y": 240}).json()["hit"]
     hit = server.ok("POST", M + "/pick", {"camera": camera, "x": 320, "y": 240}).json()
     assert hit["hit"] and hit["position"][1] < 0 and not hit["values"]["inside"]["valid"]
@@ -120,27 +241,61 @@ MTL = b"newmtl a\nmap_Kd color.png\n"
 def check_several_files(server, folder):
     texture = png(16, 16, lambda x, y: (0, 200, 0))
     files = {"scan.obj": OBJ, "scan.mtl": MTL, "color.png": texture}
-    form = b"".join(b'--B\r\nContent-Disposition: form-data; name="files"; filename="%s"\r\n\r\n%s\r\n' % (name.encode(), content)
-                    for name, content in files.items()) + b"--B--\r\n"
-    job = server.ok("POST", "/models?name=Form", form, headers={"Content-Type": "multipart/form-data; boundary=B"}).json()
+    form = (
+        b"".join(
+            b'--B\r\nContent-Disposition: form-data; name="files"; filename="%s"\r\n\r\n%s\r\n'
+            % (name.encode(), content)
+            for name, content in files.items()
+        )
+        + b"--B--\r\n"
+    )
+    job = server.ok(
+        "POST",
+        "/models?name=Form",
+        form,
+        headers={"Content-Type": "multipart/form-data; boundary=B"},
+    ).json()
     done = server.wait_for_job(job["id"])
     assert done["state"] == "done", done
     model = server.ok("GET", "/models/form").json()
-    assert sorted(each["name"] for each in model["source_files"]) == sorted(files), model["source_files"]
+    assert sorted(each["name"] for each in model["source_files"]) == sorted(files), model[
+        "source_files"
+    ]
     for name, content in files.items():
         assert server.ok("GET", f"/models/form/source/{name}").body == content
         with open(os.path.join(folder, name), "wb") as file:
             file.write(content)
     # The command finds what lies beside the mesh by itself, and takes what it is given.
     for more in ([], ["scan.mtl", "color.png"]):
-        words = [server.binary, "import", "scan.obj", *more, "--name", f"Command {len(more)}", "--server", server.url, "--token", server.token]
-        ran = subprocess.run(words, capture_output=True, text=True, check=False, timeout=LONG_S, cwd=folder)
+        words = [
+            server.binary,
+            "import",
+            "scan.obj",
+            *more,
+            "--name",
+            f"Command {len(more)}",
+            "--server",
+            server.url,
+            "--token",
+            server.token,
+        ]
+        ran = subprocess.run(
+            words, capture_output=True, text=True, check=False, timeout=LONG_S, cwd=folder
+        )
         assert ran.returncode == 0, ran.stderr
-        names = [each["name"] for each in server.ok("GET", f"/models/command-{len(more)}").json()["source_files"]]
+        names = [
+            each["name"]
+            for each in server.ok("GET", f"/models/command-{len(more)}").json()["source_files"]
+        ]
         assert sorted(names) == sorted(files), names
     assert not os.listdir(os.path.join(server.data, "uploads"))
     two = form.replace(b"scan.mtl", b"other.obj")
-    assert server.post("/models", two, headers={"Content-Type": "multipart/form-data; boundary=B"}).status == 422
+    assert (
+        server.post(
+            "/models", two, headers={"Content-Type": "multipart/form-data; boundary=B"}
+        ).status
+        == 422
+    )
     assert not os.listdir(os.path.join(server.data, "uploads"))
 
 

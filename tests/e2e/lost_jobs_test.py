@@ -19,7 +19,9 @@ SCAN = folded_grid(cells=120)  # some seconds of work
 
 
 def begin(server, name):
-    return server.ok("POST", "/models?" + urllib.parse.urlencode({"filename": "grid.ply", "name": name}), SCAN).json()["id"]
+    return server.ok(
+        "POST", "/models?" + urllib.parse.urlencode({"filename": "grid.ply", "name": name}), SCAN
+    ).json()["id"]
 
 
 def check_lost(server, jobs, outsider):
@@ -28,12 +30,17 @@ def check_lost(server, jobs, outsider):
         answer = server.ok("GET", f"/jobs/{job}").json()
         assert answer["state"] == "failed", answer
         assert answer["problem"]["title"] == "Server was restarted", answer
-        assert "nothing of it was kept" in answer["problem"]["detail"] and "Start it again" in answer["problem"]["detail"], answer
+        assert (
+            "nothing of it was kept" in answer["problem"]["detail"]
+            and "Start it again" in answer["problem"]["detail"]
+        ), answer
         assert "model" not in answer, answer
         assert listed[job] == answer, (listed[job], answer)
         assert server.request("DELETE", f"/jobs/{job}").status == 409
         assert outsider.status("GET", f"/jobs/{job}") == 404, "who may not see it is told of it"
-    assert all(job["id"] not in jobs for job in outsider.ok("GET", "/jobs?limit=1000").json()["jobs"])
+    assert all(
+        job["id"] not in jobs for job in outsider.ok("GET", "/jobs?limit=1000").json()["jobs"]
+    )
 
 
 def models(server):
@@ -47,7 +54,9 @@ def main():
         print("a job that ended is known after a restart, with what it made")
         done = server.wait_for_job(begin(server, "Kept"))
         assert done["state"] == "done", done
-        failed = server.wait_for_job(server.ok("POST", "/models?filename=bad.ply", b"not a mesh").json()["id"])
+        failed = server.wait_for_job(
+            server.ok("POST", "/models?filename=bad.ply", b"not a mesh").json()["id"]
+        )
         assert failed["state"] == "failed", failed
         assert server.stop() == 0
         server.start()
@@ -57,22 +66,41 @@ def main():
 
         for how in ("kill", "stop"):
             print(f"{how}: one job runs, another one waits")
-            started = {name: begin(server, name) for name in (f"Runs at {how}", f"Waits at {how}", f"Waits longer at {how}")}
+            started = {
+                name: begin(server, name)
+                for name in (f"Runs at {how}", f"Waits at {how}", f"Waits longer at {how}")
+            }
             first = started[f"Runs at {how}"]
-            wait_for(lambda: server.ok("GET", f"/jobs/{first}").json()["state"] != "queued", "the job to run")
+            wait_for(
+                lambda: server.ok("GET", f"/jobs/{first}").json()["state"] != "queued",
+                "the job to run",
+            )
             getattr(server, how)()
             server.start()
             there = models(server)
-            lost = {name: job for name, job in started.items() if server.ok("GET", f"/jobs/{job}").json()["state"] != "done"}
-            assert f"Waits longer at {how}" in lost, "all were done before the server ended: give them more to do"
+            lost = {
+                name: job
+                for name, job in started.items()
+                if server.ok("GET", f"/jobs/{job}").json()["state"] != "done"
+            }
+            assert (
+                f"Waits longer at {how}" in lost
+            ), "all were done before the server ended: give them more to do"
             assert not there & lost.keys() and started.keys() - lost.keys() <= there, (there, lost)
             check_lost(server, list(lost.values()), outsider)
 
-        print(f"killed {KILLS} times at any moment of an import: a job is done exactly where its model is there")
+        print(
+            f"killed {KILLS} times at any moment of an import: a job is done exactly where its model is there"
+        )
         for n in range(KILLS):
             job = begin(server, f"Model {n}")
             # A share of the work, not of the time: each round kills later than the one before.
-            wait_for(lambda: (lambda now: now["progress"] >= n / KILLS or now["state"] == "done")(server.ok("GET", f"/jobs/{job}").json()), "progress")
+            wait_for(
+                lambda: (lambda now: now["progress"] >= n / KILLS or now["state"] == "done")(
+                    server.ok("GET", f"/jobs/{job}").json()
+                ),
+                "progress",
+            )
             server.kill()
             server.start()
             answer = server.ok("GET", f"/jobs/{job}").json()
@@ -81,11 +109,15 @@ def main():
 
         print("what was lost is started again under the same key, and new jobs get new ids")
         key = {"Idempotency-Key": "again-and-again"}
-        job = server.ok("POST", "/models?filename=grid.ply&name=Again", SCAN, headers=key).json()["id"]
+        job = server.ok("POST", "/models?filename=grid.ply&name=Again", SCAN, headers=key).json()[
+            "id"
+        ]
         server.kill()
         server.start()
         if server.ok("GET", f"/jobs/{job}").json()["state"] != "done":
-            repeated = server.ok("POST", "/models?filename=grid.ply&name=Again", SCAN, headers=key).json()["id"]
+            repeated = server.ok(
+                "POST", "/models?filename=grid.ply&name=Again", SCAN, headers=key
+            ).json()["id"]
             assert repeated > job
             assert server.wait_for_job(repeated)["state"] == "done"
         assert "Again" in models(server)

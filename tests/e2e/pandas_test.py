@@ -12,7 +12,9 @@ try:
     import pandas
 except ImportError as error:
     in_ci = os.environ.get("CI") == "true"
-    print(f"{'FAILED' if in_ci else 'SKIPPED'}: {error}; ./test installs python3-pandas and python3-openpyxl")
+    print(
+        f"{'FAILED' if in_ci else 'SKIPPED'}: {error}; ./test installs python3-pandas and python3-openpyxl"
+    )
     sys.exit(1 if in_ci else 77)
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -36,14 +38,20 @@ class Reader:
         self.server, self.read = server, set()
 
     def _url(self, path, query):
-        return f"{self.server.url}/api/v1{path}" + ("?" + urllib.parse.urlencode(query) if query else "")
+        return f"{self.server.url}/api/v1{path}" + (
+            "?" + urllib.parse.urlencode(query) if query else ""
+        )
 
     def _options(self):
         return {"Authorization": "Bearer " + self.server.token}
 
     def csv(self, operation, path, sep=",", decimal=".", **query):
         self.read.add(operation)
-        return whole(pandas.read_csv(self._url(path, query), sep=sep, decimal=decimal, storage_options=self._options()))
+        return whole(
+            pandas.read_csv(
+                self._url(path, query), sep=sep, decimal=decimal, storage_options=self._options()
+            )
+        )
 
     def excel(self, operation, path, **query):
         self.read.add(operation)
@@ -58,8 +66,13 @@ class Reader:
 def whole(frame):
     """No index that somebody wrote, no nameless or doubled column, no mark before the first name."""
     names = [str(name) for name in frame.columns]
-    assert not [name for name in names if name.startswith("Unnamed") or name != name.strip("\ufeff ") or name.endswith(".1")], names
-    assert isinstance(frame.index, pandas.RangeIndex), frame.index  # no row has more cells than the head
+    assert not [
+        name
+        for name in names
+        if name.startswith("Unnamed") or name != name.strip("\ufeff ") or name.endswith(".1")
+    ], names
+    # no row has more cells than the head
+    assert isinstance(frame.index, pandas.RangeIndex), frame.index
     return frame
 
 
@@ -76,50 +89,151 @@ def set_up(server):
     server.import_model(folded_grid(fold=0.001), "wall.ply", name="Wall", unit="mm")
     text = {"Content-Type": "text/csv"}
     server.ok("POST", "/projects/default/terms?name=Damage", TERMS.encode(), headers=text)
-    server.ok("POST", "/projects/default/tables", {"name": "Units", "columns": [
-        {"name": "Code", "required": True, "unique": True}, {"name": "Depth", "kind": "numeric", "unit": "m"}, {"name": "Count", "kind": "integer"},
-        {"name": "Period", "kind": "period"}, {"name": "State", "kind": "enumeration", "choices": ["loose", "firm"]}, {"name": "Found", "kind": "date"},
-        {"name": "Wet", "kind": "boolean"}, {"name": "Note"}, {"name": "Empty"}]})
+    server.ok(
+        "POST",
+        "/projects/default/tables",
+        {
+            "name": "Units",
+            "columns": [
+                {"name": "Code", "required": True, "unique": True},
+                {"name": "Depth", "kind": "numeric", "unit": "m"},
+                {"name": "Count", "kind": "integer"},
+                {"name": "Period", "kind": "period"},
+                {"name": "State", "kind": "enumeration", "choices": ["loose", "firm"]},
+                {"name": "Found", "kind": "date"},
+                {"name": "Wet", "kind": "boolean"},
+                {"name": "Note"},
+                {"name": "Empty"},
+            ],
+        },
+    )
     report = server.ok("POST", "/tables/units/records", UNITS.encode(), headers=text).json()
     assert report["created"] == 3, report
-    server.ok("POST", WALL + "/layers", {"name": "Units", "kind": "database", "type": "u16", "table": "units", "resolution": 2048})
-    server.ok("POST", WALL + "/layers", {"name": "Moisture", "type": "f32", "unit": "%", "resolution": 2048})
-    for layer, value, where in (("units", 1, "x < 10 and y < 10"), ("units", 2, "x > 90 and y < 5"), ("moisture", 12.5, "x < 20 and y < 20"), ("moisture", 0.25, "x < 5 and y < 5")):
-        server.ok("POST", f"{WALL}/layers/{layer}/edits", {"op": "fill", "mode": "where", "where": where, "value": value})
+    server.ok(
+        "POST",
+        WALL + "/layers",
+        {"name": "Units", "kind": "database", "type": "u16", "table": "units", "resolution": 2048},
+    )
+    server.ok(
+        "POST",
+        WALL + "/layers",
+        {"name": "Moisture", "type": "f32", "unit": "%", "resolution": 2048},
+    )
+    for layer, value, where in (
+        ("units", 1, "x < 10 and y < 10"),
+        ("units", 2, "x > 90 and y < 5"),
+        ("moisture", 12.5, "x < 20 and y < 20"),
+        ("moisture", 0.25, "x < 5 and y < 5"),
+    ):
+        server.ok(
+            "POST",
+            f"{WALL}/layers/{layer}/edits",
+            {"op": "fill", "mode": "where", "where": where, "value": value},
+        )
 
 
 def check_records(server, reader):
     frame = reader.csv("list_records", "/tables/units/records", f="csv")
-    assert list(frame.columns) == ["key", "code", "depth", "count", "period", "state", "found", "wet", "note", "empty"], list(frame.columns)
+    assert list(frame.columns) == [
+        "key",
+        "code",
+        "depth",
+        "count",
+        "period",
+        "state",
+        "found",
+        "wet",
+        "note",
+        "empty",
+    ], list(frame.columns)
     assert len(frame) == server.ok("GET", "/tables/units/records").json()["total"] == 3
-    assert kinds(frame) == {"key": "i", "code": "O", "depth": "f", "count": "f", "period": "O", "state": "O", "found": "O", "wet": "b", "note": "O", "empty": "f"}, kinds(frame)
-    assert frame["note"].tolist()[:2] == ["first, with a comma", "two\nlines"] and frame["note"][2] == "'=1+1", frame["note"].tolist()
+    assert kinds(frame) == {
+        "key": "i",
+        "code": "O",
+        "depth": "f",
+        "count": "f",
+        "period": "O",
+        "state": "O",
+        "found": "O",
+        "wet": "b",
+        "note": "O",
+        "empty": "f",
+    }, kinds(frame)
+    assert (
+        frame["note"].tolist()[:2] == ["first, with a comma", "two\nlines"]
+        and frame["note"][2] == "'=1+1"
+    ), frame["note"].tolist()
     assert frame["depth"].sum() == 1.75 and frame["empty"].isna().all()
     found = pandas.to_datetime(frame["found"])
-    assert found.dtype.kind == "M" and found.max() == pandas.Timestamp(2024, 5, 2) and found.isna().sum() == 1
-    same(frame, reader.csv("list_records", "/tables/units/records", f="csv", separator="tab", sep="\t"))
-    same(frame, reader.csv("list_records", "/tables/units/records", f="csv", separator="semicolon", sep=";", decimal=","))
-    assert reader.csv("list_records", "/tables/units/records", f="csv", filter="depth > 1")["code"].tolist() == ["SU 2"]
+    assert (
+        found.dtype.kind == "M"
+        and found.max() == pandas.Timestamp(2024, 5, 2)
+        and found.isna().sum() == 1
+    )
+    same(
+        frame,
+        reader.csv("list_records", "/tables/units/records", f="csv", separator="tab", sep="\t"),
+    )
+    same(
+        frame,
+        reader.csv(
+            "list_records",
+            "/tables/units/records",
+            f="csv",
+            separator="semicolon",
+            sep=";",
+            decimal=",",
+        ),
+    )
+    assert reader.csv("list_records", "/tables/units/records", f="csv", filter="depth > 1")[
+        "code"
+    ].tolist() == ["SU 2"]
     book = reader.excel("list_records", "/tables/units/records", f="xlsx")
     assert list(book.columns) == list(frame.columns) and len(book) == 3
-    assert book["found"].dtype.kind == "M" and book["wet"].dtype.kind == "b" and book["depth"].equals(frame["depth"]), kinds(book)
+    assert (
+        book["found"].dtype.kind == "M"
+        and book["wet"].dtype.kind == "b"
+        and book["depth"].equals(frame["depth"])
+    ), kinds(book)
     layer = reader.csv("list_layer_records", WALL + "/layers/units/records", f="csv")
     assert set(layer.columns) == {*frame.columns, "area_m2"}, list(layer.columns)
-    assert layer["area_m2"].dtype.kind == "f" and abs(layer["area_m2"].sum() - 150e-6) < 2e-6, layer["area_m2"]
-    same(layer, reader.excel("list_layer_records", WALL + "/layers/units/records", f="xlsx")[list(layer.columns)].assign(found=layer["found"], note=layer["note"]))
+    assert (
+        layer["area_m2"].dtype.kind == "f" and abs(layer["area_m2"].sum() - 150e-6) < 2e-6
+    ), layer["area_m2"]
+    same(
+        layer,
+        reader.excel("list_layer_records", WALL + "/layers/units/records", f="xlsx")[
+            list(layer.columns)
+        ].assign(found=layer["found"], note=layer["note"]),
+    )
 
 
 def check_quantities(server, reader):
-    for operation, path in (("layer_quantities", WALL + "/layers/units/quantities"), ("table_quantities", "/tables/units/quantities")):
+    for operation, path in (
+        ("layer_quantities", WALL + "/layers/units/quantities"),
+        ("table_quantities", "/tables/units/quantities"),
+    ):
         told = server.ok("GET", path).json()
         frame = reader.csv(operation, path, f="csv")
         classes, total = frame.iloc[:-1], frame.iloc[-1]
-        assert classes["class"].tolist() == [each["class"] for each in told["quantities"]] == ["SU 1", "SU 2"], frame
-        assert total["class"] == "total" and abs(total["area_m2"] - classes["area_m2"].sum()) < 1e-15 and total["texels"] == classes["texels"].sum()
-        assert {kinds(frame)[name] for name in ("pieces", "texels")} == {"i"} and kinds(frame)["area_m2"] == "f", kinds(frame)
+        assert (
+            classes["class"].tolist()
+            == [each["class"] for each in told["quantities"]]
+            == ["SU 1", "SU 2"]
+        ), frame
+        assert (
+            total["class"] == "total"
+            and abs(total["area_m2"] - classes["area_m2"].sum()) < 1e-15
+            and total["texels"] == classes["texels"].sum()
+        )
+        assert {kinds(frame)[name] for name in ("pieces", "texels")} == {"i"} and kinds(frame)[
+            "area_m2"
+        ] == "f", kinds(frame)
         assert classes["key"].tolist() == [1, 2], frame
         same(frame, reader.excel(operation, path, f="xlsx"))
-        same(frame, reader.csv(operation, path, f="csv", separator="semicolon", sep=";", decimal=","))
+        same(
+            frame, reader.csv(operation, path, f="csv", separator="semicolon", sep=";", decimal=",")
+        )
     ranges = reader.csv("layer_quantities", WALL + "/layers/moisture/quantities", f="csv")
     assert len(ranges) == server.ok("GET", WALL + "/layers/moisture/quantities").json()["total"] + 1
 
@@ -127,35 +241,90 @@ def check_quantities(server, reader):
 def check_texels(server, reader):
     statistics = server.ok("GET", WALL + "/layers/moisture/statistics").json()
     frame = reader.csv("get_texel_lines", WALL + "/layers/moisture/texels.csv")
-    assert list(frame.columns) == ["x", "y", "z", "area_m2", "value"] and set(kinds(frame).values()) == {"f"}, kinds(frame)
+    assert list(frame.columns) == ["x", "y", "z", "area_m2", "value"] and set(
+        kinds(frame).values()
+    ) == {"f"}, kinds(frame)
     assert len(frame) == statistics["texels"] and sorted(frame["value"].unique()) == [0.25, 12.5]
     assert abs(frame["area_m2"].sum() / statistics["area_m2"] - 1) < 1e-6
-    assert abs((frame["value"] * frame["area_m2"]).sum() / frame["area_m2"].sum() / statistics["mean"] - 1) < 1e-6
+    assert (
+        abs(
+            (frame["value"] * frame["area_m2"]).sum() / frame["area_m2"].sum() / statistics["mean"]
+            - 1
+        )
+        < 1e-6
+    )
     cells = reader.csv("get_texel_lines", WALL + "/layers/moisture/texels.csv", cell="5mm")
-    # The same made of the texels. The wall lies across z = 0, and with it some cells, but no cell is left out or counted twice.
-    columns = [each.groupby([each["x"] // 5, each["y"] // 5])["area_m2"].sum() for each in (frame, cells)]
+    # The same made of the texels. The wall lies across z = 0, and with it some cells, but no cell
+    # is left out or counted twice.
+    columns = [
+        each.groupby([each["x"] // 5, each["y"] // 5])["area_m2"].sum() for each in (frame, cells)
+    ]
     assert len(columns[0]) == 16
     pandas.testing.assert_series_equal(*columns, rtol=1e-6)
-    same(cells, reader.csv("get_texel_lines", WALL + "/layers/moisture/texels.csv", cell="5mm", separator="semicolon", sep=";", decimal=","))
-    units = reader.csv("get_texel_lines", WALL + "/layers/units/texels.csv", columns="code,depth", where="x > 50")
-    assert list(units.columns) == ["x", "y", "z", "area_m2", "value", "code", "depth"] and kinds(units)["value"] == "i", kinds(units)
+    same(
+        cells,
+        reader.csv(
+            "get_texel_lines",
+            WALL + "/layers/moisture/texels.csv",
+            cell="5mm",
+            separator="semicolon",
+            sep=";",
+            decimal=",",
+        ),
+    )
+    units = reader.csv(
+        "get_texel_lines", WALL + "/layers/units/texels.csv", columns="code,depth", where="x > 50"
+    )
+    assert (
+        list(units.columns) == ["x", "y", "z", "area_m2", "value", "code", "depth"]
+        and kinds(units)["value"] == "i"
+    ), kinds(units)
     assert set(units["code"]) == {"SU 2"} and set(units["depth"]) == {1.25}
 
 
 def check_points(server, reader):
     point = reader.csv("position", WALL + "/position", coords="POINT Z(2 2 0)", f="csv")
-    assert len(point) == 1 and point["moisture"][0] == 0.25 and point["units"][0] == 1 and point["hit"].dtype.kind == "b", point
-    many = reader.posted("positions", WALL + "/positions", {"points": [[2, 2, 0], [15, 15, 0], [60, 60, 0]], "layers": ["moisture"]})
-    assert len(many) == 3 and many["moisture"].tolist()[:2] == [0.25, 12.5] and pandas.isna(many["moisture"][2]), many
-    line = reader.posted("profile", WALL + "/profile", {"places": [[1, 1, 0], [41, 1, 0]], "step_mm": 1, "layers": ["moisture"]})
-    assert len(line) == 41 and line["along_mm"].is_monotonic_increasing and set(line["moisture"].dropna()) == {0.25, 12.5}, line
-    table = reader.posted("cross_table", WALL + "/cross-table", {"rows": "units", "columns": "units"})
-    assert table.shape[0] == 2 and abs(table.iloc[:, 1:].to_numpy(dtype=float).sum() - 150e-6) < 2e-6, table
+    assert (
+        len(point) == 1
+        and point["moisture"][0] == 0.25
+        and point["units"][0] == 1
+        and point["hit"].dtype.kind == "b"
+    ), point
+    many = reader.posted(
+        "positions",
+        WALL + "/positions",
+        {"points": [[2, 2, 0], [15, 15, 0], [60, 60, 0]], "layers": ["moisture"]},
+    )
+    assert (
+        len(many) == 3
+        and many["moisture"].tolist()[:2] == [0.25, 12.5]
+        and pandas.isna(many["moisture"][2])
+    ), many
+    line = reader.posted(
+        "profile",
+        WALL + "/profile",
+        {"places": [[1, 1, 0], [41, 1, 0]], "step_mm": 1, "layers": ["moisture"]},
+    )
+    assert (
+        len(line) == 41
+        and line["along_mm"].is_monotonic_increasing
+        and set(line["moisture"].dropna()) == {0.25, 12.5}
+    ), line
+    table = reader.posted(
+        "cross_table", WALL + "/cross-table", {"rows": "units", "columns": "units"}
+    )
+    assert (
+        table.shape[0] == 2 and abs(table.iloc[:, 1:].to_numpy(dtype=float).sum() - 150e-6) < 2e-6
+    ), table
 
 
 def check_terms(server, reader):
     frame = reader.csv("list_terms", "/tables/damage/terms", f="csv")
-    assert len(frame) == 2 and frame["label-es"].tolist() == ["Pérdida", "Descamación"] and frame["parent"].tolist()[1] == "loss", frame
+    assert (
+        len(frame) == 2
+        and frame["label-es"].tolist() == ["Pérdida", "Descamación"]
+        and frame["parent"].tolist()[1] == "loss"
+    ), frame
 
 
 def main():
@@ -164,9 +333,16 @@ def main():
         reader = Reader(server)
         for check in (check_records, check_quantities, check_texels, check_points, check_terms):
             check(server, reader)
-        csv = {operation["operationId"] for methods in server.contract.document["paths"].values() for method, operation in methods.items()
-               if method in ("get", "post") and "text/csv" in operation["responses"].get("200", {}).get("content", {})}
-        assert reader.read == csv, f"not read: {csv - reader.read}; not in the contract: {reader.read - csv}"
+        csv = {
+            operation["operationId"]
+            for methods in server.contract.document["paths"].values()
+            for method, operation in methods.items()
+            if method in ("get", "post")
+            and "text/csv" in operation["responses"].get("200", {}).get("content", {})
+        }
+        assert (
+            reader.read == csv
+        ), f"not read: {csv - reader.read}; not in the contract: {reader.read - csv}"
         assert server.stop() == 0
         server.assert_clean_log()
     print(f"pandas {pandas.__version__} reads {', '.join(sorted(csv))}")

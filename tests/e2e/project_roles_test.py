@@ -11,48 +11,100 @@ from support.project_sites import Someone, make_sites, nothing_is_seen
 from support.strata_server import StrataServer
 
 FILL = {"op": "fill", "mode": "where", "where": "true", "value": 1}
+
+
 def ladder(server, guest, villa, forum):
     """In the villa, from nothing to curator and back."""
     model, table = "/models/" + villa["model"]["slug"], f"/tables/{villa['table']['id']}"
-    tries = (("GET", model, None), ("POST", model + "/layers/marks/edits", FILL), ("PATCH", model, {"credit": "x"}), ("GET", "/projects/villa/members", None),
-             ("PUT", f"/projects/villa/members/{guest.user}", {"role": "curator"}), ("PATCH", "/projects/villa", {"description": "mine"}), ("GET", "/users", None))
+    tries = (
+        ("GET", model, None),
+        ("POST", model + "/layers/marks/edits", FILL),
+        ("PATCH", model, {"credit": "x"}),
+        ("GET", "/projects/villa/members", None),
+        ("PUT", f"/projects/villa/members/{guest.user}", {"role": "curator"}),
+        ("PATCH", "/projects/villa", {"description": "mine"}),
+        ("GET", "/users", None),
+    )
     for role, good in ((None, 0), ("viewer", 1), ("annotator", 2), ("curator", 4), ("viewer", 1)):
         if role:
             guest.now("villa", role)
         for i, (method, path, body) in enumerate(tries):
             status = guest.status(method, path, body)
-            assert status == (200 if i < good else 403 if role or path == "/users" else 404), (role, method, path, status)
-        listed = {project["slug"]: project["role"] for project in guest.ok("GET", "/projects").json()["projects"]}
+            assert status == (200 if i < good else 403 if role or path == "/users" else 404), (
+                role,
+                method,
+                path,
+                status,
+            )
+        listed = {
+            project["slug"]: project["role"]
+            for project in guest.ok("GET", "/projects").json()["projects"]
+        }
         assert listed == ({"villa": role} if role else {}), listed
     guest.now("villa", "curator")
     assert guest.ok("GET", "/me").json()["role"] == "guest"
-    for path in ("/tools", "/templates", "/me/sessions", table + "/records", f"/attachments/{villa['attachment']['id']}", f"/jobs/{villa['job']['id']}"):
+    for path in (
+        "/tools",
+        "/templates",
+        "/me/sessions",
+        table + "/records",
+        f"/attachments/{villa['attachment']['id']}",
+        f"/jobs/{villa['job']['id']}",
+    ):
         guest.ok("GET", path)
-    assert [model["slug"] for model in guest.ok("GET", "/models").json()["models"]] == [villa["model"]["slug"]]
+    assert [model["slug"] for model in guest.ok("GET", "/models").json()["models"]] == [
+        villa["model"]["slug"]
+    ]
     assert [job["id"] for job in guest.ok("GET", "/jobs").json()["jobs"]] == [villa["job"]["id"]]
     listed = guest.ok("GET", "/projects/villa/members").json()
     listed["members"] = [uncoloured(person) for person in listed["members"]]
-    assert listed == {"members": [{"user": guest.user, "full_name": "", "role": "curator"}], "groups": [], "total": 1}, listed
-    imported = server.wait_for_job(guest.ok("POST", "/models?filename=y.ply&name=Second&unit=mm&project=villa", folded_grid(fold=0.002)).json()["id"])
+    assert listed == {
+        "members": [{"user": guest.user, "full_name": "", "role": "curator"}],
+        "groups": [],
+        "total": 1,
+    }, listed
+    imported = server.wait_for_job(
+        guest.ok(
+            "POST",
+            "/models?filename=y.ply&name=Second&unit=mm&project=villa",
+            folded_grid(fold=0.002),
+        ).json()["id"]
+    )
     assert imported["state"] == "done", imported
     # From a model of elsewhere nothing can be brought over.
-    refused = [guest.request("POST", "/models/second/transfer", {"from": source}) for source in (forum["model"]["slug"], "ghost")]
-    assert [answer.status for answer in refused] == [422, 422] and refused[0].json()["detail"].replace(forum["model"]["slug"], "ghost") == refused[1].json()["detail"], refused
+    refused = [
+        guest.request("POST", "/models/second/transfer", {"from": source})
+        for source in (forum["model"]["slug"], "ghost")
+    ]
+    assert [answer.status for answer in refused] == [422, 422] and refused[0].json()[
+        "detail"
+    ].replace(forum["model"]["slug"], "ghost") == refused[1].json()["detail"], refused
 
 
 def scripts(server, guest, villa):
     """A token does no more than its own role, in every project."""
+
     def token(**asked):
         made = guest.ok("POST", "/me/tokens", {"name": "t", "days": 1, **asked}).json()
         return made["secret"]
 
     model = "/models/" + villa["model"]["slug"]
     weak, full = token(role="viewer"), token()
-    assert server.get(model, token=weak).status == 200 and server.request("PATCH", model, {"credit": "x"}, token=weak).status == 403
+    assert (
+        server.get(model, token=weak).status == 200
+        and server.request("PATCH", model, {"credit": "x"}, token=weak).status == 403
+    )
     assert server.request("PATCH", model, {"credit": "y"}, token=full).status == 200
-    assert guest.status("POST", "/me/tokens", {"name": "t", "days": 1, "role": "administrator"}) == 403
+    assert (
+        guest.status("POST", "/me/tokens", {"name": "t", "days": 1, "role": "administrator"}) == 403
+    )
     root = server.ok("POST", "/me/tokens", {"name": "t", "days": 1}).json()["secret"]
-    assert server.request("PUT", f"/projects/villa/members/{guest.user}", {"role": "viewer"}, token=root).status == 403, "scripts change nobody's role"
+    assert (
+        server.request(
+            "PUT", f"/projects/villa/members/{guest.user}", {"role": "viewer"}, token=root
+        ).status
+        == 403
+    ), "scripts change nobody's role"
 
 
 def both(server, villa, forum):
@@ -64,12 +116,20 @@ def both(server, villa, forum):
     assert vera.status("PATCH", "/models/" + forum["model"]["slug"], {"credit": "Vera"}) == 403
     vera.now("forum", "annotator")
     vera.ok("POST", f"/models/{forum['model']['slug']}/layers/marks/edits", FILL)
-    assert {project["slug"]: project["role"] for project in vera.ok("GET", "/projects").json()["projects"]} == {"default": "viewer", "villa": "curator", "forum": "annotator"}
+    assert {
+        project["slug"]: project["role"]
+        for project in vera.ok("GET", "/projects").json()["projects"]
+    } == {"default": "viewer", "villa": "curator", "forum": "annotator"}
     anne = Someone(server, "Anne", "curator")
     anne.now("villa", "viewer")
     anne.ok("PATCH", "/models/" + villa["model"]["slug"], {"credit": "Anne"})
     # What is wrong is told.
-    for body, status in (({"role": "administrator"}, 422), ({"role": "guest"}, 422), ({}, 422), ({"role": "viewer", "x": 1}, 422)):
+    for body, status in (
+        ({"role": "administrator"}, 422),
+        ({"role": "guest"}, 422),
+        ({}, 422),
+        ({"role": "viewer", "x": 1}, 422),
+    ):
         assert server.request("PUT", "/projects/villa/members/Anne", body).status == status, body
     for path in ("/projects/villa/members/nobody", "/projects/ghost/members/Anne"):
         assert server.request("PUT", path, {"role": "viewer"}).status == 404, path
@@ -81,8 +141,11 @@ def both(server, villa, forum):
 
 def live(server, guest, villa):
     """An open connection ends with the role, and another one has the new role."""
+
     def look():
-        return LiveClient(server, villa["model"]["slug"], token="", cookie=guest.cookie, origin=server.url)
+        return LiveClient(
+            server, villa["model"]["slug"], token="", cookie=guest.cookie, origin=server.url
+        )
 
     for role, then in (("curator", "viewer"), ("viewer", None)):
         with look() as connection:
@@ -109,7 +172,9 @@ def main():
         live(server, guest, villa)
         nothing_is_seen(server, guest, villa)
         server.assert_clean_log()
-    print(f"project roles: {doors_tried} doors closed to a guest; roles, tokens and connections follow the project")
+    print(
+        f"project roles: {doors_tried} doors closed to a guest; roles, tokens and connections follow the project"
+    )
 
 
 if __name__ == "__main__":

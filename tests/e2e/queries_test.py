@@ -14,13 +14,23 @@ M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
 
 
 def layer(server, name, kind="u8"):
-    return f"{M}/layers/" + server.ok("POST", M + "/layers", {"name": name, "type": kind, "resolution": 2048}).json()["slug"]
+    return (
+        f"{M}/layers/"
+        + server.ok("POST", M + "/layers", {"name": name, "type": kind, "resolution": 2048}).json()[
+            "slug"
+        ]
+    )
 
 
 def dab(server, path, value, x, y, radius):
     """Paints a disc of `radius` mm around a place, as a reading."""
     query = urllib.parse.urlencode({"radius_mm": radius})
-    return server.ok("POST", f"{path}/readings?{query}", f"x,y,z,value\n{x},{y},0,{value}\n", headers={"Content-Type": "text/csv"}).json()
+    return server.ok(
+        "POST",
+        f"{path}/readings?{query}",
+        f"x,y,z,value\n{x},{y},0,{value}\n",
+        headers={"Content-Type": "text/csv"},
+    ).json()
 
 
 def near(a, b, share):
@@ -38,7 +48,11 @@ def check_statistics(server, marks):
     near(now["perimeter_m"], (20 + 10 + 10) * math.pi * 1e-3, 0.02)
     for key, around in {3: 20 * math.pi * 1e-3, 5: 20 * math.pi * 1e-3}.items():
         near({k["key"]: k["perimeter_m"] for k in now["keys"]}[key], around, 0.02)
-    assert (now["quantiles"]["p5"], now["quantiles"]["p50"], now["quantiles"]["p95"]) == (3, 3, 5), now["quantiles"]
+    assert (now["quantiles"]["p5"], now["quantiles"]["p50"], now["quantiles"]["p95"]) == (
+        3,
+        3,
+        5,
+    ), now["quantiles"]
     assert "pieces" not in server.get(marks + "/statistics").json()
 
     for at in (first["sequence"], told):
@@ -46,18 +60,36 @@ def check_statistics(server, marks):
         assert past.headers["Strata-Sequence"] == str(first["sequence"]), (at, past.headers)
         assert [k["key"] for k in past.json()["keys"]] == [3], (at, past.json())
     assert server.get(marks + "/statistics?at=1970-01-01").json()["texels"] == 0
-    where = server.get(marks + "/statistics?" + urllib.parse.urlencode({"where": "marks = 5"})).json()
+    where = server.get(
+        marks + "/statistics?" + urllib.parse.urlencode({"where": "marks = 5"})
+    ).json()
     assert where["texels"] == {k["key"]: k["texels"] for k in now["keys"]}[5]
-    for query, field in (("at=99999", "at"), ("at=soon", "at"), ("at=2026-02-30T00:00:00Z", "at"), ("at=-1", "at"), ("include=all", "include"),
-                         ("where=salt%3E1", "where"), ("where=marks%3E", "where")):
+    for query, field in (
+        ("at=99999", "at"),
+        ("at=soon", "at"),
+        ("at=2026-02-30T00:00:00Z", "at"),
+        ("at=-1", "at"),
+        ("include=all", "include"),
+        ("where=salt%3E1", "where"),
+        ("where=marks%3E", "where"),
+    ):
         answer = server.get(f"{marks}/statistics?{query}")
         assert answer.status == 422 and answer.json()["field"] == field, (query, answer)
 
-    point = "/position?" + urllib.parse.urlencode({"coords": "POINT Z(70 30 0)", "parameter-name": "marks"})
+    point = "/position?" + urllib.parse.urlencode(
+        {"coords": "POINT Z(70 30 0)", "parameter-name": "marks"}
+    )
     assert server.get(M + point).json()["values"]["marks"] == {"valid": True, "value": 5}
-    assert server.get(f"{M}{point}&at={first['sequence']}").json()["values"]["marks"]["valid"] is False
+    assert (
+        server.get(f"{M}{point}&at={first['sequence']}").json()["values"]["marks"]["valid"] is False
+    )
     asked = {"points": [[70, 30, 0]], "layers": ["marks"], "at": told}
-    assert server.ok("POST", M + "/positions", asked).json()["positions"][0]["values"]["marks"]["valid"] is False
+    assert (
+        server.ok("POST", M + "/positions", asked).json()["positions"][0]["values"]["marks"][
+            "valid"
+        ]
+        is False
+    )
 
 
 def check_selections(server, marks, risk):
@@ -67,11 +99,23 @@ def check_selections(server, marks, risk):
     near(selected["share"], selected["area_m2"] / server.get(M).json()["area_m2"], 1e-3)
     assert selected["layers"]["marks"]["pieces"] == 2, selected
     near(selected["layers"]["marks"]["perimeter_m"], 20 * math.pi * 1e-3, 0.02)
-    assert selected["bounds"]["min"][0] > 60 and selected["bounds"]["max"][1] < 80, selected["bounds"]
+    assert selected["bounds"]["min"][0] > 60 and selected["bounds"]["max"][1] < 80, selected[
+        "bounds"
+    ]
 
-    disc = server.ok("POST", M + "/select", {"within": {"at": {"point": [50, 50, 0]}, "radius_mm": 12}}).json()
+    disc = server.ok(
+        "POST", M + "/select", {"within": {"at": {"point": [50, 50, 0]}, "radius_mm": 12}}
+    ).json()
     near(disc["area_m2"], 144 * math.pi * 1e-6, 0.02)
-    half = server.ok("POST", M + "/select", {"within": {"at": {"point": [30, 30, 0]}, "radius_mm": 5}, "where": "marks = 3", "layers": ["marks"]}).json()
+    half = server.ok(
+        "POST",
+        M + "/select",
+        {
+            "within": {"at": {"point": [30, 30, 0]}, "radius_mm": 5},
+            "where": "marks = 3",
+            "layers": ["marks"],
+        },
+    ).json()
     near(half["area_m2"], 25 * math.pi * 1e-6, 0.03)
 
     camera = camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
@@ -87,15 +131,23 @@ def check_selections(server, marks, risk):
     again = server.ok("POST", M + "/select", into, headers={"Idempotency-Key": "into-1"}).json()
     assert again["edit"]["sequence"] == done["edit"]["sequence"], (again, done)
     assert server.get(risk + "/statistics").json()["texels"] == done["texels"]
-    for body, field in (({"into": {"layer": "risk", "value": 2}}, "into"),
-                        ({"where": "true", "at": 1, "into": {"layer": "risk", "value": 2}}, "into"),
-                        ({"where": "true", "into": {"layer": "salt", "value": 2}}, "into.layer"),
-                        ({"where": "true", "into": {"layer": "risk", "value": 999}}, "value"),
-                        ({"layers": ["salt"]}, "layers"),
-                        ({"within": {"at": {"point": [0, 0, 0]}}}, "within"),
-                        ({"within": {"radius_mm": 3, "camera": camera, "path": [[0, 0], [1, 1], [2, 0]]}}, "within")):
+    for body, field in (
+        ({"into": {"layer": "risk", "value": 2}}, "into"),
+        ({"where": "true", "at": 1, "into": {"layer": "risk", "value": 2}}, "into"),
+        ({"where": "true", "into": {"layer": "salt", "value": 2}}, "into.layer"),
+        ({"where": "true", "into": {"layer": "risk", "value": 999}}, "value"),
+        ({"layers": ["salt"]}, "layers"),
+        ({"within": {"at": {"point": [0, 0, 0]}}}, "within"),
+        (
+            {"within": {"radius_mm": 3, "camera": camera, "path": [[0, 0], [1, 1], [2, 0]]}},
+            "within",
+        ),
+    ):
         answer = server.post(M + "/select", body)
-        assert answer.status in (404, 422) and answer.json()["field"].startswith(field), (body, answer)
+        assert answer.status in (404, 422) and answer.json()["field"].startswith(field), (
+            body,
+            answer,
+        )
 
 
 def check_cross_table(server, marks):
@@ -109,29 +161,58 @@ def check_cross_table(server, marks):
     near(area[1][1], 25 * math.pi * 1e-6, 0.03)
     near(sum(area[0]), 400 * math.pi * 1e-6, 0.02)
     assert area[0][1] == area[2][2] == 0 and area[2][1] > 0, table
-    csv = server.ok("POST", M + "/cross-table", {"rows": "units", "columns": "marks"}, headers={"Accept": "text/csv"})
+    csv = server.ok(
+        "POST",
+        M + "/cross-table",
+        {"rows": "units", "columns": "marks"},
+        headers={"Accept": "text/csv"},
+    )
     lines = csv.body.decode().split("\r\n")
-    assert lines[0] == "units / marks,3,5,-" and lines[3].startswith("-,0,") and len(lines) == 5, lines
-    assert server.post(M + "/cross-table", {"rows": "units", "columns": "depth"}).json()["field"] == "columns"
+    assert (
+        lines[0] == "units / marks,3,5,-" and lines[3].startswith("-,0,") and len(lines) == 5
+    ), lines
+    assert (
+        server.post(M + "/cross-table", {"rows": "units", "columns": "depth"}).json()["field"]
+        == "columns"
+    )
 
 
 def check_profile(server, marks):
     asked = {"places": [[10, 30, 5], [50, 30, 5]], "step_mm": 0.1, "layers": ["marks"]}
     profile = server.ok("POST", M + "/profile", asked).json()
     near(profile["length_mm"], 40, 0.01)
-    inside = [s["along_mm"] for s in profile["samples"] if s["point"]["values"]["marks"] == {"valid": True, "value": 3}]
+    inside = [
+        s["along_mm"]
+        for s in profile["samples"]
+        if s["point"]["values"]["marks"] == {"valid": True, "value": 3}
+    ]
     near(inside[0], 10, 0.02)
     near(inside[-1], 30, 0.02)
-    lines = server.ok("POST", M + "/profile", asked, headers={"Accept": "text/csv"}).body.decode().split("\r\n")
-    assert lines[0] == "along_mm,hit,x,y,z,normal_x,normal_y,normal_z,distance,u,v,marks" and len(lines) == 403, lines[:2]
+    lines = (
+        server.ok("POST", M + "/profile", asked, headers={"Accept": "text/csv"})
+        .body.decode()
+        .split("\r\n")
+    )
+    assert (
+        lines[0] == "along_mm,hit,x,y,z,normal_x,normal_y,normal_z,distance,u,v,marks"
+        and len(lines) == 403
+    ), lines[:2]
     camera = camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
-    seen = server.ok("POST", M + "/profile", {"camera": camera, "path": [[0, 240], [639, 240]], "layers": []}).json()
+    seen = server.ok(
+        "POST", M + "/profile", {"camera": camera, "path": [[0, 240], [639, 240]], "layers": []}
+    ).json()
     near(seen["length_mm"], 100, 0.02)
     assert not seen["samples"][0]["point"]["hit"] and len(seen["samples"]) == 640
-    for body, field in (({"places": [[0, 0, 0], [50, 0, 0]], "step_mm": 1e-6}, "step_mm"), ({"places": [[0, 0, 0]], "step_mm": 1}, "places"),
-                        ({"places": [[0, 0, 0], [1, 0, 0]], "step_mm": 1, "layers": ["salt"]}, "layers")):
+    for body, field in (
+        ({"places": [[0, 0, 0], [50, 0, 0]], "step_mm": 1e-6}, "step_mm"),
+        ({"places": [[0, 0, 0]], "step_mm": 1}, "places"),
+        ({"places": [[0, 0, 0], [1, 0, 0]], "step_mm": 1, "layers": ["salt"]}, "layers"),
+    ):
         answer = server.post(M + "/profile", body)
-        assert answer.status in (404, 422) and answer.json()["field"].startswith(field), (body, answer)
+        assert answer.status in (404, 422) and answer.json()["field"].startswith(field), (
+            body,
+            answer,
+        )
 
 
 def main():

@@ -6,16 +6,33 @@ import os
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from attempts import bodies, coming_in, files, foreign_pages, guessing, hidden, live, owner_token, readers, waiting
+from attempts import (
+    bodies,
+    coming_in,
+    files,
+    foreign_pages,
+    guessing,
+    hidden,
+    live,
+    owner_token,
+    readers,
+    waiting,
+)
 from support.attempt_table import AttemptTable
 from support.meshes import folded_grid
 from support.strata_server import StrataServer
 
 
 def site(server):
-    server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048)
+    server.import_model(
+        folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
+    )
     server.ok("POST", "/models/sheet/layers", {"name": "Marks", "type": "u8"})
-    server.ok("POST", "/projects/default/tables", {"name": "Kept", "columns": [{"name": "Note"}, {"name": "Files", "kind": "document"}]})
+    server.ok(
+        "POST",
+        "/projects/default/tables",
+        {"name": "Kept", "columns": [{"name": "Note"}, {"name": "Files", "kind": "document"}]},
+    )
     server.ok("POST", "/tables/kept/records", {"values": {"note": "stays"}})
 
 
@@ -33,7 +50,17 @@ def at_one_server(*attempted):
 
 
 # Each with servers of its own: most of the time of some is waiting.
-GROUPS = {"people": at_one_server(coming_in, guessing), "owner": lambda table: owner_token.attempts(table, site), "requests": at_one_server(foreign_pages, live, bodies, files), "private": hidden.private, "kiosk": hidden.kiosk, "projects": hidden.projects, "readers": readers.attempts, "waiting": waiting.plain, "https": waiting.tls}
+GROUPS = {
+    "people": at_one_server(coming_in, guessing),
+    "owner": lambda table: owner_token.attempts(table, site),
+    "requests": at_one_server(foreign_pages, live, bodies, files),
+    "private": hidden.private,
+    "kiosk": hidden.kiosk,
+    "projects": hidden.projects,
+    "readers": readers.attempts,
+    "waiting": waiting.plain,
+    "https": waiting.tls,
+}
 
 
 def main():

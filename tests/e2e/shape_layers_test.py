@@ -17,7 +17,9 @@ def run(server, path, body, state="done", **more):
     """Starts a job and waits for its end."""
     answer = server.ok("POST", path, body, expect=(202,), **more)
     assert answer.headers["Location"] == f"/api/v1/jobs/{answer.json()['id']}"
-    job = wait_for(lambda: ended(server, answer.json()["id"]), f"job {answer.json()['id']}", limit_s=800)
+    job = wait_for(
+        lambda: ended(server, answer.json()["id"]), f"job {answer.json()['id']}", limit_s=800
+    )
     assert job["state"] == state, job
     return job
 
@@ -29,8 +31,16 @@ def ended(server, job):
 
 def compute(server, at, kind, **more):
     """The layer that a recipe makes, with its statistics."""
-    compute_members = {key: more.pop(key) for key in ("radius_mm", "distance_mm", "rays", "absolute", "model", "property", "source") if key in more}
-    job = run(server, at + "/layers", {"name": kind.replace("_", " "), "compute": {"kind": kind, **compute_members}, **more})
+    compute_members = {
+        key: more.pop(key)
+        for key in ("radius_mm", "distance_mm", "rays", "absolute", "model", "property", "source")
+        if key in more
+    }
+    job = run(
+        server,
+        at + "/layers",
+        {"name": kind.replace("_", " "), "compute": {"kind": kind, **compute_members}, **more},
+    )
     (layer,) = job["layers"]
     meta = server.get(f"{at}/layers/{layer}").json()
     assert meta["locked"] and not meta["visible"] and meta["description"], meta
@@ -42,31 +52,53 @@ def check_kinds(server):
     height, statistics = compute(server, BALL, "height")
     assert (height["type"], height["unit"]) == ("f32", "mm"), height
     low, high = (ball["bounds"][k][2] for k in ("min", "max"))
-    assert abs(statistics["min"]) < 0.2 and abs(statistics["max"] - (high - low)) < 0.2, (statistics["min"], statistics["max"], low, high)
-    assert abs(statistics["area_m2"] / ball["area_m2"] - 1) < 1e-3, "every part of the surface has a height"
+    assert abs(statistics["min"]) < 0.2 and abs(statistics["max"] - (high - low)) < 0.2, (
+        statistics["min"],
+        statistics["max"],
+        low,
+        high,
+    )
+    assert (
+        abs(statistics["area_m2"] / ball["area_m2"] - 1) < 1e-3
+    ), "every part of the surface has a height"
     absolute, statistics = compute(server, BALL, "height", absolute=True, name="absolute height")
     assert abs(statistics["max"] - high) < 0.2 and abs(statistics["mean"]) < 0.5, statistics
     assert absolute["name"] == "absolute height"
 
     server.ok("PATCH", BALL, {"up": "-z"})  # on its head: what was lowest is highest
     _, statistics = compute(server, BALL, "height", absolute=True, name="upside down")
-    assert abs(statistics["max"] + low) < 0.2 and abs(statistics["min"] + high) < 0.2, (statistics, low, high)
+    assert abs(statistics["max"] + low) < 0.2 and abs(statistics["min"] + high) < 0.2, (
+        statistics,
+        low,
+        high,
+    )
     _, statistics = compute(server, BALL, "height", name="upside down from the ground")
     assert abs(statistics["min"]) < 0.2 and abs(statistics["max"] - (high - low)) < 0.2, statistics
     assert server.request("PATCH", BALL, {"up": "-w"}).status == 422
     server.ok("PATCH", BALL, {"up": "z"})
 
     slope, statistics = compute(server, BALL, "slope")
-    assert slope["unit"] == "°" and statistics["min"] < 8 and statistics["max"] > 172 and abs(statistics["mean"] - 90) < 1, statistics
+    assert (
+        slope["unit"] == "°"
+        and statistics["min"] < 8
+        and statistics["max"] > 172
+        and abs(statistics["mean"] - 90) < 1
+    ), statistics
     _, statistics = compute(server, BALL, "azimuth")
     assert 0 <= statistics["min"] < 2 and 358 < statistics["max"] <= 360, statistics
-    assert 0 < 1 - statistics["area_m2"] / ball["area_m2"] < 0.01, "only what lies flat faces no way"
+    assert (
+        0 < 1 - statistics["area_m2"] / ball["area_m2"] < 0.01
+    ), "only what lies flat faces no way"
 
     mean, statistics = compute(server, BALL, "mean_curvature", radius_mm=12)
-    assert mean["unit"] == "1/mm" and 0.015 < statistics["mean"] < 0.025, statistics  # radius 50 mm, with waves
-    assert mean["palette"]["min"] == -mean["palette"]["max"] and "12 mm" in mean["description"], mean
+    # radius 50 mm, with waves
+    assert mean["unit"] == "1/mm" and 0.015 < statistics["mean"] < 0.025, statistics
+    assert (
+        mean["palette"]["min"] == -mean["palette"]["max"] and "12 mm" in mean["description"]
+    ), mean
     _, gaussian = compute(server, BALL, "gaussian_curvature", radius_mm=12)
-    # Gauss and Bonnet: over a closed surface without holes it sums to 4 pi; a fit over a part of a wave is not exact.
+    # Gauss and Bonnet: over a closed surface without holes it sums to 4 pi; a fit over a part of a
+    # wave is not exact.
     total = gaussian["mean"] * gaussian["area_m2"] * 1e6 / (4 * math.pi)
     assert abs(total - 1) < 0.1, total
     _, largest = compute(server, BALL, "max_curvature", radius_mm=12)
@@ -77,7 +109,9 @@ def check_kinds(server):
     assert 0 <= rough["min"] and 0.1 < rough["mean"] < 0.6, rough
 
     openness, statistics = compute(server, SHEET, "ambient_occlusion", rays=128)
-    assert openness["unit"] == "" and 0 <= statistics["min"] < 0.8 and statistics["max"] > 0.95, statistics
+    assert (
+        openness["unit"] == "" and 0 <= statistics["min"] < 0.8 and statistics["max"] > 0.95
+    ), statistics
     _, rim = compute(server, SHEET, "boundary_distance")
     assert rim["min"] < 0.1 and 48 < rim["max"] < 54, rim
     print("kinds: ok", flush=True)
@@ -86,10 +120,19 @@ def check_kinds(server):
 def check_distance(server):
     apart, statistics = compute(server, BALL, "model_distance", model="larger-ball")
     # The same waves at 51 mm, measured in centimetres there.
-    assert apart["unit"] == "mm" and abs(statistics["mean"] + 1) < 0.05 and statistics["max"] < -0.6, (statistics["mean"], statistics["max"])
-    assert "Larger ball" in apart["description"] and apart["palette"]["min"] < 0 < apart["palette"]["max"], apart
+    assert (
+        apart["unit"] == "mm" and abs(statistics["mean"] + 1) < 0.05 and statistics["max"] < -0.6
+    ), (statistics["mean"], statistics["max"])
+    assert (
+        "Larger ball" in apart["description"]
+        and apart["palette"]["min"] < 0 < apart["palette"]["max"]
+    ), apart
     (edit,) = server.get(f"{BALL}/layers/{apart['id']}/edits").json()["edits"]
-    assert edit["recipe"]["kind"] == "model_distance" and edit["recipe"]["model"] == "larger-ball" and edit["recipe"]["distance_mm"] > 0, edit
+    assert (
+        edit["recipe"]["kind"] == "model_distance"
+        and edit["recipe"]["model"] == "larger-ball"
+        and edit["recipe"]["distance_mm"] > 0
+    ), edit
     print("distance: ok", flush=True)
 
 
@@ -129,30 +172,56 @@ def check_refusals(server):
         (layer(kind="model_distance", model="nothing"), 422, "compute.model"),
         (layer(kind="height", sql="x"), 422, "compute.sql"),
         (layer(kind="vertex_property"), 422, "compute.property"),
-        ({"name": "wrong", "kind": "database", "type": "u8", "compute": {"kind": "height"}}, 422, "kind"),
+        (
+            {"name": "wrong", "kind": "database", "type": "u8", "compute": {"kind": "height"}},
+            422,
+            "kind",
+        ),
         ({"name": "wrong", "resolution": 1000, "compute": {"kind": "height"}}, 422, "resolution"),
     ]
     for body, status, field in cases:
         answer = server.post(BALL + "/layers", body)
         assert answer.status == status and answer.json().get("field") == field, (body, answer)
     # What only the work itself finds out.
-    for body, field in [(layer(kind="boundary_distance"), "compute.kind"), (layer(kind="model_distance", model="ball"), "compute.model"),
-                        (layer(kind="vertex_property", property="quality"), "compute.property"),
-                        ({"name": "wrong", "type": "u8", "compute": {"kind": "height", "absolute": True}}, "type")]:
+    for body, field in [
+        (layer(kind="boundary_distance"), "compute.kind"),
+        (layer(kind="model_distance", model="ball"), "compute.model"),
+        (layer(kind="vertex_property", property="quality"), "compute.property"),
+        ({"name": "wrong", "type": "u8", "compute": {"kind": "height", "absolute": True}}, "type"),
+    ]:
         job = run(server, BALL + "/layers", body, state="failed")
         assert job["problem"]["status"] == 422 and job["problem"]["field"] == field, job
-    for body, field in [({"from": "nothing", "tolerance_mm": 1}, "from"), ({"from": "ball", "tolerance_mm": 1}, "from"), ({"from": "sheet"}, None),
-                        ({"from": "sheet", "tolerance_mm": 0}, "tolerance_mm"), ({"from": "larger-ball", "tolerance_mm": 1}, "from"),
-                        ({"from": "sheet", "tolerance_mm": 1, "layers": ["nothing"]}, "layers"), ({"from": "sheet", "tolerance_mm": 1, "max_angle": 0}, "max_angle")]:
+    for body, field in [
+        ({"from": "nothing", "tolerance_mm": 1}, "from"),
+        ({"from": "ball", "tolerance_mm": 1}, "from"),
+        ({"from": "sheet"}, None),
+        ({"from": "sheet", "tolerance_mm": 0}, "tolerance_mm"),
+        ({"from": "larger-ball", "tolerance_mm": 1}, "from"),
+        ({"from": "sheet", "tolerance_mm": 1, "layers": ["nothing"]}, "layers"),
+        ({"from": "sheet", "tolerance_mm": 1, "max_angle": 0}, "max_angle"),
+    ]:
         answer = server.post(BALL + "/transfer", body)
-        assert answer.status == 422 and (field is None or answer.json()["field"] == field), (body, answer)
-    assert not [known for known in server.get(BALL + "/layers").json()["layers"] if known["name"] == "wrong"], "nothing is left of what failed"
+        assert answer.status == 422 and (field is None or answer.json()["field"] == field), (
+            body,
+            answer,
+        )
+    assert not [
+        known for known in server.get(BALL + "/layers").json()["layers"] if known["name"] == "wrong"
+    ], "nothing is left of what failed"
     print("refusals: ok", flush=True)
 
 
 def check_cancel(server):
     before = server.get(BALL + "/layers").json()["total"]
-    answer = server.ok("POST", BALL + "/layers", {"name": "never", "resolution": 4096, "compute": {"kind": "ambient_occlusion", "rays": 1024}})
+    answer = server.ok(
+        "POST",
+        BALL + "/layers",
+        {
+            "name": "never",
+            "resolution": 4096,
+            "compute": {"kind": "ambient_occlusion", "rays": 1024},
+        },
+    )
     server.ok("DELETE", f"/jobs/{answer.json()['id']}")
     assert server.wait_for_job(answer.json()["id"])["state"] == "cancelled"
     assert server.get(BALL + "/layers").json()["total"] == before
@@ -169,7 +238,9 @@ def check_repeats(server):
     server.start()
     later = run(server, BALL + "/layers", body, headers=key)
     assert later["layers"] == first["layers"], (first, later)
-    assert [known["name"] for known in server.get(BALL + "/layers").json()["layers"]].count("once") == 1
+    assert [known["name"] for known in server.get(BALL + "/layers").json()["layers"]].count(
+        "once"
+    ) == 1
     print("repeats: ok", flush=True)
 
 
@@ -178,20 +249,38 @@ def with_quality(scan):
     head, body = scan.split(b"end_header\n", 1)
     count = int(head.split(b"element vertex ")[1].split()[0])
     vertices = [struct.unpack_from("<3f", body, 12 * i) for i in range(count)]
-    head = head.replace(b"property float z\n", b"property float z\nproperty double quality\nproperty uchar red\n")
-    return head + b"end_header\n" + b"".join(struct.pack("<3fdB", *v, 2 * v[2], 7) for v in vertices) + body[12 * count:]
+    head = head.replace(
+        b"property float z\n", b"property float z\nproperty double quality\nproperty uchar red\n"
+    )
+    return (
+        head
+        + b"end_header\n"
+        + b"".join(struct.pack("<3fdB", *v, 2 * v[2], 7) for v in vertices)
+        + body[12 * count :]
+    )
 
 
 def check_vertex_property(server):
     server.import_model(with_quality(bumpy_ball()), "ball.ply", name="With quality", unit="mm")
     model = "/models/with-quality"
-    assert server.get(model + "/vertex-properties").json() == {"properties": [{"source": "ball.ply", "property": "quality"}], "total": 1}
+    assert server.get(model + "/vertex-properties").json() == {
+        "properties": [{"source": "ball.ply", "property": "quality"}],
+        "total": 1,
+    }
     assert server.get(BALL + "/vertex-properties").json()["total"] == 0
-    layer, quality = compute(server, model, "vertex_property", property="quality", unit="lux", name="Light")
+    layer, quality = compute(
+        server, model, "vertex_property", property="quality", unit="lux", name="Light"
+    )
     assert layer["unit"] == "lux" and "quality" in layer["description"], layer
     _, height = compute(server, model, "height", absolute=True)
-    assert abs(quality["min"] - 2 * height["min"]) < 1e-3 and abs(quality["max"] - 2 * height["max"]) < 1e-3
-    assert abs(quality["mean"] - 2 * height["mean"]) < 1e-4 and abs(quality["area_m2"] - height["area_m2"]) < 1e-12
+    assert (
+        abs(quality["min"] - 2 * height["min"]) < 1e-3
+        and abs(quality["max"] - 2 * height["max"]) < 1e-3
+    )
+    assert (
+        abs(quality["mean"] - 2 * height["mean"]) < 1e-4
+        and abs(quality["area_m2"] - height["area_m2"]) < 1e-12
+    )
     # The same numbers from outside, one a line, in the file's order.
     scan = bumpy_ball()
     head, body = scan.split(b"end_header\n", 1)
@@ -202,46 +291,102 @@ def check_vertex_property(server):
     csv = "quality\n" + "".join(f"{2 * z}\r\n" for z in heights)
     edit = server.ok("PUT", path + "/vertices.csv", csv.encode()).json()
     statistics = server.get(path + "/statistics").json()
-    assert edit["texels_changed"] == statistics["texels"] and abs(statistics["mean"] - quality["mean"]) < 1e-4, (edit, statistics["mean"])
-    assert abs(statistics["max"] - quality["max"]) < 1e-3 and abs(statistics["area_m2"] - quality["area_m2"]) < 1e-12
+    assert (
+        edit["texels_changed"] == statistics["texels"]
+        and abs(statistics["mean"] - quality["mean"]) < 1e-4
+    ), (edit, statistics["mean"])
+    assert (
+        abs(statistics["max"] - quality["max"]) < 1e-3
+        and abs(statistics["area_m2"] - quality["area_m2"]) < 1e-12
+    )
     server.ok("POST", path + "/undo")
     assert server.get(path + "/statistics").json()["texels"] == 0
-    # Whole numbers are keys: nothing between them, and a vertex without one gives its surroundings to the others.
+    # Whole numbers are keys: nothing between them, and a vertex without one gives its surroundings
+    # to the others.
     server.ok("POST", model + "/layers", {"name": "Sides", "type": "u8"})
     sides = "".join("\n" if abs(z) < 10 else ("7\n" if z > 0 else "200\n") for z in heights)
     server.ok("PUT", model + "/layers/sides/vertices.csv?source=ball.ply", sides.encode())
-    keys = {key["key"]: key["area_m2"] for key in server.get(model + "/layers/sides/statistics").json()["keys"]}
+    keys = {
+        key["key"]: key["area_m2"]
+        for key in server.get(model + "/layers/sides/statistics").json()["keys"]
+    }
     assert set(keys) == {7, 200} and abs(keys[7] / keys[200] - 1) < 0.02, keys
-    cases = [(b"", 400, "body"), (b"1\n2\n", 422, "body"), (csv.encode() + b"5\n", 422, "body"), (csv.replace("quality", "1").encode(), 422, "body"),
-             (b"1\nx\n", 422, "body"), ("".join("300\n" for _ in heights).encode(), 422, "body"), ("".join("0.5\n" for _ in heights).encode(), 422, "body"),
-             (b"1\ninf\n", 422, "body"), (b"\xff\xfe\n\x00\n", 422, "body")]
+    cases = [
+        (b"", 400, "body"),
+        (b"1\n2\n", 422, "body"),
+        (csv.encode() + b"5\n", 422, "body"),
+        (csv.replace("quality", "1").encode(), 422, "body"),
+        (b"1\nx\n", 422, "body"),
+        ("".join("300\n" for _ in heights).encode(), 422, "body"),
+        ("".join("0.5\n" for _ in heights).encode(), 422, "body"),
+        (b"1\ninf\n", 422, "body"),
+        (b"\xff\xfe\n\x00\n", 422, "body"),
+    ]
     for body, status, field in cases:
         answer = server.request("PUT", model + "/layers/sides/vertices.csv", body)
         assert answer.status == status and answer.json()["field"] == field, (body[:40], answer)
-    assert server.request("PUT", model + "/layers/sides/vertices.csv?source=other.ply", sides.encode()).json()["field"] == "source"
+    assert (
+        server.request(
+            "PUT", model + "/layers/sides/vertices.csv?source=other.ply", sides.encode()
+        ).json()["field"]
+        == "source"
+    )
     print("vertex property: ok", flush=True)
 
 
 def check_transfer(server):
     """Classes of height, brought over to a scan of another tessellation, atlas and unit, with the noise of scanning."""
     source = server.import_model(bumpy_ball(60, 120), "then.ply", name="Then", unit="mm")
-    palette = {"mode": "categorical", "min": 0, "max": 104, "points": [{"at": 1, "color": "#112233", "label": "one"}]}
-    compute(server, "/models/then", "height", type="u8", name="Classes", unit="cm", palette=palette, opacity=0.5)
+    palette = {
+        "mode": "categorical",
+        "min": 0,
+        "max": 104,
+        "points": [{"at": 1, "color": "#112233", "label": "one"}],
+    }
+    compute(
+        server,
+        "/models/then",
+        "height",
+        type="u8",
+        name="Classes",
+        unit="cm",
+        palette=palette,
+        opacity=0.5,
+    )
     compute(server, "/models/then", "slope", name="Slope")
-    now = server.import_model(noisy(bumpy_ball(97, 211, radius=5.0), 0.002), "now.ply", name="Now", unit="cm")
+    now = server.import_model(
+        noisy(bumpy_ball(97, 211, radius=5.0), 0.002), "now.ply", name="Now", unit="cm"
+    )
     job = run(server, "/models/now/transfer", {"from": "then", "tolerance_mm": 1})
     report = job["report"]
     assert report["from"] == source["id"] and report["matched_m2"] / now["area_m2"] > 0.999, report
     # As they lie on one another: what was computed last is the lowest.
-    assert [layer["name"] for layer in report["layers"]] == ["Slope", "Classes"] and [layer["layer"] for layer in report["layers"]] == job["layers"]
+    assert [layer["name"] for layer in report["layers"]] == ["Slope", "Classes"] and [
+        layer["layer"] for layer in report["layers"]
+    ] == job["layers"]
     for layer in report["layers"]:
-        assert layer["lost_m2"] <= 1e-3 * layer["source_m2"] and abs(layer["transferred_m2"] / layer["source_m2"] - 1) < 0.01, layer
+        assert (
+            layer["lost_m2"] <= 1e-3 * layer["source_m2"]
+            and abs(layer["transferred_m2"] / layer["source_m2"] - 1) < 0.01
+        ), layer
     classes = server.get("/models/now/layers/classes").json()
-    assert (classes["type"], classes["unit"], classes["opacity"]) == ("u8", "cm", 0.5) and classes["palette"]["points"] == [{"at": 1, "color": "#112233ff", "label": "one"}], classes
+    assert (classes["type"], classes["unit"], classes["opacity"]) == ("u8", "cm", 0.5) and classes[
+        "palette"
+    ]["points"] == [{"at": 1, "color": "#112233ff", "label": "one"}], classes
     assert "Then" in classes["description"], classes
-    keys = [{key["key"]: key["area_m2"] for key in server.get(f"/models/{model}/layers/classes/statistics").json()["keys"]} for model in ("then", "now")]
+    keys = [
+        {
+            key["key"]: key["area_m2"]
+            for key in server.get(f"/models/{model}/layers/classes/statistics").json()["keys"]
+        }
+        for model in ("then", "now")
+    ]
     assert len(keys[0]) > 90 and keys[0].keys() == keys[1].keys(), keys
-    worst = max(abs(keys[1][key] / keys[0][key] - 1) for key in keys[0] if keys[0][key] > 0.005 * source["area_m2"])
+    worst = max(
+        abs(keys[1][key] / keys[0][key] - 1)
+        for key in keys[0]
+        if keys[0][key] > 0.005 * source["area_m2"]
+    )
     print(f"transfer: {len(keys[0])} keys, largest difference of area {100 * worst:.2f} %")
     assert worst < 0.02, worst
     # Undone like any other edit.
@@ -251,12 +396,27 @@ def check_transfer(server):
     # Half of the ball is gone: what lay there is lost, and said to be.
     half = bumpy_ball(97, 211)
     server.import_model(cut_below(half), "half.ply", name="Half", unit="mm")
-    job = run(server, "/models/half/transfer", {"from": "then", "tolerance_mm": 0.5, "layers": ["classes"]})
+    job = run(
+        server,
+        "/models/half/transfer",
+        {"from": "then", "tolerance_mm": 0.5, "layers": ["classes"]},
+    )
     (layer,) = job["report"]["layers"]
-    assert abs(layer["lost_m2"] / layer["source_m2"] - 0.5) < 0.05 and abs(layer["transferred_m2"] / layer["source_m2"] - 0.5) < 0.05, layer
-    job = run(server, "/models/larger-ball/transfer", {"from": "then", "tolerance_mm": 0.2, "layers": ["classes"]})
+    assert (
+        abs(layer["lost_m2"] / layer["source_m2"] - 0.5) < 0.05
+        and abs(layer["transferred_m2"] / layer["source_m2"] - 0.5) < 0.05
+    ), layer
+    job = run(
+        server,
+        "/models/larger-ball/transfer",
+        {"from": "then", "tolerance_mm": 0.2, "layers": ["classes"]},
+    )
     (layer,) = job["report"]["layers"]
-    assert layer["transferred_m2"] == 0 and layer["lost_m2"] == layer["source_m2"] and job["report"]["matched_m2"] == 0, "it lies a millimetre away"
+    assert (
+        layer["transferred_m2"] == 0
+        and layer["lost_m2"] == layer["source_m2"]
+        and job["report"]["matched_m2"] == 0
+    ), "it lies a millimetre away"
     print("transfer: ok", flush=True)
 
 
@@ -265,24 +425,40 @@ def noisy(scan, amplitude):
     head, body = scan.split(b"end_header\n", 1)
     count = int(head.split(b"element vertex ")[1].split()[0])
     shake = random.Random(11)
-    moved = (value + amplitude * shake.uniform(-1, 1) for value in struct.unpack_from(f"<{3 * count}f", body))
-    return head + b"end_header\n" + struct.pack(f"<{3 * count}f", *moved) + body[12 * count:]
+    moved = (
+        value + amplitude * shake.uniform(-1, 1)
+        for value in struct.unpack_from(f"<{3 * count}f", body)
+    )
+    return head + b"end_header\n" + struct.pack(f"<{3 * count}f", *moved) + body[12 * count :]
 
 
 def cut_below(scan):
     """Without the faces below z = 0."""
     head, body = scan.split(b"end_header\n", 1)
-    count, faces = (int(head.split(b"element %s " % name)[1].split()[0]) for name in (b"vertex", b"face"))
+    count, faces = (
+        int(head.split(b"element %s " % name)[1].split()[0]) for name in (b"vertex", b"face")
+    )
     heights = [struct.unpack_from("<3f", body, 12 * i)[2] for i in range(count)]
-    records = [body[12 * count + 13 * i:12 * count + 13 * (i + 1)] for i in range(faces)]
-    kept = [record for record in records if all(heights[v] >= 0 for v in struct.unpack_from("<3i", record, 1))]
-    return head.replace(b"element face %d" % faces, b"element face %d" % len(kept)) + b"end_header\n" + body[:12 * count] + b"".join(kept)
+    records = [body[12 * count + 13 * i : 12 * count + 13 * (i + 1)] for i in range(faces)]
+    kept = [
+        record
+        for record in records
+        if all(heights[v] >= 0 for v in struct.unpack_from("<3i", record, 1))
+    ]
+    return (
+        head.replace(b"element face %d" % faces, b"element face %d" % len(kept))
+        + b"end_header\n"
+        + body[: 12 * count]
+        + b"".join(kept)
+    )
 
 
 def main():
     with StrataServer() as server:
         server.import_model(bumpy_ball(), "ball.ply", name="Ball", unit="mm")
-        server.import_model(bumpy_ball(120, 240, radius=5.1), "larger.ply", name="Larger ball", unit="cm")
+        server.import_model(
+            bumpy_ball(120, 240, radius=5.1), "larger.ply", name="Larger ball", unit="cm"
+        )
         server.import_model(folded_grid(), "sheet.ply", name="Sheet", unit="mm")
         check_refusals(server)
         check_kinds(server)

@@ -27,46 +27,85 @@ def check_areas(server, reader, model=M):
     for layer in server.get(model + "/layers").json()["layers"]:
         statistics = server.get(f"{model}/layers/{layer['id']}/statistics").json()
         rows = reader.rows(f"SELECT * FROM areas WHERE layer_id = {layer['id']}")
-        assert sum(int(row["texels"]) for row in rows) == statistics["texels"], (layer["name"], rows, statistics)
+        assert sum(int(row["texels"]) for row in rows) == statistics["texels"], (
+            layer["name"],
+            rows,
+            statistics,
+        )
         if statistics["texels"]:
             near(sum(float(row["area_m2"]) for row in rows), statistics["area_m2"], 1e-9)
         if layer["kind"] != "database" and layer["type"] not in ("u8", "i8"):
             assert [row["key"] for row in rows] == ([""] if statistics["texels"] else []), rows
             continue
-        assert {int(row["key"]) for row in rows} == {key["key"] for key in statistics["keys"]}, (layer["name"], rows)
+        assert {int(row["key"]) for row in rows} == {key["key"] for key in statistics["keys"]}, (
+            layer["name"],
+            rows,
+        )
         by_key = {int(row["key"]): row for row in rows}
         for key in statistics["keys"]:
             row = by_key[key["key"]]
             assert int(row["texels"]) == key["texels"], (row, key)
             near(float(row["area_m2"]), key["area_m2"], 1e-9)
             for axis, name in enumerate("xyz"):
-                for head, value in ((f"centroid_{name}", key["centroid"][axis]), (f"min_{name}", key["bounds"]["min"][axis]), (f"max_{name}", key["bounds"]["max"][axis])):
+                for head, value in (
+                    (f"centroid_{name}", key["centroid"][axis]),
+                    (f"min_{name}", key["bounds"]["min"][axis]),
+                    (f"max_{name}", key["bounds"]["max"][axis]),
+                ):
                     assert abs(float(row[head]) - value) < 1e-6, (head, row, key)
 
 
 def check_edits(server, reader):
     """Strokes, fills, erasing, undo: after each the areas are those of the statistics, at once."""
     layers = {}
-    for body in ({"name": "Marks", "type": "u8"}, {"name": "Depth", "type": "f32"}, {"name": "Level", "type": "u16"}, {"name": "Signed", "type": "i8"},
-                 {"name": "Units", "kind": "database", "type": "u32", "table": "units"}):
-        layers[body["name"]] = f"{M}/layers/" + server.ok("POST", M + "/layers", {"resolution": 2048, **body}).json()["slug"]
+    for body in (
+        {"name": "Marks", "type": "u8"},
+        {"name": "Depth", "type": "f32"},
+        {"name": "Level", "type": "u16"},
+        {"name": "Signed", "type": "i8"},
+        {"name": "Units", "kind": "database", "type": "u32", "table": "units"},
+    ):
+        layers[body["name"]] = (
+            f"{M}/layers/"
+            + server.ok("POST", M + "/layers", {"resolution": 2048, **body}).json()["slug"]
+        )
     assert reader.rows("SELECT * FROM areas WHERE model = 'Sheet'") == []
     camera = camera_from(server.get(M).json(), (0, 0, 1), up=(0, 1, 0))
     stroke = {"op": "stroke", "camera": camera, "radius_px": 30, "path": [[200, 200], [400, 260]]}
-    for name, value in (("Marks", 7), ("Depth", 0.25), ("Level", 60000), ("Signed", -3), ("Units", 2)):
+    for name, value in (
+        ("Marks", 7),
+        ("Depth", 0.25),
+        ("Level", 60000),
+        ("Signed", -3),
+        ("Units", 2),
+    ):
         server.ok("POST", layers[name] + "/edits", {**stroke, "value": value})
         check_areas(server, reader)
     server.ok("POST", layers["Marks"] + "/edits", {**stroke, "value": 9, "path": [[300, 220]]})
-    server.ok("POST", layers["Marks"] + "/edits", {**stroke, "erase": True, "value": 0, "radius_px": 10})
+    server.ok(
+        "POST", layers["Marks"] + "/edits", {**stroke, "erase": True, "value": 0, "radius_px": 10}
+    )
     check_areas(server, reader)
-    server.ok("POST", layers["Units"] + "/edits", {"op": "fill", "mode": "where", "where": "marks = 9", "value": 3})
+    server.ok(
+        "POST",
+        layers["Units"] + "/edits",
+        {"op": "fill", "mode": "where", "where": "marks = 9", "value": 3},
+    )
     server.ok("POST", layers["Marks"] + "/undo")
     check_areas(server, reader)
-    server.ok("POST", layers["Depth"] + "/edits", {"op": "fill", "mode": "where", "where": "true", "erase": True, "value": 0})
+    server.ok(
+        "POST",
+        layers["Depth"] + "/edits",
+        {"op": "fill", "mode": "where", "where": "true", "erase": True, "value": 0},
+    )
     check_areas(server, reader)
-    history = reader.rows('SELECT "user", op, sequence, area_m2 FROM edits WHERE layer = \'Marks\' ORDER BY sequence')
+    history = reader.rows(
+        "SELECT \"user\", op, sequence, area_m2 FROM edits WHERE layer = 'Marks' ORDER BY sequence"
+    )
     told = server.get(layers["Marks"] + "/edits").json()["edits"][::-1]
-    assert [(row["op"], int(row["sequence"])) for row in history] == [(edit["op"], edit["sequence"]) for edit in told], history
+    assert [(row["op"], int(row["sequence"])) for row in history] == [
+        (edit["op"], edit["sequence"]) for edit in told
+    ], history
     # A table's record, and what it covers; the unit of the model is a number like any other.
     joined = 'SELECT u."Code", a.area_m2 FROM areas a JOIN "Units" u USING (key) WHERE a.table_id = (SELECT table_id FROM tables WHERE "table" = \'Units\') ORDER BY key'
     before = reader.rows(joined)
@@ -81,18 +120,40 @@ def check_edits(server, reader):
 def check_places(server, reader):
     """Analysts get places as text, and may call what makes it."""
     rows = reader.rows("SELECT * FROM areas WHERE model = 'Sheet'")
-    assert rows and all(row["geometry_wkt"] == f"POINT Z ({row['centroid_x']} {row['centroid_y']} {row['centroid_z']})" and row["srid"] == "" for row in rows), rows
+    assert rows and all(
+        row["geometry_wkt"]
+        == f"POINT Z ({row['centroid_x']} {row['centroid_y']} {row['centroid_z']})"
+        and row["srid"] == ""
+        for row in rows
+    ), rows
     server.ok("PATCH", M, {"crs": "EPSG:25832"})
-    assert {row["srid"] for row in reader.rows("SELECT srid FROM areas WHERE model = 'Sheet' UNION SELECT srid FROM models WHERE model = 'Sheet'")} == {"25832"}
+    assert {
+        row["srid"]
+        for row in reader.rows(
+            "SELECT srid FROM areas WHERE model = 'Sheet' UNION SELECT srid FROM models WHERE model = 'Sheet'"
+        )
+    } == {"25832"}
     model = server.get(M).json()["id"]
     server.ok("POST", "/tables/units/columns", {"name": "Crack", "kind": "line"})
-    server.ok("PATCH", "/tables/units/records/1", {"values": {"crack": [{"model": model, "coordinates": [[1.5, 2, 3], [4, 5, 6]]}]}})
-    (row,) = reader.rows(f'SELECT "Crack (wkt)" AS all, wkt("Crack", {model}) AS here, wkt("Crack", {model + 1}) AS elsewhere FROM "Units" WHERE key = 1')
-    assert row == {"all": "MULTILINESTRING Z ((1.5 2.0 3.0, 4.0 5.0 6.0))", "here": row["all"], "elsewhere": ""}, row
+    server.ok(
+        "PATCH",
+        "/tables/units/records/1",
+        {"values": {"crack": [{"model": model, "coordinates": [[1.5, 2, 3], [4, 5, 6]]}]}},
+    )
+    (row,) = reader.rows(
+        f'SELECT "Crack (wkt)" AS all, wkt("Crack", {model}) AS here, wkt("Crack", {model + 1}) AS elsewhere FROM "Units" WHERE key = 1'
+    )
+    assert row == {
+        "all": "MULTILINESTRING Z ((1.5 2.0 3.0, 4.0 5.0 6.0))",
+        "here": row["all"],
+        "elsewhere": "",
+    }, row
     server.ok("DELETE", "/tables/units/columns/crack")
     assert "Crack (wkt)" not in columns(reader, "Units")
     server.ok("PATCH", M + "/layers/marks", {"labels": {"de": "Zeichen"}})
-    assert reader.rows("SELECT labels ->> 'de' AS de FROM layers WHERE layer = 'Marks'") == [{"de": "Zeichen"}]
+    assert reader.rows("SELECT labels ->> 'de' AS de FROM layers WHERE layer = 'Marks'") == [
+        {"de": "Zeichen"}
+    ]
 
 
 def views(reader):
@@ -100,38 +161,96 @@ def views(reader):
 
 
 def columns(reader, view):
-    return list(csv.reader(io.StringIO(reader.run('SELECT * FROM "' + view.replace('"', '""') + '" LIMIT 0').stdout)))[0]
+    return list(
+        csv.reader(
+            io.StringIO(
+                reader.run('SELECT * FROM "' + view.replace('"', '""') + '" LIMIT 0').stdout
+            )
+        )
+    )[0]
 
 
 def check_tables(server, reader):
     long = "Überlänge " * 15 + "ist möglich"
-    server.ok("POST", "/projects/default/tables", {"name": "areas", "slug": "clash", "columns": [{"name": "key"}, {"name": "Key"}, {"name": "Key", "slug": "key-again"}]})
+    server.ok(
+        "POST",
+        "/projects/default/tables",
+        {
+            "name": "areas",
+            "slug": "clash",
+            "columns": [{"name": "key"}, {"name": "Key"}, {"name": "Key", "slug": "key-again"}],
+        },
+    )
     hostile = 'x"; DROP TABLE public.tokens; --'
-    made = server.ok("POST", "/projects/default/tables", {"name": hostile, "slug": "hostile", "columns": [{"name": 'a" b'}, {"name": long}, {"name": long + "!"}, {"name": "Since", "kind": "period"}]}).json()
+    made = server.ok(
+        "POST",
+        "/projects/default/tables",
+        {
+            "name": hostile,
+            "slug": "hostile",
+            "columns": [
+                {"name": 'a" b'},
+                {"name": long},
+                {"name": long + "!"},
+                {"name": "Since", "kind": "period"},
+            ],
+        },
+    ).json()
     first, second, third, _ = made["columns"]
     names = views(reader)
     clash = server.get("/tables/clash").json()
     assert names["areas"] == f"areas (t{clash['id']})" and names[hostile] == hostile, names
     ids = [column["id"] for column in clash["columns"]]
-    assert columns(reader, names["areas"]) == ["key", f"key (c{ids[0]})", "Key", f"Key (c{ids[2]})"], columns(reader, names["areas"])
+    assert columns(reader, names["areas"]) == [
+        "key",
+        f"key (c{ids[0]})",
+        "Key",
+        f"Key (c{ids[2]})",
+    ], columns(reader, names["areas"])
     shown = columns(reader, hostile)
-    assert shown[:2] == ["key", 'a" b'] and shown[4] == "Since" and long.startswith(shown[2]) and shown[3].endswith(f" (c{third['id']})"), shown
+    assert (
+        shown[:2] == ["key", 'a" b']
+        and shown[4] == "Since"
+        and long.startswith(shown[2])
+        and shown[3].endswith(f" (c{third['id']})")
+    ), shown
     assert all(len(name.encode()) <= 63 for name in shown), shown
-    server.ok("POST", "/tables/hostile/records", {"values": {first["slug"]: "it's", "since": "1560~"}})
-    assert reader.rows(f"SELECT * FROM \"{hostile.replace(chr(34), chr(34) * 2)}\"")[0]["Since"] == "1560~"
+    server.ok(
+        "POST", "/tables/hostile/records", {"values": {first["slug"]: "it's", "since": "1560~"}}
+    )
+    assert (
+        reader.rows(f'SELECT * FROM "{hostile.replace(chr(34), chr(34) * 2)}"')[0]["Since"]
+        == "1560~"
+    )
 
     # An analyst who keeps a table open does not keep people from changing it.
-    with subprocess.Popen(reader.command() + ["-At"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=reader.environment()) as session:
-        session.stdin.write(f"BEGIN; SELECT count(*) FROM \"{hostile.replace(chr(34), chr(34) * 2)}\";\n")
+    with subprocess.Popen(
+        reader.command() + ["-At"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=reader.environment(),
+    ) as session:
+        session.stdin.write(
+            f'BEGIN; SELECT count(*) FROM "{hostile.replace(chr(34), chr(34) * 2)}";\n'
+        )
         session.stdin.flush()
-        assert session.stdout.readline().strip() == "BEGIN" and session.stdout.readline().strip() == "1"
+        assert (
+            session.stdout.readline().strip() == "BEGIN"
+            and session.stdout.readline().strip() == "1"
+        )
         server.ok("PATCH", f"/tables/hostile/columns/{first['id']}", {"name": "Plain"})
         server.ok("POST", "/tables/hostile/columns", {"name": "New", "kind": "numeric"})
         server.ok("DELETE", f"/tables/hostile/columns/{second['id']}")
         session.stdin.close()
         session.wait()
     server.ok("PATCH", "/tables/hostile", {"name": "Calm"})
-    assert columns(reader, "Calm")[:2] == ["key", "Plain"] and "New" in columns(reader, "Calm") and len(columns(reader, "Calm")) == 5
+    assert (
+        columns(reader, "Calm")[:2] == ["key", "Plain"]
+        and "New" in columns(reader, "Calm")
+        and len(columns(reader, "Calm")) == 5
+    )
     assert hostile not in views(reader).values()
     server.ok("POST", "/tables/hostile/undo")  # the dropped column comes back
     assert len(columns(reader, "Calm")) == 6, columns(reader, "Calm")
@@ -143,29 +262,91 @@ def check_tables(server, reader):
 
 def check_rights(reader):
     anyway = "SET default_transaction_read_only = off"
-    for statement in ("DELETE FROM edits", "INSERT INTO projects VALUES (9, 'x', 'x', '')", "UPDATE models SET model = 'x'", "CREATE TABLE t (a int)",
-                      "CREATE TABLE public.t (a int)", "CREATE TABLE analysis.t (a int)", "CREATE TEMP TABLE t (a int)", "CREATE SCHEMA s", "SELECT lo_create(0)", "SELECT lo_from_bytea(0, 'x')",
-                      "SELECT pg_advisory_lock(1)", "COPY (SELECT 1) TO PROGRAM 'id'", "CREATE ROLE r", "ALTER ROLE strata_reader SUPERUSER"):
+    for statement in (
+        "DELETE FROM edits",
+        "INSERT INTO projects VALUES (9, 'x', 'x', '')",
+        "UPDATE models SET model = 'x'",
+        "CREATE TABLE t (a int)",
+        "CREATE TABLE public.t (a int)",
+        "CREATE TABLE analysis.t (a int)",
+        "CREATE TEMP TABLE t (a int)",
+        "CREATE SCHEMA s",
+        "SELECT lo_create(0)",
+        "SELECT lo_from_bytea(0, 'x')",
+        "SELECT pg_advisory_lock(1)",
+        "COPY (SELECT 1) TO PROGRAM 'id'",
+        "CREATE ROLE r",
+        "ALTER ROLE strata_reader SUPERUSER",
+    ):
         done = reader.run(anyway, statement)
-        assert done.returncode != 0 and any(reason in done.stderr for reason in ("permission denied", "must be", "cannot")), (statement, done.stderr)
+        assert done.returncode != 0 and any(
+            reason in done.stderr for reason in ("permission denied", "must be", "cannot")
+        ), (statement, done.stderr)
     reader.refused("SELECT 1 INTO TEMP t", why="cannot execute")
-    for secret in ("public.tokens", "public.users", "public.blobs", "public.blob_chunks", "public.answers", "public.tile_revisions", "records.t1", "pg_authid", "public.record_tables"):
+    for secret in (
+        "public.tokens",
+        "public.users",
+        "public.blobs",
+        "public.blob_chunks",
+        "public.answers",
+        "public.tile_revisions",
+        "records.t1",
+        "pg_authid",
+        "public.record_tables",
+    ):
         reader.refused(f"SELECT * FROM {secret}", why="permission denied")
     reader.refused("SELECT pg_read_file('/etc/passwd')", why="permission denied")
-    reader.refused("SET statement_timeout = '50ms'", "SELECT pg_sleep(100)", why="statement timeout")
+    reader.refused(
+        "SET statement_timeout = '50ms'", "SELECT pg_sleep(100)", why="statement timeout"
+    )
     assert reader.rows("SHOW statement_timeout")[0]["statement_timeout"] == "30s"
-    assert reader.rows("SHOW default_transaction_read_only")[0]["default_transaction_read_only"] == "on"
-    assert reader.rows("SELECT count(*) FROM pg_stat_activity WHERE query <> '<insufficient privilege>' AND usename <> 'strata_reader'")[0]["count"] == "0"
-    reader.refused("SELECT 1", password="wrong-password-of-nobody", why="password authentication failed")
+    assert (
+        reader.rows("SHOW default_transaction_read_only")[0]["default_transaction_read_only"]
+        == "on"
+    )
+    assert (
+        reader.rows(
+            "SELECT count(*) FROM pg_stat_activity WHERE query <> '<insufficient privilege>' AND usename <> 'strata_reader'"
+        )[0]["count"]
+        == "0"
+    )
+    reader.refused(
+        "SELECT 1", password="wrong-password-of-nobody", why="password authentication failed"
+    )
     for other in ({"user": "strata"}, {"user": "postgres"}, {"database": "postgres"}):
         reader.refused("SELECT 1", **other, why="no pg_hba.conf entry")
 
 
 def check_command_line(binary):
-    for listen, code, words in (("0.0.0.0:5433", 1, "loopback only"), ("127.0.0.1:0", 106, "port"), ("nonsense", 106, "HOST:PORT")):
-        done = subprocess.run([binary, "serve", "--data", "/nonexistent/x", "--sql-listen", listen], capture_output=True, text=True, check=False)
-        assert done.returncode != 0 and words in done.stderr and (code == 1) == (done.returncode == 1), (listen, done.returncode, done.stderr)
-    done = subprocess.run([binary, "serve", "--data", "/nonexistent/x", "--database", "host=/nowhere", "--sql-listen", "127.0.0.1:5433"], capture_output=True, text=True, check=False)
+    for listen, code, words in (
+        ("0.0.0.0:5433", 1, "loopback only"),
+        ("127.0.0.1:0", 106, "port"),
+        ("nonsense", 106, "HOST:PORT"),
+    ):
+        done = subprocess.run(
+            [binary, "serve", "--data", "/nonexistent/x", "--sql-listen", listen],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert (
+            done.returncode != 0 and words in done.stderr and (code == 1) == (done.returncode == 1)
+        ), (listen, done.returncode, done.stderr)
+    done = subprocess.run(
+        [
+            binary,
+            "serve",
+            "--data",
+            "/nonexistent/x",
+            "--database",
+            "host=/nowhere",
+            "--sql-listen",
+            "127.0.0.1:5433",
+        ],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 1 and "docs/sql.md" in done.stderr, done.stderr
 
 
@@ -174,12 +355,25 @@ def main():
     with StrataServer(demo=True, options=["--sql-listen", f"127.0.0.1:{port}"]) as server:
         assert stat.S_IMODE(os.stat(os.path.join(server.data, "sql-password")).st_mode) == 0o600
         reader = Reader(server, port)
-        # The demo project's layers were journalled without sums: they are counted once the server runs.
-        wait_for(lambda: reader.rows("SELECT count(*) FROM layers WHERE NOT areas_current")[0]["count"] == "0", "all layers to be counted")
+        # The demo project's layers were journalled without sums: they are counted once the server
+        # runs.
+        wait_for(
+            lambda: reader.rows("SELECT count(*) FROM layers WHERE NOT areas_current")[0]["count"]
+            == "0",
+            "all layers to be counted",
+        )
         check_areas(server, reader, "/models/demo-pot")
         server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm")
-        server.ok("POST", "/projects/default/tables", {"name": "Units", "columns": [{"name": "Code", "required": True, "unique": True}]})
-        server.ok("POST", "/tables/units/records", {"records": [{"values": {"code": f"SU {n}"}} for n in (1, 2, 3)]})
+        server.ok(
+            "POST",
+            "/projects/default/tables",
+            {"name": "Units", "columns": [{"name": "Code", "required": True, "unique": True}]},
+        )
+        server.ok(
+            "POST",
+            "/tables/units/records",
+            {"records": [{"values": {"code": f"SU {n}"}} for n in (1, 2, 3)]},
+        )
         check_edits(server, reader)
         check_places(server, reader)
         check_tables(server, reader)

@@ -12,14 +12,28 @@ DATA = os.environ.get("STRATA_TEST_DATA", "")
 def check(server, model):
     path = f"/models/{model['id']}"
     server.ok("POST", path + "/layers", {"name": "Everywhere", "type": "u16"})
-    edit = server.ok("POST", path + "/layers/everywhere/edits", {"op": "fill", "mode": "where", "where": "true", "value": 65535}).json()
+    edit = server.ok(
+        "POST",
+        path + "/layers/everywhere/edits",
+        {"op": "fill", "mode": "where", "where": "true", "value": 65535},
+    ).json()
     statistics = server.ok("GET", path + "/layers/everywhere/statistics").json()
     share = statistics["area_m2"] / model["area_m2"]
-    print(f"{model['name']}: {model['triangles']} triangles, {statistics['area_m2'] * 1e4:.2f} cm², {share:.6f} of the model's area", flush=True)
+    print(
+        f"{model['name']}: {model['triangles']} triangles, {statistics['area_m2'] * 1e4:.2f} cm², {share:.6f} of the model's area",
+        flush=True,
+    )
     assert abs(share - 1) <= 0.001, (statistics["area_m2"], model["area_m2"])
-    assert edit["area_m2"] == statistics["area_m2"] or abs(edit["area_m2"] / statistics["area_m2"] - 1) < 1e-9, (edit, statistics["area_m2"])
+    assert (
+        edit["area_m2"] == statistics["area_m2"]
+        or abs(edit["area_m2"] / statistics["area_m2"] - 1) < 1e-9
+    ), (edit, statistics["area_m2"])
     assert edit["texels_changed"] == statistics["texels"], (edit, statistics["texels"])
-    assert (statistics["min"], statistics["max"], statistics["std"]) == (65535, 65535, 0), statistics
+    assert (statistics["min"], statistics["max"], statistics["std"]) == (
+        65535,
+        65535,
+        0,
+    ), statistics
 
 
 def read(name):
@@ -32,15 +46,23 @@ def main():
     with StrataServer(demo=True) as server:
         check(server, server.get("/models/demo-pot").json())
         if has_scans:
-            check(server, server.import_model(read("statue_nefertiti_70k.ply"), "statue_nefertiti_70k.ply", unit="mm"))
+            check(
+                server,
+                server.import_model(
+                    read("statue_nefertiti_70k.ply"), "statue_nefertiti_70k.ply", unit="mm"
+                ),
+            )
             mask = server.import_model(read("mask_bali/mask.obj"), "mask.obj", unit="m")
-            assert mask["atlas"]["source"] == "file", mask["atlas"]  # its own texture coordinates are kept
+            # its own texture coordinates are kept
+            assert mask["atlas"]["source"] == "file", mask["atlas"]
             assert 0 <= mask["atlas"]["overlap"] < 0.005, mask["atlas"]
             check(server, mask)
         assert server.stop() == 0
         server.assert_clean_log()
     if not has_scans:
-        print(f"SKIPPED the real scans: there is no folder {DATA or '(STRATA_TEST_DATA is not set)'}")
+        print(
+            f"SKIPPED the real scans: there is no folder {DATA or '(STRATA_TEST_DATA is not set)'}"
+        )
 
 
 main()

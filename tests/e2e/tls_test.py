@@ -23,18 +23,47 @@ def shown_by(server):
     """Subject of the certificate that a new connection gets."""
     untrusting = ssl.create_default_context()
     untrusting.check_hostname, untrusting.verify_mode = False, ssl.CERT_NONE
-    with socket.create_connection((server.host, server.port)) as plain, untrusting.wrap_socket(plain) as link:
+    with socket.create_connection((server.host, server.port)) as plain, untrusting.wrap_socket(
+        plain
+    ) as link:
         shown = ssl.DER_cert_to_PEM_cert(link.getpeercert(binary_form=True))
-    told = subprocess.run(["openssl", "x509", "-noout", "-subject"], input=shown, capture_output=True, text=True, check=True)
+    told = subprocess.run(
+        ["openssl", "x509", "-noout", "-subject"],
+        input=shown,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     return told.stdout.rpartition("=")[2].strip()
 
 
 def sign_in(server):
     """Through the page's door; the cookie's whole line. `server.url` is where the browser believes itself."""
-    invitation = server.ok("POST", "/users", {"user": "hana", "role": "annotator"}).json()["path"].partition("#")[2]
-    joined = server.ok("POST", "/invitations/accept", {"invitation": invitation, "password": PASSWORD}, headers={"Origin": server.url}, token=False)
-    server.ok("POST", "/logout", headers={"Origin": server.url, "Cookie": joined.headers["Set-Cookie"].split(";")[0]}, token=False)
-    return server.ok("POST", "/login", {"user": "hana", "password": PASSWORD}, headers={"Origin": server.url}, token=False).headers["Set-Cookie"]
+    invitation = (
+        server.ok("POST", "/users", {"user": "hana", "role": "annotator"})
+        .json()["path"]
+        .partition("#")[2]
+    )
+    joined = server.ok(
+        "POST",
+        "/invitations/accept",
+        {"invitation": invitation, "password": PASSWORD},
+        headers={"Origin": server.url},
+        token=False,
+    )
+    server.ok(
+        "POST",
+        "/logout",
+        headers={"Origin": server.url, "Cookie": joined.headers["Set-Cookie"].split(";")[0]},
+        token=False,
+    )
+    return server.ok(
+        "POST",
+        "/login",
+        {"user": "hana", "password": PASSWORD},
+        headers={"Origin": server.url},
+        token=False,
+    ).headers["Set-Cookie"]
 
 
 def check_everything(server):
@@ -46,15 +75,28 @@ def check_everything(server):
     assert server.ok("GET", "/me", headers={"Cookie": cookie}, token=False).json()["user"] == "hana"
     # Larger than any buffer on the way, both ways.
     points = [[x % 100, x // 1000, 0.5] for x in range(100_000)]
-    answer = server.ok("POST", "/models/sheet/positions", {"points": points, "layers": []}, headers={"Accept": "text/csv"})
+    answer = server.ok(
+        "POST",
+        "/models/sheet/positions",
+        {"points": points, "layers": []},
+        headers={"Accept": "text/csv"},
+    )
     assert answer.body.count(b"\r\n") == 100_001
-    assert server.get("/openapi.json", headers={"Accept-Encoding": "gzip"}).headers["Content-Encoding"] == "gzip"
+    assert (
+        server.get("/openapi.json", headers={"Accept-Encoding": "gzip"}).headers["Content-Encoding"]
+        == "gzip"
+    )
     for origin, secret in ((server.url, {"token": "", "cookie": cookie}), (None, {})):
         with LiveClient(server, "sheet", origin=origin, **secret) as live:
             welcome = live.hello()
             assert welcome["op"] == "welcome", welcome
-    refused = server.request("POST", "/models/sheet/layers", {"name": "x", "type": "u8"}, token=False,
-                             headers={"Cookie": cookie, "Origin": "https://elsewhere.example"})
+    refused = server.request(
+        "POST",
+        "/models/sheet/layers",
+        {"name": "x", "type": "u8"},
+        token=False,
+        headers={"Cookie": cookie, "Origin": "https://elsewhere.example"},
+    )
     assert refused.status == 403, refused
 
 
@@ -66,14 +108,21 @@ def check_files(folder):
         check_everything(server)
         old = ssl.create_default_context(cafile=chain)
         old.maximum_version = ssl.TLSVersion.TLSv1_2
-        with socket.create_connection((server.host, server.port)) as plain, old.wrap_socket(plain, server_hostname=server.host) as link:
+        with socket.create_connection((server.host, server.port)) as plain, old.wrap_socket(
+            plain, server_hostname=server.host
+        ) as link:
             assert link.version() == "TLSv1.2"
 
-        # Who forgets the s is told where to go; who speaks no HTTP at all, or not at once, does no harm.
+        # Who forgets the s is told where to go; who speaks no HTTP at all, or not at once, does no
+        # harm.
         with socket.create_connection((server.host, server.port)) as plain:
-            plain.sendall(f"GET /pot?x=1 HTTP/1.1\r\nHost: {server.host}:{server.port}\r\n\r\n".encode())
+            plain.sendall(
+                f"GET /pot?x=1 HTTP/1.1\r\nHost: {server.host}:{server.port}\r\n\r\n".encode()
+            )
             head = plain.makefile("rb").read().decode()
-        assert head.startswith("HTTP/1.1 308 ") and f"Location: {server.url}/pot?x=1\r\n" in head, head
+        assert (
+            head.startswith("HTTP/1.1 308 ") and f"Location: {server.url}/pot?x=1\r\n" in head
+        ), head
         silent = socket.create_connection((server.host, server.port))
         with socket.create_connection((server.host, server.port)) as plain:
             plain.sendall(b"\x16\x03\x01\x00\x05hello" + os.urandom(600))
@@ -86,10 +135,15 @@ def check_files(folder):
         scan = os.path.join(folder, "cli.ply")
         with open(scan, "wb") as file:
             file.write(folded_grid(5))
-        subprocess.run([server.binary, "import", scan, "--server", server.url, "--token", server.token], check=True, capture_output=True)
+        subprocess.run(
+            [server.binary, "import", scan, "--server", server.url, "--token", server.token],
+            check=True,
+            capture_output=True,
+        )
         assert server.get("/models/cli").status == 200
 
-        # Renewal: the files are written one after the other; new connections get the new one, those that are open go on.
+        # Renewal: the files are written one after the other; new connections get the new one, those
+        # that are open go on.
         with LiveClient(server, "sheet") as live:
             live.hello()
             renewed = make_certificate(folder, "second", "rsa")
@@ -98,41 +152,92 @@ def check_files(folder):
             shutil.copy(renewed[1], key)
             wait_for(lambda: shown_by(server) == "second", "the renewed certificate")
             server.tls = trusting(chain)
-            live.send({"op": "pick", "id": "00000000-0000-4000-8000-000000000001", "camera": CAMERA, "x": 1, "y": 1})
+            live.send(
+                {
+                    "op": "pick",
+                    "id": "00000000-0000-4000-8000-000000000001",
+                    "camera": CAMERA,
+                    "x": 1,
+                    "y": 1,
+                }
+            )
             live.receive_until("picked")
         with open(chain, "w", encoding="ascii") as file:
             file.write("not a certificate")
-        wait_for(lambda: shown_by(server) == "second" and any("stays as it was" in line and chain in line for line in server.log), "the log to tell")
+        wait_for(
+            lambda: shown_by(server) == "second"
+            and any("stays as it was" in line and chain in line for line in server.log),
+            "the log to tell",
+        )
         assert server.stop() == 0
         server.assert_clean_log(warnings=("the certificate stays as it was",))
 
 
-CAMERA = {"view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1],
-          "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -20.2, 0], "width": 64, "height": 64}
+CAMERA = {
+    "view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1],
+    "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -20.2, 0],
+    "width": 64,
+    "height": 64,
+}
 
 
 def check_bad_files(folder):
     chain, key = make_certificate(folder, "good")
     other = make_certificate(folder, "other")[1]
     locked = os.path.join(folder, "locked.key")
-    subprocess.run(["openssl", "pkey", "-aes128", "-passout", "pass:secret", "-in", key, "-out", locked], check=True, capture_output=True)
-    cases = [([chain, folder + "/none"], "none`: there is no such file"), ([folder, key], "there is no such file"), ([key, key], "holds no certificate"),
-             ([chain, chain], "not the key of the certificate"), ([chain, other], "not the key of the certificate"),
-             ([chain, make_certificate(folder, "rsa", "rsa")[1]], "not the key of the certificate"), ([chain, locked], "without a passphrase")]
+    subprocess.run(
+        ["openssl", "pkey", "-aes128", "-passout", "pass:secret", "-in", key, "-out", locked],
+        check=True,
+        capture_output=True,
+    )
+    cases = [
+        ([chain, folder + "/none"], "none`: there is no such file"),
+        ([folder, key], "there is no such file"),
+        ([key, key], "holds no certificate"),
+        ([chain, chain], "not the key of the certificate"),
+        ([chain, other], "not the key of the certificate"),
+        ([chain, make_certificate(folder, "rsa", "rsa")[1]], "not the key of the certificate"),
+        ([chain, locked], "without a passphrase"),
+    ]
     data = tempfile.mkdtemp(dir=folder)
     os.chmod(data, 0o755)
     binary = os.environ["STRATA_BINARY"]
     for (cert, its_key), told in cases:
-        done = subprocess.run([binary, "serve", "--data", data, "--listen", "127.0.0.1:0", "--tls-cert", cert, "--tls-key", its_key],
-                              capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False)
+        done = subprocess.run(
+            [
+                binary,
+                "serve",
+                "--data",
+                data,
+                "--listen",
+                "127.0.0.1:0",
+                "--tls-cert",
+                cert,
+                "--tls-key",
+                its_key,
+            ],
+            capture_output=True,
+            text=True,
+            stdin=subprocess.DEVNULL,
+            check=False,
+        )
         assert done.returncode == 1 and told in done.stderr, (cert, its_key, done)
-    half = subprocess.run([binary, "serve", "--data", data, "--tls-cert", chain], capture_output=True, text=True, check=False)
+    half = subprocess.run(
+        [binary, "serve", "--data", data, "--tls-cert", chain],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert half.returncode == 2 and "--tls-key" in half.stderr, half
 
 
 def nginx_binary():
     unpacked = os.path.join(ROOT, "build", "deps", "usr", "sbin", "nginx")
-    return unpacked if os.path.exists(unpacked) else shutil.which("nginx", path=os.environ["PATH"] + ":/usr/sbin")
+    return (
+        unpacked
+        if os.path.exists(unpacked)
+        else shutil.which("nginx", path=os.environ["PATH"] + ":/usr/sbin")
+    )
 
 
 def free_port():
@@ -148,29 +253,44 @@ def check_nginx(folder):
     with StrataServer() as server:
         port, plain_port = free_port(), free_port()
         site = shipped
-        for pattern, ours in ((r"listen 443 ssl;", f"listen 127.0.0.1:{port} ssl;"), (r"listen 80;", f"listen 127.0.0.1:{plain_port};"),
-                              (r"/etc/letsencrypt/live/museum.example/fullchain.pem", chain),
-                              (r"/etc/letsencrypt/live/museum.example/privkey.pem", key), (r"127\.0\.0\.1:8080", f"127.0.0.1:{server.port}")):
+        for pattern, ours in (
+            (r"listen 443 ssl;", f"listen 127.0.0.1:{port} ssl;"),
+            (r"listen 80;", f"listen 127.0.0.1:{plain_port};"),
+            (r"/etc/letsencrypt/live/museum.example/fullchain.pem", chain),
+            (r"/etc/letsencrypt/live/museum.example/privkey.pem", key),
+            (r"127\.0\.0\.1:8080", f"127.0.0.1:{server.port}"),
+        ):
             site, found = re.subn(pattern, ours, site)
             assert found == 1, pattern
-        temporary = "".join(f"{kind}_temp_path {folder}/{kind};" for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi"))
+        temporary = "".join(
+            f"{kind}_temp_path {folder}/{kind};"
+            for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
+        )
         conf = os.path.join(folder, "nginx.conf")
         with open(conf, "w", encoding="utf-8") as file:
-            file.write(f"daemon off; pid {folder}/nginx.pid; error_log {folder}/error.log; user root;\nevents {{}}\n"
-                       f"http {{ access_log off; {temporary}\n{site} }}\n")
-        nginx = subprocess.Popen([nginx_binary(), "-p", folder, "-c", conf], preexec_fn=_end_with_parent,
-                                 stderr=subprocess.DEVNULL)
+            file.write(
+                f"daemon off; pid {folder}/nginx.pid; error_log {folder}/error.log; user root;\nevents {{}}\n"
+                f"http {{ access_log off; {temporary}\n{site} }}\n"
+            )
+        nginx = subprocess.Popen(
+            [nginx_binary(), "-p", folder, "-c", conf],
+            preexec_fn=_end_with_parent,
+            stderr=subprocess.DEVNULL,
+        )
         try:
             upstream, server.port = server.port, port  # from here on all goes through the proxy
             server.tls = trusting(chain)
 
             def answers():
-                assert nginx.poll() is None, open(os.path.join(folder, "error.log"), encoding="utf-8").read()
+                assert nginx.poll() is None, open(
+                    os.path.join(folder, "error.log"), encoding="utf-8"
+                ).read()
                 try:
                     socket.create_connection(("127.0.0.1", port)).close()
                     return True
                 except ConnectionRefusedError:
                     return False
+
             wait_for(answers, "nginx to listen")
             check_everything(server)
             with socket.create_connection(("127.0.0.1", plain_port)) as plain:

@@ -11,9 +11,25 @@ from support.pictures import png
 from support.strata_server import StrataServer
 
 M, T = "/models/sheet", "/tables/finds"
-OF_PATH = {"project": "default", "model": "sheet", "layer": "finds", "table": "finds", "column": "place", "key": "1", "view": "west",
-           "tour": "round", "look": "plain", "tool": "left", "user": "ada", "format": "npy", "name": "sheet.ply"}
-OF_QUERY = {"/models/{model}/position": "?coords=POINT(30 30 0)", "/tables/{table}/columns/{column}/classes": "?method=unique"}
+OF_PATH = {
+    "project": "default",
+    "model": "sheet",
+    "layer": "finds",
+    "table": "finds",
+    "column": "place",
+    "key": "1",
+    "view": "west",
+    "tour": "round",
+    "look": "plain",
+    "tool": "left",
+    "user": "ada",
+    "format": "npy",
+    "name": "sheet.ply",
+}
+OF_QUERY = {
+    "/models/{model}/position": "?coords=POINT(30 30 0)",
+    "/tables/{table}/columns/{column}/classes": "?method=unique",
+}
 LISTS_OF_TERMS = "/tables/{table}/terms"
 # Of a kiosk's cookie; of a sign-in, whose last use changes with each call.
 LEFT_OUT = {"/api/v1/kiosk"}
@@ -25,39 +41,85 @@ def plain(side):
 
 
 def make_site(server):
-    model = server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048)
+    model = server.import_model(
+        folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
+    )
     camera = camera_from(model, (0, 0, 1), up=(0, 1, 0))
-    server.ok("POST", "/projects/default/terms?name=Damage", b"code,label\nloss,Loss\n", headers={"Content-Type": "text/csv"})
-    columns = [{"name": "Name"}, {"name": "Place", "kind": "relation"}, {"name": "Photo", "kind": "picture"}]
+    server.ok(
+        "POST",
+        "/projects/default/terms?name=Damage",
+        b"code,label\nloss,Loss\n",
+        headers={"Content-Type": "text/csv"},
+    )
+    columns = [
+        {"name": "Name"},
+        {"name": "Place", "kind": "relation"},
+        {"name": "Photo", "kind": "picture"},
+    ]
     columns[1]["target"] = "damage"
-    server.ok("POST", M + "/layers", {"name": "Finds", "kind": "database", "type": "u16", "columns": [columns[0], columns[2]]})
+    server.ok(
+        "POST",
+        M + "/layers",
+        {"name": "Finds", "kind": "database", "type": "u16", "columns": [columns[0], columns[2]]},
+    )
     table = server.ok("GET", T).json()
     server.ok("POST", T + "/columns", {**columns[1], "target": table["id"]})
-    server.ok("POST", T + "/records", {"records": [{"values": {"name": f"Find {n}"}} for n in (1, 2)]})
+    server.ok(
+        "POST", T + "/records", {"records": [{"values": {"name": f"Find {n}"}} for n in (1, 2)]}
+    )
     fill(server, 1)
-    file = server.ok("POST", T + "/records/1/attachments?name=x.png&column=photo", plain(64)).json()["attachments"][0]["id"]
+    file = server.ok(
+        "POST", T + "/records/1/attachments?name=x.png&column=photo", plain(64)
+    ).json()["attachments"][0]["id"]
     server.ok("POST", M + "/looks?name=Plain", plain(64), headers={"Content-Type": "image/png"})
-    server.ok("POST", "/tools?name=Left", png(64, 64, lambda x, y: (255,) * 3 if x < 32 else (0,) * 3), headers={"Content-Type": "image/png"})
+    server.ok(
+        "POST",
+        "/tools?name=Left",
+        png(64, 64, lambda x, y: (255,) * 3 if x < 32 else (0,) * 3),
+        headers={"Content-Type": "image/png"},
+    )
     server.ok("POST", M + "/views", {"name": "West", "camera": camera})
-    server.ok("POST", M + "/tours", {"name": "Round", "languages": ["en"], "stops": [{"view": "west", "title": {"en": "West"}}]})
-    comment = server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()["id"]
+    server.ok(
+        "POST",
+        M + "/tours",
+        {
+            "name": "Round",
+            "languages": ["en"],
+            "stops": [{"view": "west", "title": {"en": "West"}}],
+        },
+    )
+    comment = server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()[
+        "id"
+    ]
     server.ok("POST", f"/comments/{comment}/replies", {"text": "I did."})
     group = server.ok("POST", "/groups", {"name": "Students", "members": []}).json()["id"]
-    job = server.ok("POST", M + "/figures", {"format": "png", "dpi": 100}, headers={"Prefer": "respond-async"}).json()["id"]
+    job = server.ok(
+        "POST", M + "/figures", {"format": "png", "dpi": 100}, headers={"Prefer": "respond-async"}
+    ).json()["id"]
     server.wait_for_job(job)
-    OF_PATH.update({"attachment": str(file), "comment": str(comment), "group": str(group), "job": str(job)})
+    OF_PATH.update(
+        {"attachment": str(file), "comment": str(comment), "group": str(group), "job": str(job)}
+    )
     server.add_person("ada", "annotator")
     return camera
 
 
 def fill(server, value):
-    server.ok("POST", M + "/layers/finds/edits", {"op": "fill", "mode": "where", "where": "true", "value": value})
+    server.ok(
+        "POST",
+        M + "/layers/finds/edits",
+        {"op": "fill", "mode": "where", "where": "true", "value": value},
+    )
 
 
 def address(path):
     asked = path.removeprefix("/api/v1")
     query = OF_QUERY.get(asked, "")
-    named = {**OF_PATH, **({"table": "damage"} if asked == LISTS_OF_TERMS else {}), **({"column": "name"} if asked.endswith("/classes") else {})}
+    named = {
+        **OF_PATH,
+        **({"table": "damage"} if asked == LISTS_OF_TERMS else {}),
+        **({"column": "name"} if asked.endswith("/classes") else {}),
+    }
     for name, value in named.items():
         asked = asked.replace("{" + name + "}", value)
     return asked + urllib.parse.quote(query, safe="?=&")
@@ -65,8 +127,13 @@ def address(path):
 
 def reads_with_tags(server):
     """Addresses of all reads of the contract that list 304, below /api/v1."""
-    paths = [path for path, item in server.contract.document["paths"].items()
-             if path.startswith("/api/") and "304" in item.get("get", {}).get("responses", {}) and path not in LEFT_OUT]
+    paths = [
+        path
+        for path, item in server.contract.document["paths"].items()
+        if path.startswith("/api/")
+        and "304" in item.get("get", {}).get("responses", {})
+        and path not in LEFT_OUT
+    ]
     found = {path.removeprefix("/api/v1"): address(path) for path in paths}
     assert len(found) > 50 and not any("{" in each for each in found.values()), found
     return found
@@ -88,7 +155,12 @@ def check_all(server, reads):
         tag = first.headers["ETag"]
         for named in (tag, "W/" + tag, f'"x", {tag}', "*"):
             again = once_more(server, asked, named)
-            assert again.status == 304 and again.body == b"" and again.headers["ETag"] == tag, (path, named, again, again.headers.items())
+            assert again.status == 304 and again.body == b"" and again.headers["ETag"] == tag, (
+                path,
+                named,
+                again,
+                again.headers.items(),
+            )
         head = server.request("HEAD", asked, headers={"If-None-Match": tag})
         assert head.status == 304 and head.headers["ETag"] == tag, (path, head)
         for other in ('"x"', "x", "", '"x", "y"', tag[:-1]):
@@ -115,18 +187,47 @@ def check_change(server, known, what, must_change):
 
 def check_changes(server, known, camera):
     layer = M + "/layers/finds"
-    texels = {layer + "/" + part for part in ("statistics", "quantities", "texels.csv", "texels.npy", "records", "edits")}
+    texels = {
+        layer + "/" + part
+        for part in ("statistics", "quantities", "texels.csv", "texels.npy", "records", "edits")
+    }
     texels |= {M + "/vertices.ply", M + "/views/west/picture", T + "/areas", T + "/quantities"}
     fill(server, 2)
     anew = check_change(server, known, "painting", texels)
-    assert not {T, M + "/looks", M + "/looks/plain/picture", "/tools", T + "/records", T + "/columns"} & anew, anew
+    assert (
+        not {T, M + "/looks", M + "/looks/plain/picture", "/tools", T + "/records", T + "/columns"}
+        & anew
+    ), anew
     server.ok("PATCH", T + "/records/2", {"values": {"name": TEXT}})
-    anew = check_change(server, known, "a record", {T + "/records", layer + "/records", T + "/edits", layer + "/quantities", T + "/quantities"})
+    anew = check_change(
+        server,
+        known,
+        "a record",
+        {
+            T + "/records",
+            layer + "/records",
+            T + "/edits",
+            layer + "/quantities",
+            T + "/quantities",
+        },
+    )
     assert not {M + "/looks/plain/picture", M + "/comments", M + "/views"} & anew, anew
-    server.ok("PATCH", layer, {"palette": {"mode": "step", "points": [{"at": 0, "color": "#000000ff"}, {"at": 2, "color": "#ff0000ff"}]}, "name": "Things"})
+    server.ok(
+        "PATCH",
+        layer,
+        {
+            "palette": {
+                "mode": "step",
+                "points": [{"at": 0, "color": "#000000ff"}, {"at": 2, "color": "#ff0000ff"}],
+            },
+            "name": "Things",
+        },
+    )
     check_change(server, known, "a palette", {layer, M + "/layers", M + "/views/west/picture"})
     server.ok("PATCH", M + "/views/west", {"camera": {**camera, "width": camera["width"] // 2}})
-    check_change(server, known, "a view", {M + "/views/west/picture", M + "/views", M + "/views/west"})
+    check_change(
+        server, known, "a view", {M + "/views/west/picture", M + "/views", M + "/views/west"}
+    )
     server.ok("POST", "/tables/damage/records", {"values": {"code": "crack", "label": "Crack"}})
     check_change(server, known, "a term", {"/tables/damage/terms"})
     server.ok("PATCH", M + "/looks/plain", {"name": "Plain colour"})
@@ -134,7 +235,9 @@ def check_changes(server, known, camera):
     server.ok("POST", M + "/comments", {"text": "More.", "position": [30, 30, 0]})
     check_change(server, known, "a comment", {M + "/comments"})
     server.ok("PATCH", M, {"unit": "cm"})
-    check_change(server, known, "the unit", {M, M + "/layers/finds/statistics", M + "/vertices.ply"})
+    check_change(
+        server, known, "the unit", {M, M + "/layers/finds/statistics", M + "/vertices.ply"}
+    )
     server.ok("POST", layer + "/undo")
     check_change(server, known, "undo", texels)
 
@@ -148,7 +251,9 @@ def check_past(server):
     for answer, at in ((past, now - 1), (present, now)):
         again = once_more(server, f"{layer}/statistics?at={at}", answer.headers["ETag"])
         assert again.status == 304, (at, again)
-    assert once_more(server, layer + "/statistics", present.headers["ETag"]).status == 200, "another question has another tag"
+    assert (
+        once_more(server, layer + "/statistics", present.headers["ETag"]).status == 200
+    ), "another question has another tag"
 
 
 def check_who_asks(server):
@@ -167,7 +272,10 @@ def check_who_asks(server):
 def check_formats_and_codings(server):
     """A sheet is no JSON, and each coding is a representation of its own, which 304 names, too."""
     asked = T + "/records"
-    tags = {accept: server.get(asked, headers={"Accept": accept}).headers["ETag"] for accept in ("application/json", "text/csv")}
+    tags = {
+        accept: server.get(asked, headers={"Accept": accept}).headers["ETag"]
+        for accept in ("application/json", "text/csv")
+    }
     assert len(set(tags.values())) == 2, tags
     answer = once_more(server, asked, tags["application/json"], Accept="text/csv")
     assert answer.status == 200 and answer.headers["Content-Type"].startswith("text/csv"), answer
@@ -175,18 +283,33 @@ def check_formats_and_codings(server):
         for each in (asked, M + "/layers/finds/statistics", "/openapi.json"):
             first = server.get(each, headers={"Accept-Encoding": coding})
             again = once_more(server, each, first.headers["ETag"], **{"Accept-Encoding": coding})
-            assert again.status == 304 and again.headers["ETag"] == first.headers["ETag"], (each, coding, first.headers.items(), again.headers.items())
-            assert "Accept-Encoding" in ", ".join(again.headers.get_all("Vary")), again.headers.items()
-    assert first.headers["Content-Encoding"] == "br" and first.headers["ETag"].endswith('-br"'), first.headers.items()
+            assert again.status == 304 and again.headers["ETag"] == first.headers["ETag"], (
+                each,
+                coding,
+                first.headers.items(),
+                again.headers.items(),
+            )
+            assert "Accept-Encoding" in ", ".join(
+                again.headers.get_all("Vary")
+            ), again.headers.items()
+    assert first.headers["Content-Encoding"] == "br" and first.headers["ETag"].endswith(
+        '-br"'
+    ), first.headers.items()
 
 
 def check_left_alone(server):
     """Health and secrets are nobody's to keep."""
     for path in ("//livez", "//readyz", "//metrics"):
         answer = server.get(path, token=False)
-        assert answer.status == 200 and answer.headers["ETag"] is None and answer.headers["Cache-Control"] == "no-store", answer.headers.items()
+        assert (
+            answer.status == 200
+            and answer.headers["ETag"] is None
+            and answer.headers["Cache-Control"] == "no-store"
+        ), answer.headers.items()
     view = server.get("/me/models/sheet/view")
-    assert view.headers["ETag"] is None and view.headers["Cache-Control"] == "no-store", view.headers.items()
+    assert (
+        view.headers["ETag"] is None and view.headers["Cache-Control"] == "no-store"
+    ), view.headers.items()
     refused = server.get("/models/none", headers={"If-None-Match": "*"})
     assert refused.status == 404 and refused.headers["ETag"] is None, refused
 
@@ -205,7 +328,9 @@ def main():
         tag = server.get(asked).headers["ETag"]
         assert server.stop() == 0
         server.start()
-        assert once_more(server, asked, tag).status == 200, "a database may be another one after a restart"
+        assert (
+            once_more(server, asked, tag).status == 200
+        ), "a database may be another one after a restart"
         assert server.stop() == 0
         server.assert_clean_log()
 

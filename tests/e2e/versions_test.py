@@ -10,18 +10,49 @@ from support.pictures import png
 from support.strata_server import StrataServer
 
 M, T, P = "/models/sheet", "/tables/finds", "/projects/default"
-OF_PATH = {"project": "default", "model": "sheet", "layer": "finds", "table": "finds", "column": "name", "key": "1", "view": "west", "tour": "round", "look": "plain"}
+OF_PATH = {
+    "project": "default",
+    "model": "sheet",
+    "layer": "finds",
+    "table": "finds",
+    "column": "name",
+    "key": "1",
+    "view": "west",
+    "tour": "round",
+    "look": "plain",
+}
 
 
 def make_site(server):
-    model = server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048)
+    model = server.import_model(
+        folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
+    )
     camera = camera_from(model, (0, 0, 1), up=(0, 1, 0))
-    server.ok("POST", M + "/layers", {"name": "Finds", "kind": "database", "type": "u16", "columns": [{"name": "Name"}]})
+    server.ok(
+        "POST",
+        M + "/layers",
+        {"name": "Finds", "kind": "database", "type": "u16", "columns": [{"name": "Name"}]},
+    )
     server.ok("POST", T + "/records", {"values": {"name": "One"}})
-    server.ok("POST", M + "/looks?name=Plain", png(8, 8, lambda x, y: (9, 9, 9)), headers={"Content-Type": "image/png"})
+    server.ok(
+        "POST",
+        M + "/looks?name=Plain",
+        png(8, 8, lambda x, y: (9, 9, 9)),
+        headers={"Content-Type": "image/png"},
+    )
     server.ok("POST", M + "/views", {"name": "West", "camera": camera})
-    server.ok("POST", M + "/tours", {"name": "Round", "languages": ["en"], "stops": [{"view": "west", "title": {"en": "West"}}]})
-    OF_PATH["comment"] = str(server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()["id"])
+    server.ok(
+        "POST",
+        M + "/tours",
+        {
+            "name": "Round",
+            "languages": ["en"],
+            "stops": [{"view": "west", "title": {"en": "West"}}],
+        },
+    )
+    OF_PATH["comment"] = str(
+        server.ok("POST", M + "/comments", {"text": "Look.", "position": [30, 30, 0]}).json()["id"]
+    )
 
 
 def versioned_changes(server):
@@ -46,8 +77,18 @@ def address_of_version(asked):
     return asked.rpartition("/columns/")[0] or asked
 
 
-BODIES = {P: {"description": "x"}, M: {"name": "Sheet"}, M + "/looks/plain": {"opacity": 0.5}, M + "/layers/finds": {"opacity": 0.5}, T: {"description": "x"}, T + "/columns/name": {"name": "Name"},
-          T + "/records/1": {"values": {"name": "Two"}}, M + "/layers/finds/records/1": {"values": {"name": "Three"}}, M + "/views/west": {"name": "West"}, M + "/tours/round": {"name": "Round"}}
+BODIES = {
+    P: {"description": "x"},
+    M: {"name": "Sheet"},
+    M + "/looks/plain": {"opacity": 0.5},
+    M + "/layers/finds": {"opacity": 0.5},
+    T: {"description": "x"},
+    T + "/columns/name": {"name": "Name"},
+    T + "/records/1": {"values": {"name": "Two"}},
+    M + "/layers/finds/records/1": {"values": {"name": "Three"}},
+    M + "/views/west": {"name": "West"},
+    M + "/tours/round": {"name": "Round"},
+}
 
 
 def check_demanded(server, changes):
@@ -55,7 +96,9 @@ def check_demanded(server, changes):
         body = BODIES.get(asked, {"text": "Look!"}) if method == "PATCH" else None
         answer = server.request(method, asked, body)
         problem = answer.json()
-        assert answer.status == 428 and problem["field"] == "If-Match" and "ETag" in problem["detail"], (method, asked, answer)
+        assert (
+            answer.status == 428 and problem["field"] == "If-Match" and "ETag" in problem["detail"]
+        ), (method, asked, answer)
         assert answer.headers["Content-Type"] == "application/problem+json"
         empty = server.request(method, asked, body, headers={"If-Match": ""})
         assert empty.status == 428, (method, asked, empty)
@@ -70,13 +113,25 @@ def check_demanded(server, changes):
 def check_elsewhere(server):
     """Only what has versions, and only there."""
     server.ok("POST", T + "/records", {"values": {"name": "More"}})
-    server.ok("POST", M + "/layers/finds/edits", {"op": "fill", "mode": "where", "where": "true", "value": 1})
+    server.ok(
+        "POST",
+        M + "/layers/finds/edits",
+        {"op": "fill", "mode": "where", "where": "true", "value": 1},
+    )
     server.ok("PUT", "/me/models/sheet/view", {"layers": []})
     server.ok("POST", "/projects", {"name": "Villa"})
     server.ok("PATCH", "/projects/villa", {"description": "Frescoes"})
-    for asked in ("/models/none", "/comments/999999", "/tables/none/records/1", "/projects/none", "/comments/x"):
+    for asked in (
+        "/models/none",
+        "/comments/999999",
+        "/tables/none/records/1",
+        "/projects/none",
+        "/comments/x",
+    ):
         assert server.request("DELETE", asked).status == 404, asked
-    assert server.request("DELETE", M + "/layers/none").status == 428, "what the address leads into demands it, before anything is looked up there"
+    assert (
+        server.request("DELETE", M + "/layers/none").status == 428
+    ), "what the address leads into demands it, before anything is looked up there"
 
 
 def check_roles(server):
@@ -86,7 +141,10 @@ def check_roles(server):
     assert server.request("PATCH", P, {"require_if_match": True}, token=ann).status == 403
     changed = server.ok("PATCH", P, {"require_if_match": True}, token=cleo)
     assert changed.json()["require_if_match"] is True and changed.headers["ETag"], changed
-    for body, field in (({"name": "Mine"}, "name"), ({"description": "Mine", "require_if_match": False}, "description")):
+    for body, field in (
+        ({"name": "Mine"}, "name"),
+        ({"description": "Mine", "require_if_match": False}, "description"),
+    ):
         answer = server.request("PATCH", P, body, token=cleo, headers={"If-Match": "*"})
         assert answer.status == 403 and answer.json()["field"] == field, answer
     assert server.get(P).json()["require_if_match"] is True
@@ -106,7 +164,9 @@ def main():
             if method == "PATCH":
                 server.ok(method, asked, BODIES.get(asked, {"text": "Look!"}))
         server.ok("PATCH", P, {"require_if_match": True})
-        listed = [each for each in server.get("/projects").json()["projects"] if each["slug"] == "default"]
+        listed = [
+            each for each in server.get("/projects").json()["projects"] if each["slug"] == "default"
+        ]
         assert listed[0]["require_if_match"] is True, listed
         check_demanded(server, changes)
         check_elsewhere(server)

@@ -17,7 +17,12 @@ SIDE = 800
 
 def dab(server, layer, value, x, y, radius):
     query = urllib.parse.urlencode({"radius_mm": radius})
-    server.ok("POST", f"{M}/layers/{layer}/readings?{query}", f"x,y,z,value\n{x},{y},0,{value}\n", headers={"Content-Type": "text/csv"})
+    server.ok(
+        "POST",
+        f"{M}/layers/{layer}/readings?{query}",
+        f"x,y,z,value\n{x},{y},0,{value}\n",
+        headers={"Content-Type": "text/csv"},
+    )
 
 
 def times(matrix, vector):
@@ -28,7 +33,9 @@ def seen_colors(rows, camera, vertices):
     """By vertex the colour at its pixel; nothing near an edge of colours, where a picture mixes them."""
     seen = {}
     for i, vertex in enumerate(vertices):
-        x, y, _, w = times(camera["projection"], times(camera["view"], [vertex["x"], vertex["y"], vertex["z"], 1]))
+        x, y, _, w = times(
+            camera["projection"], times(camera["view"], [vertex["x"], vertex["y"], vertex["z"], 1])
+        )
         column, row = int((x / w + 1) / 2 * SIDE), int((1 - y / w) / 2 * SIDE)
         around = [rows[row + dy][column + dx] for dy in range(-3, 4) for dx in range(-3, 4)]
         if all(abs(a - b) <= 2 for each in around for a, b in zip(each, around[24])):
@@ -39,26 +46,67 @@ def seen_colors(rows, camera, vertices):
 def check_as_seen(server, query, at_least, kinds, **frame):
     """`kinds`: so many colours are there at least, so that the comparison means something."""
     camera = camera_from(server.get(M).json(), (0, 0, 1), SIDE, SIDE, up=(0, 1, 0))
-    answer = server.ok("POST", M + "/frame", {"camera": camera, "light": {"mode": "unlit"}, "format": "png", **frame})
+    answer = server.ok(
+        "POST",
+        M + "/frame",
+        {"camera": camera, "light": {"mode": "unlit"}, "format": "png", **frame},
+    )
     vertices, _, names = read_ply(server.ok("GET", f"{M}/vertices.ply?{query}").body)
     assert names[3:6] == ["red", "green", "blue"], names
     seen = seen_colors(pixels(answer.body), camera, vertices)
     for i, color in seen.items():
         mine = [vertices[i][name] for name in ("red", "green", "blue")]
         assert all(abs(a - b) <= 3 for a, b in zip(mine, color)), (vertices[i], color)
-    assert len(seen) >= at_least and len(set(seen.values())) >= kinds, (len(seen), set(seen.values()))
+    assert len(seen) >= at_least and len(set(seen.values())) >= kinds, (
+        len(seen),
+        set(seen.values()),
+    )
 
 
 def make_layers(server):
-    ramp = {"mode": "linear", "min": 0, "max": 10, "points": [{"at": 0, "color": "#000000"}, {"at": 10, "color": "#ffcc00"}]}
-    server.ok("POST", M + "/layers", {"name": "Wet", "type": "f32", "resolution": 2048, "palette": ramp})
-    classes = {"mode": "categorical", "points": [{"at": 1, "color": "#ff0000"}, {"at": 2, "color": "#0000ff80"}]}
-    server.ok("POST", M + "/layers", {"name": "Units", "type": "u8", "resolution": 2048, "palette": classes, "opacity": 0.5})
-    server.ok("POST", "/projects/default/tables", {"name": "Pieces", "columns": [{"name": "Code"}, {"name": "State"}]})
+    ramp = {
+        "mode": "linear",
+        "min": 0,
+        "max": 10,
+        "points": [{"at": 0, "color": "#000000"}, {"at": 10, "color": "#ffcc00"}],
+    }
+    server.ok(
+        "POST", M + "/layers", {"name": "Wet", "type": "f32", "resolution": 2048, "palette": ramp}
+    )
+    classes = {
+        "mode": "categorical",
+        "points": [{"at": 1, "color": "#ff0000"}, {"at": 2, "color": "#0000ff80"}],
+    }
+    server.ok(
+        "POST",
+        M + "/layers",
+        {"name": "Units", "type": "u8", "resolution": 2048, "palette": classes, "opacity": 0.5},
+    )
+    server.ok(
+        "POST",
+        "/projects/default/tables",
+        {"name": "Pieces", "columns": [{"name": "Code"}, {"name": "State"}]},
+    )
     for state in ("loose", "firm"):
         server.ok("POST", "/tables/pieces/records", {"values": {"code": state, "state": state}})
-    by_state = {"mode": "categorical", "column": "state", "points": [{"at": 0, "value": "loose", "color": "#00ff00"}], "others": "#ff00ff"}
-    server.ok("POST", M + "/layers", {"name": "Pieces", "kind": "database", "type": "u16", "table": "pieces", "resolution": 2048, "palette": by_state})
+    by_state = {
+        "mode": "categorical",
+        "column": "state",
+        "points": [{"at": 0, "value": "loose", "color": "#00ff00"}],
+        "others": "#ff00ff",
+    }
+    server.ok(
+        "POST",
+        M + "/layers",
+        {
+            "name": "Pieces",
+            "kind": "database",
+            "type": "u16",
+            "table": "pieces",
+            "resolution": 2048,
+            "palette": by_state,
+        },
+    )
     dab(server, "wet", 7.5, 40, 40, 30)
     dab(server, "units", 1, 60, 40, 25)
     dab(server, "units", 2, 40, 70, 25)
@@ -70,8 +118,14 @@ def main():
     with StrataServer() as server:
         server.import_model(folded_grid(cells=40, fold=0.001), "sheet.ply", name="Sheet", unit="mm")
         make_layers(server)
-        assert read_ply(server.get(M + "/vertices.ply?layers=wet").body)[2][3:] == ["wet", "wet_valid"], "without `colors` as before"
-        assert server.get(M + "/vertices.ply?colors=scan&layers=wet").body == server.get(M + "/vertices.ply?layers=wet").body
+        assert read_ply(server.get(M + "/vertices.ply?layers=wet").body)[2][3:] == [
+            "wet",
+            "wet_valid",
+        ], "without `colors` as before"
+        assert (
+            server.get(M + "/vertices.ply?colors=scan&layers=wet").body
+            == server.get(M + "/vertices.ply?layers=wet").body
+        )
         check_as_seen(server, "colors=layers", 500, 6)
         # Those that are named, in their order, whether they are visible or not.
         server.ok("PATCH", M + "/layers/wet", {"visible": False})
@@ -81,12 +135,21 @@ def main():
         check_as_seen(server, "colors=layers&at=2", 500, 2, at=2)
         # Photos lie below.
         photo = png(64, 64, lambda x, y: (240, 120, 0, 255) if x < 32 else (0, 120, 240, 128))
-        server.ok("POST", M + "/looks?name=Light&visible=true", photo, headers={"Content-Type": "image/png"})
+        server.ok(
+            "POST",
+            M + "/looks?name=Light&visible=true",
+            photo,
+            headers={"Content-Type": "image/png"},
+        )
         check_as_seen(server, "colors=layers", 400, 6)
         server.ok("PATCH", M + "/looks/light", {"opacity": 0.25})
         check_as_seen(server, "colors=layers", 400, 6)
-        for query, status, field in (("colors=rainbow", 422, "colors"), ("colors=", 422, "colors"), ("colors=layers&layers=nothing", 404, "layers"),
-                                     ("colors=layers&at=99999", 422, "at")):
+        for query, status, field in (
+            ("colors=rainbow", 422, "colors"),
+            ("colors=", 422, "colors"),
+            ("colors=layers&layers=nothing", 404, "layers"),
+            ("colors=layers&at=99999", 422, "at"),
+        ):
             answer = server.get(f"{M}/vertices.ply?{query}")
             assert (answer.status, answer.json()["field"]) == (status, field), (query, answer)
         broken = {"mode": "categorical", "column": "nothing"}

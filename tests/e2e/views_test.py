@@ -25,14 +25,35 @@ def told(answer, status, field=None):
 def pictures(server, ask, camera, palette):
     """A view's picture is the frame of a model whose defaults are what the view keeps."""
     light = {"mode": "raking", "direction": [1, 0.5, 0.25]}
-    server.ok("POST", M + "/layers/cracks/edits", {"op": "fill", "mode": "where", "where": "true", "value": 3})
+    server.ok(
+        "POST",
+        M + "/layers/cracks/edits",
+        {"op": "fill", "mode": "where", "where": "true", "value": 3},
+    )
     own = {"opacity": 0.25, "palette": palette}
-    view = ask("ada", "POST", ALL, {"name": "Pictured", "camera": camera, "light": light, "looks": [],
-                                    "layers": [{"layer": "cracks", "visible": True, **own}, {"layer": "units", "visible": False}]}).json()
+    view = ask(
+        "ada",
+        "POST",
+        ALL,
+        {
+            "name": "Pictured",
+            "camera": camera,
+            "light": light,
+            "looks": [],
+            "layers": [
+                {"layer": "cracks", "visible": True, **own},
+                {"layer": "units", "visible": False},
+            ],
+        },
+    ).json()
     path = f"{ALL}/{view['slug']}"
 
     def frame(**more):
-        return server.ok("POST", M + "/frame", {"camera": camera, "light": light, "looks": [], "format": "png", **more}).body
+        return server.ok(
+            "POST",
+            M + "/frame",
+            {"camera": camera, "light": light, "looks": [], "format": "png", **more},
+        ).body
 
     def picture(who="vera", query="?format=png"):
         answer = ask(who, "GET", path + "/picture" + query)
@@ -49,20 +70,35 @@ def pictures(server, ask, camera, palette):
     server.ok("PATCH", M + "/layers/cracks", own)
     server.ok("PATCH", M + "/layers/units", {"visible": False})
     assert frame() == shown == picture()
-    server.ok("PATCH", M + "/layers/cracks", {"opacity": was["opacity"], "palette": was["palette"], "visible": False})
+    server.ok(
+        "PATCH",
+        M + "/layers/cracks",
+        {"opacity": was["opacity"], "palette": was["palette"], "visible": False},
+    )
     server.ok("PATCH", M + "/layers/units", {"visible": True})
-    assert frame() == frame(layers=["units"]) and picture() == shown, "what the view keeps comes before the defaults"
+    assert (
+        frame() == frame(layers=["units"]) and picture() == shown
+    ), "what the view keeps comes before the defaults"
 
     small = size(picture(query="?format=png&thumbnail=100"))
-    assert max(small) == 100 and abs(small[0] / small[1] - camera["width"] / camera["height"]) < 0.02, small
+    assert (
+        max(small) == 100 and abs(small[0] / small[1] - camera["width"] / camera["height"]) < 0.02
+    ), small
     jpeg = ask("vera", "GET", path + "/picture?thumbnail=64")
     assert jpeg.headers["Content-Type"] == "image/jpeg" and jpeg.body[:2] == b"\xff\xd8", jpeg
-    for query, field in (("?thumbnail=8", "thumbnail"), ("?thumbnail=1025", "thumbnail"), ("?thumbnail=x", "thumbnail"), ("?format=gif", "format")):
+    for query, field in (
+        ("?thumbnail=8", "thumbnail"),
+        ("?thumbnail=1025", "thumbnail"),
+        ("?thumbnail=x", "thumbnail"),
+        ("?format=gif", "format"),
+    ):
         told(ask("vera", "GET", path + "/picture" + query), 422, field)
     told(server.get(f"{ALL}/nothing/picture"), 404)
 
     server.ok("PATCH", M + "/layers/cracks", {"visibility": "private", "visible": True})
-    assert picture() == frame(layers=[]) and picture("carl") == shown, "who does not see a layer does not see it in a view"
+    assert (
+        picture() == frame(layers=[]) and picture("carl") == shown
+    ), "who does not see a layer does not see it in a view"
     server.ok("PATCH", M + "/layers/cracks", {"visibility": "public"})
     assert ask("ada", "DELETE", path).status == 204
 
@@ -72,28 +108,72 @@ def main():
         model = server.import_model(folded_grid(), "sheet.ply", name="Sheet", unit="mm")
         camera = {**camera_from(model, (0.3, 0.2, 1)), "section": [[1, 0, 0, -20]]}
         layer_of = {}
-        for name, more in (("Cracks", {"type": "u8"}), ("Units", {"type": "u16", "kind": "database", "columns": [{"name": "State", "kind": "text"}]})):
-            layer_of[name] = server.ok("POST", M + "/layers", {"name": name, "resolution": 2048, **more}).json()["id"]
-        tokens = {name: server.add_person(name, role) for name, role in
-                  (("vera", "viewer"), ("ada", "annotator"), ("bob", "annotator"), ("carl", "curator"))}
+        for name, more in (
+            ("Cracks", {"type": "u8"}),
+            (
+                "Units",
+                {"type": "u16", "kind": "database", "columns": [{"name": "State", "kind": "text"}]},
+            ),
+        ):
+            layer_of[name] = server.ok(
+                "POST", M + "/layers", {"name": name, "resolution": 2048, **more}
+            ).json()["id"]
+        tokens = {
+            name: server.add_person(name, role)
+            for name, role in (
+                ("vera", "viewer"),
+                ("ada", "annotator"),
+                ("bob", "annotator"),
+                ("carl", "curator"),
+            )
+        }
 
         def ask(who, method, path, body=None, **more):
             return server.request(method, path, body, token=tokens[who], **more)
 
-        palette = {"mode": "categorical", "points": [{"at": 3, "color": "#d55e00", "label": "Crack"}]}
-        shown = {"camera": camera, "light": {"mode": "raking", "direction": [1, 0.5, 0.25]},
-                 "layers": [{"layer": "cracks", "visible": True, "opacity": 0.25, "palette": palette},
-                            {"layer": "units", "visible": False, "highlight": {"filter": "state = 'loose'", "isolate": True}}], "looks": []}
+        palette = {
+            "mode": "categorical",
+            "points": [{"at": 3, "color": "#d55e00", "label": "Crack"}],
+        }
+        shown = {
+            "camera": camera,
+            "light": {"mode": "raking", "direction": [1, 0.5, 0.25]},
+            "layers": [
+                {"layer": "cracks", "visible": True, "opacity": 0.25, "palette": palette},
+                {
+                    "layer": "units",
+                    "visible": False,
+                    "highlight": {"filter": "state = 'loose'", "isolate": True},
+                },
+            ],
+            "looks": [],
+        }
         with LiveClient(server, "sheet") as live:
             live.hello()
-            made = ask("ada", "POST", ALL, {"name": "Westwand, größer", "text": "Flaking\nof 2019", **shown})
+            made = ask(
+                "ada",
+                "POST",
+                ALL,
+                {"name": "Westwand, größer", "text": "Flaking\nof 2019", **shown},
+            )
             assert made.status == 201, made
             view = made.json()
             event = live.receive_until("view")
-            assert event == {"op": "view", "event": "created", "view": view["id"], "user": "ada"}, event
+            assert event == {
+                "op": "view",
+                "event": "created",
+                "view": view["id"],
+                "user": "ada",
+            }, event
         slug = view["slug"]
-        assert made.headers["Location"] == f"/api/v1{ALL}/{slug}" and made.headers["ETag"] == '"v1"', made.headers
-        assert view["user"] == "ada" and view["name"] == "Westwand, größer" and view["text"] == "Flaking\nof 2019"
+        assert (
+            made.headers["Location"] == f"/api/v1{ALL}/{slug}" and made.headers["ETag"] == '"v1"'
+        ), made.headers
+        assert (
+            view["user"] == "ada"
+            and view["name"] == "Westwand, größer"
+            and view["text"] == "Flaking\nof 2019"
+        )
         for number, name in enumerate(("Cracks", "Units")):  # the same, by ids
             shown["layers"][number]["layer"] = layer_of[name]
         assert {part: view[part] for part in shown} == shown, view
@@ -101,37 +181,75 @@ def main():
         # Everybody reads them, by slug and by id; a second one of the name gets a slug of its own.
         for who in tokens:
             assert ask(who, "GET", ALL).json() == {"views": [view], "total": 1}
-            assert ask(who, "GET", f"{ALL}/{view['id']}").json() == ask(who, "GET", f"{ALL}/{slug}").json() == view
+            assert (
+                ask(who, "GET", f"{ALL}/{view['id']}").json()
+                == ask(who, "GET", f"{ALL}/{slug}").json()
+                == view
+            )
         tag = ask("vera", "GET", f"{ALL}/{slug}").headers["ETag"]
         assert ask("vera", "GET", f"{ALL}/{slug}", headers={"If-None-Match": tag}).status == 304
         told(ask("vera", "POST", ALL, {"name": "Mine", "camera": camera}), 403)
         key = {"Idempotency-Key": str(uuid.uuid4())}
-        second = ask("bob", "POST", ALL, {"name": view["name"], "camera": camera}, headers=key).json()
-        assert ask("bob", "POST", ALL, {"name": view["name"], "camera": camera}, headers=key).json() == second
-        assert second["slug"] == slug + "-2" and second["layers"] == [] and "looks" not in second and second["light"]["mode"] == "museum", second
+        second = ask(
+            "bob", "POST", ALL, {"name": view["name"], "camera": camera}, headers=key
+        ).json()
+        assert (
+            ask("bob", "POST", ALL, {"name": view["name"], "camera": camera}, headers=key).json()
+            == second
+        )
+        assert (
+            second["slug"] == slug + "-2"
+            and second["layers"] == []
+            and "looks" not in second
+            and second["light"]["mode"] == "museum"
+        ), second
         page = server.get(ALL + "?limit=1&offset=1")
-        assert page.json()["views"] == [second] and page.json()["total"] == 2 and 'rel="prev"' in page.headers["Link"], page
+        assert (
+            page.json()["views"] == [second]
+            and page.json()["total"] == 2
+            and 'rel="prev"' in page.headers["Link"]
+        ), page
 
         # Who made one, and curators, change it; the slug stays.
         told(ask("bob", "PATCH", f"{ALL}/{slug}", {"name": "Bob's"}), 403)
         told(ask("bob", "DELETE", f"{ALL}/{slug}"), 403)
         told(ask("vera", "DELETE", f"{ALL}/{slug}"), 403)
-        named = ask("ada", "PATCH", f"{ALL}/{slug}", {"name": "East"}, headers={"If-Match": '"v1"'}).json()
+        named = ask(
+            "ada", "PATCH", f"{ALL}/{slug}", {"name": "East"}, headers={"If-Match": '"v1"'}
+        ).json()
         assert named == {**view, "name": "East", "version": 2}, named
-        told(ask("carl", "PATCH", f"{ALL}/{slug}", {"name": "North"}, headers={"If-Match": '"v1"'}), 412)
+        told(
+            ask("carl", "PATCH", f"{ALL}/{slug}", {"name": "North"}, headers={"If-Match": '"v1"'}),
+            412,
+        )
         other = camera_from(model, (-0.3, 0.1, 1))
         turned = ask("carl", "PATCH", f"{ALL}/{slug}", {"camera": other}).json()
-        assert turned["camera"] == other and turned["layers"] == [] and turned["name"] == "East" and turned["user"] == "ada", turned
+        assert (
+            turned["camera"] == other
+            and turned["layers"] == []
+            and turned["name"] == "East"
+            and turned["user"] == "ada"
+        ), turned
 
         # What cannot be shown is refused, and named.
         singular = {**camera, "view": [0] * 16}
-        for body, field in (({"camera": singular}, "camera.view"), ({"camera": {**camera, "width": 0}}, "camera.width"),
-                            ({"layers": [{"layer": "cracks"}, {"layer": "nothing"}]}, "layers[1].layer"),
-                            ({"layers": [{"layer": "cracks", "opacity": 2}]}, "layers[0].opacity"),
-                            ({"layers": [{"layer": "cracks", "highlight": {"keys": [1]}}]}, "layers[0].highlight"),
-                            ({"layers": [{"layer": "units", "highlight": {"filter": "state = "}}]}, "layers[0].highlight.filter"),
-                            ({"looks": [{"look": "infrared"}]}, "looks[0].look"), ({"light": {"mode": "moon"}}, "light.mode"),
-                            ({"name": ""}, "name"), ({"name": "a\u0000b"}, None), ({"text": "x" * 10_001}, "text"), ({"nothing": 1}, None)):
+        for body, field in (
+            ({"camera": singular}, "camera.view"),
+            ({"camera": {**camera, "width": 0}}, "camera.width"),
+            ({"layers": [{"layer": "cracks"}, {"layer": "nothing"}]}, "layers[1].layer"),
+            ({"layers": [{"layer": "cracks", "opacity": 2}]}, "layers[0].opacity"),
+            ({"layers": [{"layer": "cracks", "highlight": {"keys": [1]}}]}, "layers[0].highlight"),
+            (
+                {"layers": [{"layer": "units", "highlight": {"filter": "state = "}}]},
+                "layers[0].highlight.filter",
+            ),
+            ({"looks": [{"look": "infrared"}]}, "looks[0].look"),
+            ({"light": {"mode": "moon"}}, "light.mode"),
+            ({"name": ""}, "name"),
+            ({"name": "a\u0000b"}, None),
+            ({"text": "x" * 10_001}, "text"),
+            ({"nothing": 1}, None),
+        ):
             answer = ask("ada", "POST", ALL, {"name": "Bad", "camera": camera, **body})
             assert answer.status in (400, 404, 422), answer
             assert field is None or answer.json().get("field") == field, (body, answer)
@@ -144,20 +262,37 @@ def main():
 
         # What names a column that is not there, or not for who asks, is left out.
         server.ok("PATCH", "/tables/units/columns/state", {"visibility": "private"})
-        back = ask("ada", "PATCH", f"{ALL}/{slug}", {key: shown[key] for key in ("camera", "light", "layers", "looks")}).json()
+        back = ask(
+            "ada",
+            "PATCH",
+            f"{ALL}/{slug}",
+            {key: shown[key] for key in ("camera", "light", "layers", "looks")},
+        ).json()
         assert "highlight" not in back["layers"][1] and "palette" in back["layers"][0], back
         assert ask("carl", "GET", f"{ALL}/{slug}").json()["layers"][1] == shown["layers"][1]
         server.ok("PATCH", M + "/layers/cracks", {"visibility": "private"})
-        assert [each["layer"] for each in ask("vera", "GET", f"{ALL}/{slug}").json()["layers"]] == [layer_of["Units"]]
+        assert [each["layer"] for each in ask("vera", "GET", f"{ALL}/{slug}").json()["layers"]] == [
+            layer_of["Units"]
+        ]
         assert len(ask("carl", "GET", ALL).json()["views"][0]["layers"]) == 2
-        for of, now in ((M + "/layers/cracks", "public"), ("/tables/units/columns/state", "public")):
+        for of, now in (
+            (M + "/layers/cracks", "public"),
+            ("/tables/units/columns/state", "public"),
+        ):
             server.ok("PATCH", of, {"visibility": now})
 
         # A layer that goes is left out; a model takes its views along.
-        back = ask("ada", "PATCH", f"{ALL}/{slug}", {key: shown[key] for key in ("camera", "light", "layers", "looks")}).json()
+        back = ask(
+            "ada",
+            "PATCH",
+            f"{ALL}/{slug}",
+            {key: shown[key] for key in ("camera", "light", "layers", "looks")},
+        ).json()
         assert [each["layer"] for each in back["layers"]] == list(layer_of.values())
         server.ok("DELETE", M + "/layers/cracks")
-        assert [each["layer"] for each in server.get(f"{ALL}/{slug}").json()["layers"]] == [layer_of["Units"]]
+        assert [each["layer"] for each in server.get(f"{ALL}/{slug}").json()["layers"]] == [
+            layer_of["Units"]
+        ]
 
         # Over a restart; deleted by who made it; and who is deleted leaves no name.
         assert server.stop() == 0

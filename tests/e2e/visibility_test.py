@@ -9,23 +9,60 @@ from support.addresses import query
 from support.live_client import LAST_RECTANGLE, LiveClient
 from support.sql_reader import Reader, free_port
 from support.strata_server import StrataServer, wait_for
-from support.visibility_site import CELL, COLUMN, KEYS, LAYER, M, PNG, VALUE, doors_closed, leaks, make_site, names_unknown, sweep, words
+from support.visibility_site import (
+    CELL,
+    COLUMN,
+    KEYS,
+    LAYER,
+    PNG,
+    VALUE,
+    M,
+    doors_closed,
+    leaks,
+    make_site,
+    names_unknown,
+    sweep,
+    words,
+)
 
 
 def shows_through(server):
     """What more people see is not made of what fewer see, however it is tried."""
+
     def refused(status, method, path, body, field):
         answer = server.request(method, path, body)
-        assert answer.status == status and answer.json()["field"] == field and "show through" in answer.json()["title"], answer
+        assert (
+            answer.status == status
+            and answer.json()["field"] == field
+            and "show through" in answer.json()["title"]
+        ), answer
 
-    refused(422, "POST", M + "/layers", {"name": "Sum", "expression": f'"{LAYER}" + 1'}, "expression")
-    refused(422, "POST", M + "/layers", {"name": "Sum", "expression": f'if(finds."{COLUMN}" = \'x\', 1, 0)'}, "expression")
-    refused(422, "POST", f"{M}/layers/cracks/edits", {"op": "fill", "mode": "where", "where": f'"{LAYER}" > 0', "value": 1}, "where")
+    refused(
+        422, "POST", M + "/layers", {"name": "Sum", "expression": f'"{LAYER}" + 1'}, "expression"
+    )
+    refused(
+        422,
+        "POST",
+        M + "/layers",
+        {"name": "Sum", "expression": f"if(finds.\"{COLUMN}\" = 'x', 1, 0)"},
+        "expression",
+    )
+    refused(
+        422,
+        "POST",
+        f"{M}/layers/cracks/edits",
+        {"op": "fill", "mode": "where", "where": f'"{LAYER}" > 0', "value": 1},
+        "where",
+    )
     by_column = {"mode": "categorical", "points": [], "column": COLUMN}
     refused(422, "PATCH", M + "/layers/finds", {"palette": by_column}, "palette.column")
     server.ok("PATCH", f"{M}/layers/{KEYS}", {"palette": by_column})
     refused(422, "PATCH", f"{M}/layers/{KEYS}", {"visibility": "team"}, "palette.column")
-    server.ok("POST", M + "/layers", {"name": "Sum", "expression": f'"{LAYER}" + finds.depth', "visibility": "private"})
+    server.ok(
+        "POST",
+        M + "/layers",
+        {"name": "Sum", "expression": f'"{LAYER}" + finds.depth', "visibility": "private"},
+    )
     refused(422, "PATCH", M + "/layers/sum", {"visibility": "team"}, "expression")
     server.ok("PATCH", M + "/layers/sum", {"expression": "cracks + finds.depth"})
     server.ok("POST", M + "/layers/sum/compute")
@@ -35,37 +72,87 @@ def shows_through(server):
     server.ok("PATCH", M + "/layers/finds", {"palette": {**by_column, "column": "name"}})
     refused(409, "PATCH", "/tables/finds/columns/name", {"visibility": "private"}, "visibility")
     server.ok("DELETE", M + "/layers/sum")
-    for body in ({"visibility": "private", "name": "Both"}, {"visibility": "secret"}, {"visibility": None}):
+    for body in (
+        {"visibility": "private", "name": "Both"},
+        {"visibility": "secret"},
+        {"visibility": None},
+    ):
         assert server.request("PATCH", "/tables/finds/columns/depth", body).status == 422, body
-    assert server.post("/tables/finds/columns", {"name": "Must", "required": True, "visibility": "private"}).status == 422
+    assert (
+        server.post(
+            "/tables/finds/columns", {"name": "Must", "required": True, "visibility": "private"}
+        ).status
+        == 422
+    )
     for path in (M + "/layers/cracks", "/models/sheet"):
         assert server.request("PATCH", path, {"visibility": "hidden"}).status == 422
 
 
 def ladder(server, viewer, annotator, curator, public):
     """What each role sees of each kind of thing, as it changes; what was seen in the past is hidden, too."""
-    def seen(path):
-        return tuple(server.get(path, token=token).status == 200 for token in (viewer, annotator, curator))
 
-    by_visibility = {"public": (True, True, True), "team": (False, True, True), "private": (False, False, True)}
-    layer, column, file = M + "/layers/cracks", "/tables/finds/columns/depth", f"/attachments/{public['id']}"
+    def seen(path):
+        return tuple(
+            server.get(path, token=token).status == 200 for token in (viewer, annotator, curator)
+        )
+
+    by_visibility = {
+        "public": (True, True, True),
+        "team": (False, True, True),
+        "private": (False, False, True),
+    }
+    layer, column, file = (
+        M + "/layers/cracks",
+        "/tables/finds/columns/depth",
+        f"/attachments/{public['id']}",
+    )
     for visibility in ("team", "private", "public"):
         for path in (layer, column, file):
-            assert server.request("PATCH", path, {"visibility": visibility}, token=viewer).status in (403, 404)
-            assert server.request("PATCH", path, {"visibility": visibility}, token=annotator).status in (403, 404), path
+            assert server.request(
+                "PATCH", path, {"visibility": visibility}, token=viewer
+            ).status in (403, 404)
+            assert server.request(
+                "PATCH", path, {"visibility": visibility}, token=annotator
+            ).status in (403, 404), path
             server.ok("PATCH", path, {"visibility": visibility}, token=curator)
         expected = by_visibility[visibility]
-        assert seen(layer) == seen(layer + "/edits") == seen(layer + "/texels.npy") == seen(file) == seen(file + "?thumbnail=64") == expected, visibility
-        assert seen(column + "/classes") == seen(query("/tables/finds/records", sortby="depth")) == expected, visibility
+        assert (
+            seen(layer)
+            == seen(layer + "/edits")
+            == seen(layer + "/texels.npy")
+            == seen(file)
+            == seen(file + "?thumbnail=64")
+            == expected
+        ), visibility
+        assert (
+            seen(column + "/classes")
+            == seen(query("/tables/finds/records", sortby="depth"))
+            == expected
+        ), visibility
         for token, sees in zip((viewer, annotator, curator), expected):
-            assert ("depth" in server.get("/tables/finds/records/1?at=1", token=token).json()["values"]) == sees, visibility
-            assert ("plan.png" in str(server.get("/tables/finds/records/1/attachments", token=token).json())) == sees, visibility
+            assert (
+                "depth" in server.get("/tables/finds/records/1?at=1", token=token).json()["values"]
+            ) == sees, visibility
+            assert (
+                "plan.png"
+                in str(server.get("/tables/finds/records/1/attachments", token=token).json())
+            ) == sees, visibility
     # Who attaches a file sees it, and says who does.
-    mine = server.ok("POST", query("/tables/finds/records/2/attachments", name="mine.png", visibility="private"), PNG, token=annotator).json()["attachments"][0]
+    mine = server.ok(
+        "POST",
+        query("/tables/finds/records/2/attachments", name="mine.png", visibility="private"),
+        PNG,
+        token=annotator,
+    ).json()["attachments"][0]
     path = f"/attachments/{mine['id']}"
     assert seen(path) == (False, True, True)
     other = server.add_person("other", "annotator")
-    assert server.get(path, token=other).status == server.request("PATCH", path, {"visibility": "public"}, token=other).status == server.request("DELETE", path, token=other).status == 404
+    assert (
+        server.get(path, token=other).status
+        == server.request("PATCH", path, {"visibility": "public"}, token=other).status
+        == server.request("DELETE", path, token=other).status
+        == 404
+    )
     server.ok("PATCH", path, {"visibility": "team"}, token=annotator)
     assert server.get(path, token=other).status == 200 and seen(path) == (False, True, True)
     # A cell that is written by who does not see one of its files keeps it.
@@ -99,34 +186,77 @@ def still(connection):
 
 def live(server, viewer, annotator, camera, thread):
     """An open connection sees what it may from one moment to the next."""
+
     def message(connection, *ops):
         told = connection.receive_until(*ops)
-        assert not leaks(repr({key: value for key, value in told.items() if key != "payload"}).encode()), told
+        assert not leaks(
+            repr({key: value for key, value in told.items() if key != "payload"}).encode()
+        ), told
         return told
 
-    with LiveClient(server, "sheet", token=viewer) as eyes, LiveClient(server, "sheet", token=annotator) as hand:
+    with LiveClient(server, "sheet", token=viewer) as eyes, LiveClient(
+        server, "sheet", token=annotator
+    ) as hand:
         for connection in (eyes, hand):
             welcome = connection.hello(dpr=1, accept=["jpeg"])
-            assert not leaks(repr(welcome).encode()) and {layer["slug"] for layer in welcome["layers"]} == {"cracks", "finds"}, welcome
+            assert not leaks(repr(welcome).encode()) and {
+                layer["slug"] for layer in welcome["layers"]
+            } == {"cracks", "finds"}, welcome
             connection.send({"op": "camera", "seq": 1, "moving": False, **camera})
         before = still(eyes)
         # Edits of the secret layer are not told, and its records' cells neither.
-        server.ok("POST", f"{M}/layers/{LAYER}/edits", {"op": "fill", "mode": "where", "where": "x < 30", "value": VALUE})
+        server.ok(
+            "POST",
+            f"{M}/layers/{LAYER}/edits",
+            {"op": "fill", "mode": "where", "where": "x < 30", "value": VALUE},
+        )
         server.ok("PATCH", "/tables/finds/records/1", {"values": {COLUMN: CELL + " twice"}})
         for connection in (eyes, hand):
             told = message(connection, "record", "layer")
-            assert told["op"] == "record" and told["key"] == 1 and COLUMN not in told["record"]["values"], told
+            assert (
+                told["op"] == "record"
+                and told["key"] == 1
+                and COLUMN not in told["record"]["values"]
+            ), told
             connection.send({"op": "layers", "layers": [{"layer": LAYER, "visible": True}]})
             assert connection.receive_until("problem")["status"] == 404
-            connection.send({"op": "pick", "id": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b11", "camera": camera, "x": 320, "y": 240})
+            connection.send(
+                {
+                    "op": "pick",
+                    "id": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b11",
+                    "camera": camera,
+                    "x": 320,
+                    "y": 240,
+                }
+            )
             message(connection, "picked")
         # It becomes seen, and is gone again.
         server.ok("PATCH", f"{M}/layers/{LAYER}", {"visibility": "team"})
         shown = hand.receive_until("layer")
         assert shown["event"] == "created" and shown["layer"]["slug"] == LAYER, shown
-        assert hand.receive_until("comment")["event"] == "changed", "the thread about the layer is seen with it"
-        hand.send({"op": "stroke.begin", "id": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b01", "stroke": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b02", "layer": LAYER, "value": 1, "camera": camera, "radius_px": 8})
-        hand.send({"op": "stroke.extend", "id": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b03", "stroke": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b02", "n": 0, "path": [[300, 200], [310, 200]]})
+        assert (
+            hand.receive_until("comment")["event"] == "changed"
+        ), "the thread about the layer is seen with it"
+        hand.send(
+            {
+                "op": "stroke.begin",
+                "id": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b01",
+                "stroke": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b02",
+                "layer": LAYER,
+                "value": 1,
+                "camera": camera,
+                "radius_px": 8,
+            }
+        )
+        hand.send(
+            {
+                "op": "stroke.extend",
+                "id": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b03",
+                "stroke": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b02",
+                "n": 0,
+                "path": [[300, 200], [310, 200]],
+            }
+        )
         hand.receive_until("saved")
         server.ok("PATCH", f"{M}/layers/{LAYER}", {"visibility": "private"})
         gone = hand.receive_until("layer")
@@ -134,9 +264,21 @@ def live(server, viewer, annotator, camera, thread):
             gone = hand.receive_until("layer")
         assert gone["event"] == "deleted" and "layer" not in gone, gone
         told = hand.receive_until("comment")
-        assert told["event"] == "deleted" and told["comment_id"] == thread and "comment" not in told, told
-        hand.send({"op": "stroke.extend", "id": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b04", "stroke": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b02", "n": 1, "path": [[320, 200]]})
-        assert hand.receive_until("problem", "saved")["status"] == 404, "a stroke goes on over a layer that is not seen any more"
+        assert (
+            told["event"] == "deleted" and told["comment_id"] == thread and "comment" not in told
+        ), told
+        hand.send(
+            {
+                "op": "stroke.extend",
+                "id": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b04",
+                "stroke": "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b02",
+                "n": 1,
+                "path": [[320, 200]],
+            }
+        )
+        assert (
+            hand.receive_until("problem", "saved")["status"] == 404
+        ), "a stroke goes on over a layer that is not seen any more"
         server.ok("PATCH", f"{M}/layers/{LAYER}", {"visibility": "public"})
         shown = message_of_layer(eyes)
         assert shown["event"] == "created" and shown["layer"]["slug"] == LAYER, shown
@@ -155,10 +297,20 @@ def source(server, viewer, annotator, curator):
     doors = [M + "/source/sheet.ply", M + "/vertices.ply"]
     look = server.ok("POST", query(M + "/looks", name="UV"), PNG).json()["slug"]
     doors.append(f"{M}/looks/{look}/picture")
-    for least, expected in (("annotator", (403, 200, 200)), ("curator", (403, 403, 200)), ("viewer", (200, 200, 200)), ("annotator", (403, 200, 200))):
+    for least, expected in (
+        ("annotator", (403, 200, 200)),
+        ("curator", (403, 403, 200)),
+        ("viewer", (200, 200, 200)),
+        ("annotator", (403, 200, 200)),
+    ):
         assert server.ok("PATCH", M, {"source_download": least}).json()["source_download"] == least
         for door in doors:
-            assert tuple(server.get(door, token=token).status for token in (viewer, annotator, curator)) == expected, (least, door)
+            assert (
+                tuple(
+                    server.get(door, token=token).status for token in (viewer, annotator, curator)
+                )
+                == expected
+            ), (least, door)
         assert server.get(f"{M}/looks/{look}/picture?thumbnail=96", token=viewer).status == 200
     assert server.request("PATCH", M, {"source_download": "viewer"}, token=annotator).status == 403
     assert server.request("PATCH", M, {"source_download": "owner"}).status == 422
@@ -182,21 +334,31 @@ def main():
     port = free_port()
     with StrataServer(options=["--sql-listen", f"127.0.0.1:{port}"]) as server:
         camera, before, public, hidden, thread = make_site(server)
-        viewer, annotator, curator = (server.add_person(role, role) for role in ("viewer", "annotator", "curator"))
+        viewer, annotator, curator = (
+            server.add_person(role, role) for role in ("viewer", "annotator", "curator")
+        )
         words_of = words(server, public)
         answered, told = sweep(server, curator, words_of, camera)
         assert answered > 200 and len(told) > 15, (answered, sorted(told))
         print(f"curators: {answered} answers, secrets in {len(told)} operations", flush=True)
         for token, role in ((viewer, "viewer"), (annotator, "annotator")):
-            picture = server.ok("POST", M + "/frame", {"camera": camera, "format": "png"}, token=token).body
+            picture = server.ok(
+                "POST", M + "/frame", {"camera": camera, "format": "png"}, token=token
+            ).body
             assert picture == before, f"the picture of a {role} is another than without the secrets"
             answered, told = sweep(server, token, words_of, camera)
             assert answered > 150 and not told, (role, answered, told)
             named = names_unknown(server, token, camera)
             closed = doors_closed(server, token, words_of, hidden, thread)
             assert closed > 60, closed
-            print(f"{role}: {answered} answers without a secret, {closed} doors closed, {named} names unknown", flush=True)
-        assert server.ok("POST", M + "/frame", {"camera": camera, "format": "png"}, token=curator).body != before
+            print(
+                f"{role}: {answered} answers without a secret, {closed} doors closed, {named} names unknown",
+                flush=True,
+            )
+        assert (
+            server.ok("POST", M + "/frame", {"camera": camera, "format": "png"}, token=curator).body
+            != before
+        )
         undo_shows_nothing(server, viewer, annotator)
         live(server, viewer, annotator, camera, thread)
         sql(server, Reader(server, port))
@@ -205,7 +367,13 @@ def main():
         shows_through(server)
         server.ok("DELETE", f"{M}/layers/{LAYER}")
         for token, seen in ((viewer, False), (annotator, False), (curator, True)):
-            assert (str(thread) in [str(each["id"]) for each in server.get(M + "/comments", token=token).json()["comments"]]) == seen, "a thread outlives its layer"
+            assert (
+                str(thread)
+                in [
+                    str(each["id"])
+                    for each in server.get(M + "/comments", token=token).json()["comments"]
+                ]
+            ) == seen, "a thread outlives its layer"
         assert server.stop() == 0
         server.assert_clean_log()
 

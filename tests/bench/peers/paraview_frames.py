@@ -15,7 +15,7 @@ import time
 from paraview import simple
 from paraview.modules.vtkPVClientWeb import vtkPVWebApplication
 
-TURN_RAD = 0.008   # a picture, as Strata's viewers turn
+TURN_RAD = 0.008  # a picture, as Strata's viewers turn
 WARM_S = 1.0
 TICKS = os.sysconf("SC_CLK_TCK")
 
@@ -73,7 +73,9 @@ def main():
     mesh, view, center, radius = show(asked.mesh, width, height)
     app = vtkPVWebApplication()
     app.SetImageEncoding(0)  # bytes, not base64
-    used = lambda: seconds_of(os.getpid()) + (seconds_of(asked.screen_pid) if asked.screen_pid else 0)
+    used = lambda: seconds_of(os.getpid()) + (
+        seconds_of(asked.screen_pid) if asked.screen_pid else 0
+    )
     angle, times, sizes, begun, used_before = 0.7, [], [], None, 0.0
     first = time.monotonic()
     while begun is None or time.monotonic() - begun < asked.seconds:
@@ -88,12 +90,35 @@ def main():
         sizes.append(len(jpeg))
     seconds, cores = time.monotonic() - begun, (used() - used_before) / (time.monotonic() - begun)
     times.sort()
-    print("figures: " + json.dumps({
-        "seconds": seconds, "frames_per_s": len(times) / seconds, "cores": cores, "frames_per_cpu_s": len(times) / seconds / cores,
-        "bytes_a_frame": statistics.median(sizes), "triangles": mesh.GetDataInformation().GetNumberOfCells(),
-        "paraview": str(simple.GetParaViewVersion()), "renderer": str(view.GetRenderWindow().ReportCapabilities().split("OpenGL renderer string:")[1].split("\n")[0].strip()),
-        "camera_to_picture": {"ms_median": statistics.median(times), "ms_min": times[0], "ms_max": times[-1],
-                              "ms_p95": times[min(len(times) - 1, int(0.95 * len(times)))], "runs": len(times)}}), flush=True)
+    print(
+        "figures: "
+        + json.dumps(
+            {
+                "seconds": seconds,
+                "frames_per_s": len(times) / seconds,
+                "cores": cores,
+                "frames_per_cpu_s": len(times) / seconds / cores,
+                "bytes_a_frame": statistics.median(sizes),
+                "triangles": mesh.GetDataInformation().GetNumberOfCells(),
+                "paraview": str(simple.GetParaViewVersion()),
+                "renderer": str(
+                    view.GetRenderWindow()
+                    .ReportCapabilities()
+                    .split("OpenGL renderer string:")[1]
+                    .split("\n")[0]
+                    .strip()
+                ),
+                "camera_to_picture": {
+                    "ms_median": statistics.median(times),
+                    "ms_min": times[0],
+                    "ms_max": times[-1],
+                    "ms_p95": times[min(len(times) - 1, int(0.95 * len(times)))],
+                    "runs": len(times),
+                },
+            }
+        ),
+        flush=True,
+    )
 
 
 main()

@@ -5,17 +5,20 @@ import threading
 import time
 import urllib.parse
 
+from attempts.tools import FILL, L, M, T, statuses
 from support.process_memory import PeakGrowth
 from support.raw_http import raw_request
 from support.strata_server import LONG_S
-
-from attempts.tools import FILL, L, M, T, statuses
 
 JSON = {"Content-Type": "application/json"}
 
 
 def head(server, line, *fields, token=True):
-    fields = (f"Host: {server.host}:{server.port}",) + fields + ((f"Authorization: Bearer {server.token}",) if token else ())
+    fields = (
+        (f"Host: {server.host}:{server.port}",)
+        + fields
+        + ((f"Authorization: Bearer {server.token}",) if token else ())
+    )
     return ("\r\n".join((line + " HTTP/1.1",) + fields) + "\r\n\r\n").encode()
 
 
@@ -24,33 +27,115 @@ def status_of(answer):
 
 
 def heads(server, section):
-    answers = [raw_request(server, head(server, "GET /livez", "X: " + "y" * 20_000)), raw_request(server, head(server, "GET /" + "y" * 20_000)), raw_request(server, head(server, "GET /livez", *[f"X{n}: y" for n in range(2000)]))]
-    section.tried("A head of more than 8 KiB: one field, the address, 2000 fields", {status_of(answer) for answer in answers}, 431, "8 KiB a head")
-    doubled = [b"Content-Length: 4\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\nGET /livez HTTP/1.1\r\n\r\n", b"Content-Length: 4\r\nContent-Length: 40\r\n\r\n{}  GET /livez HTTP/1.1\r\n\r\n",
-               b"Content-Length : 4\r\n\r\n{}  GET /livez HTTP/1.1\r\n\r\n", b"Content-Length: -1\r\n\r\nGET /livez HTTP/1.1\r\n\r\n", b"Transfer-Encoding: chunked\r\n\r\n-1\r\nGET /livez HTTP/1.1\r\n\r\n", b"Transfer-Encoding: chunked\r\n\r\nfffffffffffffffff\r\n{}"]
-    answers = [raw_request(server, f"POST /api/v1/login HTTP/1.1\r\nHost: {server.host}\r\n".encode() + fields) for fields in doubled]
+    answers = [
+        raw_request(server, head(server, "GET /livez", "X: " + "y" * 20_000)),
+        raw_request(server, head(server, "GET /" + "y" * 20_000)),
+        raw_request(server, head(server, "GET /livez", *[f"X{n}: y" for n in range(2000)])),
+    ]
+    section.tried(
+        "A head of more than 8 KiB: one field, the address, 2000 fields",
+        {status_of(answer) for answer in answers},
+        431,
+        "8 KiB a head",
+    )
+    doubled = [
+        b"Content-Length: 4\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\nGET /livez HTTP/1.1\r\n\r\n",
+        b"Content-Length: 4\r\nContent-Length: 40\r\n\r\n{}  GET /livez HTTP/1.1\r\n\r\n",
+        b"Content-Length : 4\r\n\r\n{}  GET /livez HTTP/1.1\r\n\r\n",
+        b"Content-Length: -1\r\n\r\nGET /livez HTTP/1.1\r\n\r\n",
+        b"Transfer-Encoding: chunked\r\n\r\n-1\r\nGET /livez HTTP/1.1\r\n\r\n",
+        b"Transfer-Encoding: chunked\r\n\r\nfffffffffffffffff\r\n{}",
+    ]
+    answers = [
+        raw_request(
+            server, f"POST /api/v1/login HTTP/1.1\r\nHost: {server.host}\r\n".encode() + fields
+        )
+        for fields in doubled
+    ]
     assert all(answer.count(b"HTTP/1.1 ") == 1 for answer in answers), answers
-    section.tried("A second request hidden behind lengths that contradict each other (smuggling)", {status_of(answer) for answer in answers}, 400, "such a head or chunk is refused and the connection ended", f"{len(doubled)} of them")
-    unknown = [b"Transfer-Encoding: xchunked", b"Transfer-Encoding: chunked, identity", b"Transfer-Encoding: gzip, chunked", b"Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked"]
-    answers = [raw_request(server, f"POST /api/v1/login HTTP/1.1\r\nHost: {server.host}\r\n".encode() + field + b"\r\n\r\nGET /livez HTTP/1.1\r\nHost: x\r\n\r\n") for field in unknown]
+    section.tried(
+        "A second request hidden behind lengths that contradict each other (smuggling)",
+        {status_of(answer) for answer in answers},
+        400,
+        "such a head or chunk is refused and the connection ended",
+        f"{len(doubled)} of them",
+    )
+    unknown = [
+        b"Transfer-Encoding: xchunked",
+        b"Transfer-Encoding: chunked, identity",
+        b"Transfer-Encoding: gzip, chunked",
+        b"Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked",
+    ]
+    answers = [
+        raw_request(
+            server,
+            f"POST /api/v1/login HTTP/1.1\r\nHost: {server.host}\r\n".encode()
+            + field
+            + b"\r\n\r\nGET /livez HTTP/1.1\r\nHost: x\r\n\r\n",
+        )
+        for field in unknown
+    ]
     assert all(answer.count(b"HTTP/1.1 ") == 1 for answer in answers), answers
-    section.tried("A second request behind a transfer encoding that others may read differently (smuggling)", {status_of(answer) for answer in answers}, {400, 501}, "`chunked` alone is known; the connection is ended", f"{len(unknown)} of them")
+    section.tried(
+        "A second request behind a transfer encoding that others may read differently (smuggling)",
+        {status_of(answer) for answer in answers},
+        {400, 501},
+        "`chunked` alone is known; the connection is ended",
+        f"{len(unknown)} of them",
+    )
     hosts = [b"GET /livez HTTP/1.1\r\n\r\n", b"GET /livez HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n"]
-    section.tried("No host, and two", {status_of(raw_request(server, each)) for each in hosts}, 400, "a request names one")
-    odd = [b"nonsense\r\n\r\n", b"GET\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00", head(server, "GET http://elsewhere.example/"), head(server, "CONNECT elsewhere.example:80"), head(server, "TRACE /")]
-    section.tried("No HTTP, unknown methods, a request to be passed on to elsewhere", {status_of(answer) for answer in (raw_request(server, each) for each in odd) if answer}, {400, 405}, "it is no proxy, and TRACE is unknown")
+    section.tried(
+        "No host, and two",
+        {status_of(raw_request(server, each)) for each in hosts},
+        400,
+        "a request names one",
+    )
+    odd = [
+        b"nonsense\r\n\r\n",
+        b"GET\r\n\r\n",
+        b"GET / HTTP/9.9\r\n\r\n",
+        b"\x16\x03\x01\x02\x00\x01\x00",
+        head(server, "GET http://elsewhere.example/"),
+        head(server, "CONNECT elsewhere.example:80"),
+        head(server, "TRACE /"),
+    ]
+    section.tried(
+        "No HTTP, unknown methods, a request to be passed on to elsewhere",
+        {status_of(answer) for answer in (raw_request(server, each) for each in odd) if answer},
+        {400, 405},
+        "it is no proxy, and TRACE is unknown",
+    )
 
 
 def refused_first(server, method, path, size, token=True):
     """Whether a body of that length is refused before any of it was sent."""
-    return status_of(raw_request(server, head(server, f"{method} /api/v1{path}", "Expect: 100-continue", f"Content-Length: {size}", token=token)))
+    return status_of(
+        raw_request(
+            server,
+            head(
+                server,
+                f"{method} /api/v1{path}",
+                "Expect: 100-continue",
+                f"Content-Length: {size}",
+                token=token,
+            ),
+        )
+    )
 
 
 def endless(server, path, token=True):
     """A body in chunks that goes on until the server has had enough: its answer, and the bytes sent."""
     chunk = b"10000\r\n" + b" " * 65536 + b"\r\n"
     with socket.create_connection((server.host, server.port), timeout=LONG_S) as link:
-        link.sendall(head(server, "POST /api/v1" + path, "Transfer-Encoding: chunked", "Content-Type: application/json", token=token))
+        link.sendall(
+            head(
+                server,
+                "POST /api/v1" + path,
+                "Transfer-Encoding: chunked",
+                "Content-Type: application/json",
+                token=token,
+            )
+        )
         answer, heard = [b""], threading.Event()
 
         def listen():
@@ -80,37 +165,124 @@ def endless(server, path, token=True):
 
 
 def bodies(server, section):
-    declared = {refused_first(server, "POST", "/login", 2 << 20, token=False), refused_first(server, "POST", L + "/edits", 2 << 20), refused_first(server, "PUT", L + "/texels.npy", 3 << 30), refused_first(server, "POST", "/models?filename=a.ply", 9 << 30)}
-    section.tried("A length over the limit: sign-in, an edit, a raster, a scan", declared, 413, "refused by its head, before anything is read: 1 MiB of JSON, a raster of its layer, 8 GiB of a scan")
-    section.tried("A large body by somebody who may not send it", {refused_first(server, "POST", "/models?filename=a.ply", 8 << 30, token=False), refused_first(server, "PUT", L + "/texels.npy", 1 << 20, token=False)}, 401, "who asks is looked at before the body is read, and again after it")
+    declared = {
+        refused_first(server, "POST", "/login", 2 << 20, token=False),
+        refused_first(server, "POST", L + "/edits", 2 << 20),
+        refused_first(server, "PUT", L + "/texels.npy", 3 << 30),
+        refused_first(server, "POST", "/models?filename=a.ply", 9 << 30),
+    }
+    section.tried(
+        "A length over the limit: sign-in, an edit, a raster, a scan",
+        declared,
+        413,
+        "refused by its head, before anything is read: 1 MiB of JSON, a raster of its layer, 8 GiB of a scan",
+    )
+    section.tried(
+        "A large body by somebody who may not send it",
+        {
+            refused_first(server, "POST", "/models?filename=a.ply", 8 << 30, token=False),
+            refused_first(server, "PUT", L + "/texels.npy", 1 << 20, token=False),
+        },
+        401,
+        "who asks is looked at before the body is read, and again after it",
+    )
     with PeakGrowth(server) as growth:
         answers = [endless(server, "/login", token=False), endless(server, L + "/edits")]
-    section.tried("A body in chunks without end: to sign in, and as an edit", {status for status, _ in answers}, 413, "counted while it comes", f"refused within {max(sent for _, sent in answers) >> 20} MiB; {growth.checked(64)}")
+    section.tried(
+        "A body in chunks without end: to sign in, and as an edit",
+        {status for status, _ in answers},
+        413,
+        "counted while it comes",
+        f"refused within {max(sent for _, sent in answers) >> 20} MiB; {growth.checked(64)}",
+    )
     with PeakGrowth(server) as growth:
-        nested = [server.post(path, b'{"a":' + b"[" * 500_000 + b"]" * 500_000 + b"}", headers=JSON) for path in ("/projects", L + "/edits", T + "/records")]
+        nested = [
+            server.post(path, b'{"a":' + b"[" * 500_000 + b"]" * 500_000 + b"}", headers=JSON)
+            for path in ("/projects", L + "/edits", T + "/records")
+        ]
         nested += [server.post("/login", b"[" * 1_000_000, headers=JSON, token=False)]
-    section.tried("JSON nested 500 000 deep, and a million brackets that never close", statuses(nested), 422, "32 objects and lists within each other", growth.checked(128))
+    section.tried(
+        "JSON nested 500 000 deep, and a million brackets that never close",
+        statuses(nested),
+        422,
+        "32 objects and lists within each other",
+        growth.checked(128),
+    )
 
 
 def nested_texts(server, section):
-    conditions = ["(" * 2000 + "true" + ")" * 2000, "not " * 1000 + "true", "-" * 3000 + "1 > 0", "+".join(["1"] * 2000) + " > 0", "(" * 100_000]
+    conditions = [
+        "(" * 2000 + "true" + ")" * 2000,
+        "not " * 1000 + "true",
+        "-" * 3000 + "1 > 0",
+        "+".join(["1"] * 2000) + " > 0",
+        "(" * 100_000,
+    ]
     answers = [server.post(L + "/edits", {**FILL, "where": each}) for each in conditions]
-    answers += [server.get(T + "/records?filter=" + urllib.parse.quote(each)) for each in ("(" * 500 + "note = 'x'" + ")" * 500, "not " * 400 + "note = 'x'")]
-    section.tried("Conditions and filters nested a thousand deep, or 100 KB long", statuses(answers), 422, "64 within each other, 4096 characters")
+    answers += [
+        server.get(T + "/records?filter=" + urllib.parse.quote(each))
+        for each in ("(" * 500 + "note = 'x'" + ")" * 500, "not " * 400 + "note = 'x'")
+    ]
+    section.tried(
+        "Conditions and filters nested a thousand deep, or 100 KB long",
+        statuses(answers),
+        422,
+        "64 within each other, 4096 characters",
+    )
     geo = {"Content-Type": "application/geo+json"}
-    maps = [b'{"type":"GeometryCollection","geometries":[' * 5000 + b"]}" * 5000, b'{"type":"Polygon","coordinates":' + b"[" * 200_000 + b"]" * 200_000 + b"}"]
+    maps = [
+        b'{"type":"GeometryCollection","geometries":[' * 5000 + b"]}" * 5000,
+        b'{"type":"Polygon","coordinates":' + b"[" * 200_000 + b"]" * 200_000 + b"}",
+    ]
     answers = [server.post(L + "/polygons?value=1&along=-z", each, headers=geo) for each in maps]
     rdf = b'<?xml version="1.0"?>%s<rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#" xmlns:s="http://www.w3.org/2004/02/skos/core#">%s</rdf:RDF>'
-    for kind, body in (("text/turtle", b"<a> <b> " + b"[ <b> " * 20_000 + b"<c>" + b"]" * 20_000 + b" ."), ("application/rdf+xml", rdf % (b"", b"<s:Concept><s:broader>" * 20_000 + b"</s:broader></s:Concept>" * 20_000))):
-        answers.append(server.post("/projects/default/terms?name=Deep", body, headers={"Content-Type": kind}))
-    section.tried("GeoJSON, Turtle and RDF/XML nested 5000 deep and more", statuses(answers), 422, "each reader has a depth of its own")
-    concept = b'<s:Concept rdf:about="http://a/b"><s:prefLabel xml:lang="en">%s</s:prefLabel></s:Concept>'
-    entities = b"<!DOCTYPE r [<!ENTITY a \"" + b"x" * 1000 + b"\">" + b"".join(b"<!ENTITY %c \"%s\">" % (98 + n, b"&%c;" % (97 + n) * 30) for n in range(8)) + b"]>"
+    for kind, body in (
+        ("text/turtle", b"<a> <b> " + b"[ <b> " * 20_000 + b"<c>" + b"]" * 20_000 + b" ."),
+        (
+            "application/rdf+xml",
+            rdf % (b"", b"<s:Concept><s:broader>" * 20_000 + b"</s:broader></s:Concept>" * 20_000),
+        ),
+    ):
+        answers.append(
+            server.post("/projects/default/terms?name=Deep", body, headers={"Content-Type": kind})
+        )
+    section.tried(
+        "GeoJSON, Turtle and RDF/XML nested 5000 deep and more",
+        statuses(answers),
+        422,
+        "each reader has a depth of its own",
+    )
+    concept = (
+        b'<s:Concept rdf:about="http://a/b"><s:prefLabel xml:lang="en">%s</s:prefLabel></s:Concept>'
+    )
+    entities = (
+        b'<!DOCTYPE r [<!ENTITY a "'
+        + b"x" * 1000
+        + b'">'
+        + b"".join(b'<!ENTITY %c "%s">' % (98 + n, b"&%c;" % (97 + n) * 30) for n in range(8))
+        + b"]>"
+    )
     with PeakGrowth(server) as growth:
-        answers = [server.post("/projects/default/terms?name=Files", rdf % (kind, concept % b"&i;"), headers={"Content-Type": "application/rdf+xml"})
-                   for kind in (entities, b'<!DOCTYPE r [<!ENTITY i SYSTEM "file:///etc/passwd">]>', b'<!DOCTYPE r [<!ENTITY i SYSTEM "http://127.0.0.1:1/x">]>')]
+        answers = [
+            server.post(
+                "/projects/default/terms?name=Files",
+                rdf % (kind, concept % b"&i;"),
+                headers={"Content-Type": "application/rdf+xml"},
+            )
+            for kind in (
+                entities,
+                b'<!DOCTYPE r [<!ENTITY i SYSTEM "file:///etc/passwd">]>',
+                b'<!DOCTYPE r [<!ENTITY i SYSTEM "http://127.0.0.1:1/x">]>',
+            )
+        ]
     assert not any(b"root:" in answer.body for answer in answers), answers
-    section.tried("XML entities that grow a billion times, or read a file or an address", statuses(answers), 422, "entities of more than plain text are refused before the parser sees them", growth.checked(64))
+    section.tried(
+        "XML entities that grow a billion times, or read a file or an address",
+        statuses(answers),
+        422,
+        "entities of more than plain text are refused before the parser sees them",
+        growth.checked(64),
+    )
     assert server.get("/tables/files").status == server.get("/tables/deep").status == 404
 
 
@@ -119,7 +291,9 @@ def flood(server, section):
     ask, start = head(server, "GET /livez", token=False), time.monotonic()
     with socket.create_connection((server.host, server.port), timeout=LONG_S) as link:
         answers = []
-        listener = threading.Thread(target=lambda: answers.extend(iter(lambda: link.recv(1 << 16), b"")))
+        listener = threading.Thread(
+            target=lambda: answers.extend(iter(lambda: link.recv(1 << 16), b""))
+        )
         listener.start()
         for _ in range(60):
             link.sendall(ask * 100)
@@ -127,9 +301,15 @@ def flood(server, section):
         listener.join()
     heard = [int(status) for status in re.findall(rb"HTTP/1\.1 (\d+) ", b"".join(answers))]
     assert len(heard) == 6000 and set(heard) <= {200, 429}, (len(heard), set(heard))
-    most = 2000 + 1000 * (time.monotonic() - start)  # a machine that is busy does not answer faster than that anyway
-    section.tried("6000 requests on one connection without waiting", "200 as far as its rate goes, else 429" if heard.count(200) <= most else "200", "200 as far as its rate goes, else 429",
-                  "1000 a second and 2000 at once on a connection; 256 requests wait for a worker at most (503)", f"{heard.count(200) // 100 * 100} answered")
+    # a machine that is busy does not answer faster than that anyway
+    most = 2000 + 1000 * (time.monotonic() - start)
+    section.tried(
+        "6000 requests on one connection without waiting",
+        "200 as far as its rate goes, else 429" if heard.count(200) <= most else "200",
+        "200 as far as its rate goes, else 429",
+        "1000 a second and 2000 at once on a connection; 256 requests wait for a worker at most (503)",
+        f"{heard.count(200) // 100 * 100} answered",
+    )
     assert server.get(M).status == 200
 
 

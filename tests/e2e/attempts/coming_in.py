@@ -1,30 +1,74 @@
 """Coming in without a right to: nothing, what has ended, what was copied, and more than a token may."""
+from attempts.tools import FILL, L, M, body_for, calls, person, statuses, upgraded
 from support.browsers import PASSWORD, Browser, join, secret_of
 from support.strata_server import wait_for
 
-from attempts.tools import FILL, L, M, body_for, calls, person, statuses, upgraded
-
 
 def nobody(server, section):
-    for what, token in (("no session and no token", False), ("a token that nobody was given", "x" * 43), ("a token of 5000 characters", "x" * 5000)):
-        answers = [server.request(method, path, body_for(method), token=token) for method, path in calls(server)]
-        section.tried(f"Every call of the contract with {what}", statuses(answers), 401, "the secret is asked for before the address is looked at", f"{len(answers)} calls")
-    headers = [{"Authorization": "Basic b3duZXI6b3duZXI="}, {"Authorization": "Bearer "}, {"Authorization": "Bearer null"}, {"Cookie": "strata_session="}, {"Cookie": "strata_session=" + server.token + "x"}]
-    section.tried("Another kind of authorization, an empty one, a made-up cookie", statuses(server.get(M, token=False, headers=each) for each in headers), 401, "one scheme and one cookie count")
-    in_address = [server.get(f"{M}?{name}={server.token}", token=False) for name in ("token", "access_token", "key")]
-    section.tried("The owner's own token, but in the address", statuses(in_address), 401, "secrets in addresses end up in logs: none is taken from there")
-    section.tried("Upgrade to a live connection with none, an unknown and an empty secret", {upgraded(server, token=""), upgraded(server, token="x" * 43), upgraded(server, token="", cookie="strata_session=", origin=server.url)}, 401,
-                  "asked before the upgrade")
+    for what, token in (
+        ("no session and no token", False),
+        ("a token that nobody was given", "x" * 43),
+        ("a token of 5000 characters", "x" * 5000),
+    ):
+        answers = [
+            server.request(method, path, body_for(method), token=token)
+            for method, path in calls(server)
+        ]
+        section.tried(
+            f"Every call of the contract with {what}",
+            statuses(answers),
+            401,
+            "the secret is asked for before the address is looked at",
+            f"{len(answers)} calls",
+        )
+    headers = [
+        {"Authorization": "Basic b3duZXI6b3duZXI="},
+        {"Authorization": "Bearer "},
+        {"Authorization": "Bearer null"},
+        {"Cookie": "strata_session="},
+        {"Cookie": "strata_session=" + server.token + "x"},
+    ]
+    section.tried(
+        "Another kind of authorization, an empty one, a made-up cookie",
+        statuses(server.get(M, token=False, headers=each) for each in headers),
+        401,
+        "one scheme and one cookie count",
+    )
+    in_address = [
+        server.get(f"{M}?{name}={server.token}", token=False)
+        for name in ("token", "access_token", "key")
+    ]
+    section.tried(
+        "The owner's own token, but in the address",
+        statuses(in_address),
+        401,
+        "secrets in addresses end up in logs: none is taken from there",
+    )
+    section.tried(
+        "Upgrade to a live connection with none, an unknown and an empty secret",
+        {
+            upgraded(server, token=""),
+            upgraded(server, token="x" * 43),
+            upgraded(server, token="", cookie="strata_session=", origin=server.url),
+        },
+        401,
+        "asked before the upgrade",
+    )
 
 
 def doors(server, cookie):
     """Reading, writing and the live connection with a copied session."""
     headers = {"Cookie": cookie, "Origin": server.url}
-    return {server.get(M, token=False, headers=headers).status, server.post(L + "/edits", FILL, token=False, headers=headers).status, upgraded(server, token="", cookie=cookie, origin=server.url)}
+    return {
+        server.get(M, token=False, headers=headers).status,
+        server.post(L + "/edits", FILL, token=False, headers=headers).status,
+        upgraded(server, token="", cookie=cookie, origin=server.url),
+    }
 
 
 def replayed_sessions(server, section):
     """Who copied somebody's cookie tries it after the session has ended."""
+
     def other_browser_ends_it(browser, user):
         other = Browser(server)
         assert other.sign_in(user, PASSWORD).status == 200
@@ -33,14 +77,34 @@ def replayed_sessions(server, section):
                 other.ok("DELETE", f"/me/sessions/{session['id']}")
 
     def expires(_, user):
-        server.sql(f"UPDATE tokens SET expires = now() - interval '1 second' WHERE kind = 'session' AND user_name = '{user}'")
+        server.sql(
+            f"UPDATE tokens SET expires = now() - interval '1 second' WHERE kind = 'session' AND user_name = '{user}'"
+        )
         wait_for(lambda: doors(server, copied) == {401}, "the session's age to count")
 
-    ends = [("its person signed out", "by1", lambda browser, user: browser.ok("POST", "/logout")),
-            ("it was ended from another browser", "by2", other_browser_ends_it),
-            ("a new password was chosen", "by3", lambda browser, user: join(server, server.ok("POST", f"/users/{user}/invite").json(), "twelve otters and a heron")),
-            ("its person was disabled", "by4", lambda browser, user: server.ok("PATCH", f"/users/{user}", {"disabled": True})),
-            ("its person was deleted", "by5", lambda browser, user: server.ok("DELETE", f"/users/{user}"))]
+    ends = [
+        ("its person signed out", "by1", lambda browser, user: browser.ok("POST", "/logout")),
+        ("it was ended from another browser", "by2", other_browser_ends_it),
+        (
+            "a new password was chosen",
+            "by3",
+            lambda browser, user: join(
+                server,
+                server.ok("POST", f"/users/{user}/invite").json(),
+                "twelve otters and a heron",
+            ),
+        ),
+        (
+            "its person was disabled",
+            "by4",
+            lambda browser, user: server.ok("PATCH", f"/users/{user}", {"disabled": True}),
+        ),
+        (
+            "its person was deleted",
+            "by5",
+            lambda browser, user: server.ok("DELETE", f"/users/{user}"),
+        ),
+    ]
     answers = set()
     for _, user, end in ends:
         browser = person(server, user)
@@ -48,16 +112,33 @@ def replayed_sessions(server, section):
         assert doors(server, copied) == {200, 101}
         end(browser, user)
         answers |= doors(server, copied)
-    section.tried("A copied session, after " + ", ".join(what for what, *_ in ends) + " (read, write, upgrade)", answers, 401, "sessions stand in the database by their digest, and what is remembered of them is forgotten with each change of accounts")
+    section.tried(
+        "A copied session, after "
+        + ", ".join(what for what, *_ in ends)
+        + " (read, write, upgrade)",
+        answers,
+        401,
+        "sessions stand in the database by their digest, and what is remembered of them is forgotten with each change of accounts",
+    )
     browser = person(server, "by6")
     copied = browser.cookie
     expires(browser, "by6")
-    section.tried("The same after its 90 days", doors(server, copied), 401, "the age is looked up again at the latest after 10 s")
+    section.tried(
+        "The same after its 90 days",
+        doors(server, copied),
+        401,
+        "the age is looked up again at the latest after 10 s",
+    )
     fixed = Browser(server)
     fixed.cookie = "strata_session=" + "f" * 43
     given = fixed.request("POST", "/login", {"user": "by1", "password": PASSWORD})
     assert given.status == 200
-    section.tried("A session that the attacker chose and planted before somebody signs in", doors(server, "strata_session=" + "f" * 43), 401, "each sign-in makes a secret of its own")
+    section.tried(
+        "A session that the attacker chose and planted before somebody signs in",
+        doors(server, "strata_session=" + "f" * 43),
+        401,
+        "each sign-in makes a secret of its own",
+    )
 
 
 def script_tokens(server, section):
@@ -67,33 +148,100 @@ def script_tokens(server, section):
         return ida.ok("POST", "/me/tokens", {"name": "t", **asked}).json()
 
     def tried(secret):
-        return {server.get(M, token=secret).status, server.post(L + "/edits", FILL, token=secret).status, upgraded(server, token=secret)}
+        return {
+            server.get(M, token=secret).status,
+            server.post(L + "/edits", FILL, token=secret).status,
+            upgraded(server, token=secret),
+        }
 
     made = token()
     assert tried(made["secret"]) == {200, 101}
     ida.ok("DELETE", f"/me/tokens/{made['token']['id']}")
-    section.tried("A script's token after it was revoked (read, write, upgrade)", tried(made["secret"]), 401, "as sessions")
+    section.tried(
+        "A script's token after it was revoked (read, write, upgrade)",
+        tried(made["secret"]),
+        401,
+        "as sessions",
+    )
     made = token(days=1)
     assert tried(made["secret"]) == {200, 101}
-    server.sql(f"UPDATE tokens SET expires = now() - interval '1 second' WHERE id = {made['token']['id']}")
+    server.sql(
+        f"UPDATE tokens SET expires = now() - interval '1 second' WHERE id = {made['token']['id']}"
+    )
     wait_for(lambda: tried(made["secret"]) == {401}, "the token's age to count")
     section.tried("The same after its last day", tried(made["secret"]), 401, "as sessions")
     weak = token(role="viewer")["secret"]
-    writes = [("POST", L + "/edits", FILL), ("POST", M + "/layers", {"name": "x"}), ("PATCH", M, {"credit": "x"}), ("DELETE", L, None), ("POST", "/projects/default/tables", {"name": "x"}), ("POST", M + "/comments", {"text": "x", "position": [1, 1, 0]})]
-    section.tried("A curator's token for looking, used to change", statuses(server.request(method, path, body, token=weak) for method, path, body in writes), 403, "the lower of the token's role and the person's counts")
+    writes = [
+        ("POST", L + "/edits", FILL),
+        ("POST", M + "/layers", {"name": "x"}),
+        ("PATCH", M, {"credit": "x"}),
+        ("DELETE", L, None),
+        ("POST", "/projects/default/tables", {"name": "x"}),
+        ("POST", M + "/comments", {"text": "x", "position": [1, 1, 0]}),
+    ]
+    section.tried(
+        "A curator's token for looking, used to change",
+        statuses(server.request(method, path, body, token=weak) for method, path, body in writes),
+        403,
+        "the lower of the token's role and the person's counts",
+    )
     strong = token()["secret"]
-    accounts = [("POST", "/me/password", {"current": PASSWORD, "password": "twelve otters and a heron"}), ("GET", "/me/sessions", None), ("DELETE", "/me/sessions", None), ("GET", "/me/tokens", None),
-                ("POST", "/me/tokens", {"name": "x"}), ("PATCH", "/me", {"full_name": "x"}), ("POST", "/users", {"user": "x"}), ("PATCH", "/users/by1", {"role": "viewer"}), ("PUT", "/projects/default/members/by1", {"role": "viewer"}),
-                ("POST", "/groups", {"name": "x"}), ("PATCH", "/groups/1", {"add": ["by1"]}), ("DELETE", "/groups/1", None), ("PUT", "/projects/default/groups/1", {"role": "viewer"}), ("DELETE", "/projects/default/groups/1", None)]
+    accounts = [
+        ("POST", "/me/password", {"current": PASSWORD, "password": "twelve otters and a heron"}),
+        ("GET", "/me/sessions", None),
+        ("DELETE", "/me/sessions", None),
+        ("GET", "/me/tokens", None),
+        ("POST", "/me/tokens", {"name": "x"}),
+        ("PATCH", "/me", {"full_name": "x"}),
+        ("POST", "/users", {"user": "x"}),
+        ("PATCH", "/users/by1", {"role": "viewer"}),
+        ("PUT", "/projects/default/members/by1", {"role": "viewer"}),
+        ("POST", "/groups", {"name": "x"}),
+        ("PATCH", "/groups/1", {"add": ["by1"]}),
+        ("DELETE", "/groups/1", None),
+        ("PUT", "/projects/default/groups/1", {"role": "viewer"}),
+        ("DELETE", "/projects/default/groups/1", None),
+    ]
     root = server.ok("POST", "/me/tokens", {"name": "root", "days": 1}).json()["secret"]
-    section.tried("A script's token, its person's and the owner's, used on accounts, tokens, roles and passwords", statuses(server.request(method, path, body, token=secret) for secret in (strong, root) for method, path, body in accounts),
-                  403, "tokens for scripts change no accounts, whatever their role")
-    section.tried("A script's token traded for a session in a browser", Browser(server).request("POST", "/login", {"token": strong}).status, 403, "it opens none: a session would outlive it")
-    as_cookie = [server.get(M, token=False, headers={"Cookie": "strata_session=" + secret}) for secret in (strong, root)]
-    section.tried("A script's token as the cookie of a session", statuses(as_cookie), 401, "only the secret of a session counts as cookie")
-    section.tried("A token stronger than its person", ida.request("POST", "/me/tokens", {"name": "t", "role": "administrator"}).status, 403, "roles are compared when it is made and at each use")
+    section.tried(
+        "A script's token, its person's and the owner's, used on accounts, tokens, roles and passwords",
+        statuses(
+            server.request(method, path, body, token=secret)
+            for secret in (strong, root)
+            for method, path, body in accounts
+        ),
+        403,
+        "tokens for scripts change no accounts, whatever their role",
+    )
+    section.tried(
+        "A script's token traded for a session in a browser",
+        Browser(server).request("POST", "/login", {"token": strong}).status,
+        403,
+        "it opens none: a session would outlive it",
+    )
+    as_cookie = [
+        server.get(M, token=False, headers={"Cookie": "strata_session=" + secret})
+        for secret in (strong, root)
+    ]
+    section.tried(
+        "A script's token as the cookie of a session",
+        statuses(as_cookie),
+        401,
+        "only the secret of a session counts as cookie",
+    )
+    section.tried(
+        "A token stronger than its person",
+        ida.request("POST", "/me/tokens", {"name": "t", "role": "administrator"}).status,
+        403,
+        "roles are compared when it is made and at each use",
+    )
     server.ok("PATCH", "/users/ida", {"role": "viewer"})
-    section.tried("A token made before its person lost their role", statuses(server.request(method, path, body, token=strong) for method, path, body in writes), 403, "roles are compared when it is made and at each use")
+    section.tried(
+        "A token made before its person lost their role",
+        statuses(server.request(method, path, body, token=strong) for method, path, body in writes),
+        403,
+        "roles are compared when it is made and at each use",
+    )
 
 
 def invitations(server, section):
@@ -101,18 +249,50 @@ def invitations(server, section):
     first, second = secret_of(invitation), secret_of(server.ok("POST", "/users/joe/invite").json())
 
     def accept(secret):
-        return Browser(server).request("POST", "/invitations/accept", {"invitation": secret, "password": PASSWORD})
+        return Browser(server).request(
+            "POST", "/invitations/accept", {"invitation": secret, "password": PASSWORD}
+        )
 
-    section.tried("An invitation after a later one was made", accept(first).status, 401, "one link a person")
-    section.tried("An invitation as a token, and to sign in by", {server.get(M, token=second).status, Browser(server).request("POST", "/login", {"token": second}).status}, 401, "links are traded for sessions and are no tokens")
+    section.tried(
+        "An invitation after a later one was made", accept(first).status, 401, "one link a person"
+    )
+    section.tried(
+        "An invitation as a token, and to sign in by",
+        {
+            server.get(M, token=second).status,
+            Browser(server).request("POST", "/login", {"token": second}).status,
+        },
+        401,
+        "links are traded for sessions and are no tokens",
+    )
     assert accept(second).status == 200
-    section.tried("An invitation followed a second time", statuses([accept(second), Browser(server).request("POST", "/invitations/show", {"invitation": second})]), 401, "it is taken away in the transaction that sets the password")
+    section.tried(
+        "An invitation followed a second time",
+        statuses(
+            [
+                accept(second),
+                Browser(server).request("POST", "/invitations/show", {"invitation": second}),
+            ]
+        ),
+        401,
+        "it is taken away in the transaction that sets the password",
+    )
     old = secret_of(server.ok("POST", "/users/joe/invite").json())
     server.sql("UPDATE tokens SET expires = now() - interval '1 second' WHERE kind = 'invitation'")
-    section.tried("An invitation after its seven days", accept(old).status, 401, "its age is part of the question")
+    section.tried(
+        "An invitation after its seven days",
+        accept(old).status,
+        401,
+        "its age is part of the question",
+    )
     link = server.link.partition("link=")[2]
     server.sql("UPDATE tokens SET expires = now() - interval '1 second' WHERE kind = 'owner_link'")
-    section.tried("The owner's link, a day after the server printed it", server.get("//login?link=" + link, token=False).status, 401, "its age is part of the question; once the owner has a password none is printed")
+    section.tried(
+        "The owner's link, a day after the server printed it",
+        server.get("//login?link=" + link, token=False).status,
+        401,
+        "its age is part of the question; once the owner has a password none is printed",
+    )
 
 
 def attempts(server, table):

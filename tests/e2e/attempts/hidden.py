@@ -1,13 +1,12 @@
 """What somebody does not see, tried through every door: private things of a project, other projects, and the link of a kiosk that was copied from its screen."""
 import concurrent.futures
 
+from attempts.tools import FOREIGN, statuses, upgraded
 from support import kiosk_site, visibility_site
 from support.live_client import LiveClient
 from support.project_sites import Someone, make_sites, nothing_is_seen
 from support.sql_reader import Reader, free_port
 from support.strata_server import StrataServer
-
-from attempts.tools import FOREIGN, statuses, upgraded
 
 
 def as_role(server, role, camera, before, words, hidden, thread):
@@ -17,52 +16,152 @@ def as_role(server, role, camera, before, words, hidden, thread):
     assert answered > 150, answered
     assert visibility_site.doors_closed(server, token, words, hidden, thread) > 60
     names = visibility_site.names_unknown(server, token, camera)
-    picture = server.ok("POST", visibility_site.M + "/frame", {"camera": camera, "format": "png"}, token=token).body
+    picture = server.ok(
+        "POST", visibility_site.M + "/frame", {"camera": camera, "format": "png"}, token=token
+    ).body
     with LiveClient(server, "sheet", token=token) as connection:
         welcome = connection.hello(dpr=1, accept=["jpeg"])
-        server.ok("POST", f"{visibility_site.M}/layers/{visibility_site.LAYER}/edits", {"op": "fill", "mode": "where", "where": "x < 30", "value": visibility_site.VALUE})
-        server.ok("PATCH", "/tables/finds/records/1", {"values": {visibility_site.COLUMN: visibility_site.CELL + " of " + role}})
+        server.ok(
+            "POST",
+            f"{visibility_site.M}/layers/{visibility_site.LAYER}/edits",
+            {"op": "fill", "mode": "where", "where": "x < 30", "value": visibility_site.VALUE},
+        )
+        server.ok(
+            "PATCH",
+            "/tables/finds/records/1",
+            {"values": {visibility_site.COLUMN: visibility_site.CELL + " of " + role}},
+        )
         heard = connection.receive_until("record", "layer", "comment")
-    return {"answered": answered, "told": len(told), "names": names, "same_picture": picture == before, "heard": heard["op"], "leaked": len(visibility_site.leaks(repr([welcome, heard]).encode()))}
+    return {
+        "answered": answered,
+        "told": len(told),
+        "names": names,
+        "same_picture": picture == before,
+        "heard": heard["op"],
+        "leaked": len(visibility_site.leaks(repr([welcome, heard]).encode())),
+    }
 
 
 def private(table):
     section = table.section("Private layers, columns and files, tried by a viewer and an annotator")
     port = free_port()
-    with StrataServer(options=["--sql-listen", f"127.0.0.1:{port}"]) as server, concurrent.futures.ThreadPoolExecutor(2) as hands:
+    with StrataServer(
+        options=["--sql-listen", f"127.0.0.1:{port}"]
+    ) as server, concurrent.futures.ThreadPoolExecutor(2) as hands:
         camera, before, public, hidden, thread = visibility_site.make_site(server)
         words = visibility_site.words(server, public)
-        both = list(hands.map(lambda role: as_role(server, role, camera, before, words, hidden, thread), ("viewer", "annotator")))
+        both = list(
+            hands.map(
+                lambda role: as_role(server, role, camera, before, words, hidden, thread),
+                ("viewer", "annotator"),
+            )
+        )
 
         def of(what):
             return sum(each[what] for each in both)
 
-        section.tried("Every question of the contract, with each value of each parameter: points, profiles, statistics, exports, rasters, pictures, records, comments, views, tours, activity, jobs", f"secrets in {of('told')} operations", "secrets in 0 operations",
-                      "what reads layers, columns and files takes the role, without a default", f"{of('answered')} answers")
+        section.tried(
+            "Every question of the contract, with each value of each parameter: points, profiles, statistics, exports, rasters, pictures, records, comments, views, tours, activity, jobs",
+            f"secrets in {of('told')} operations",
+            "secrets in 0 operations",
+            "what reads layers, columns and files takes the role, without a default",
+            f"{of('answered')} answers",
+        )
         not_there = "as for what is not there, word for word"  # asserted answer by answer
-        section.tried("Addresses of the private things, by slug and by id, to read and to change", not_there, not_there, "looked up among what the person sees")
-        section.tried("Their names in conditions, filters, orders, lists, imports", "as for unknown names, word for word", "as for unknown names, word for word", "looked up among what the person sees", f"{of('names')} calls")
-        section.tried("A picture of the model", "byte for byte that without them" if of("same_picture") == 2 else "another", "byte for byte that without them", "the renderer is given the layers that are seen")
-        section.tried("The live connection, while curators paint and write them", f"{of('leaked')} told, {'only the record’s public cells' if {each['heard'] for each in both} == {'record'} else both} heard", "0 told, only the record’s public cells heard", "each event goes through the eyes of each listener")
+        section.tried(
+            "Addresses of the private things, by slug and by id, to read and to change",
+            not_there,
+            not_there,
+            "looked up among what the person sees",
+        )
+        section.tried(
+            "Their names in conditions, filters, orders, lists, imports",
+            "as for unknown names, word for word",
+            "as for unknown names, word for word",
+            "looked up among what the person sees",
+            f"{of('names')} calls",
+        )
+        section.tried(
+            "A picture of the model",
+            "byte for byte that without them" if of("same_picture") == 2 else "another",
+            "byte for byte that without them",
+            "the renderer is given the layers that are seen",
+        )
+        section.tried(
+            "The live connection, while curators paint and write them",
+            f"{of('leaked')} told, {'only the record’s public cells' if {each['heard'] for each in both} == {'record'} else both} heard",
+            "0 told, only the record’s public cells heard",
+            "each event goes through the eyes of each listener",
+        )
         reader = Reader(server, port)
-        leaked = {view for view in ("layers", "areas", "edits", "record_edits", '"Finds"') if visibility_site.leaks(reader.run(f"SELECT * FROM {view}").stdout.encode())}
-        section.tried("Views of SQL", f"in {len(leaked)} of 5 views", "in 0 of 5 views", "analysts see what is public")
+        leaked = {
+            view
+            for view in ("layers", "areas", "edits", "record_edits", '"Finds"')
+            if visibility_site.leaks(reader.run(f"SELECT * FROM {view}").stdout.encode())
+        }
+        section.tried(
+            "Views of SQL",
+            f"in {len(leaked)} of 5 views",
+            "in 0 of 5 views",
+            "analysts see what is public",
+        )
         sql(reader, table.section("SQL of analysts"))
         server.assert_clean_log()
 
 
 def sql(reader, section):
     refused = "permission denied", "must be", "cannot"
-    changes = ("DELETE FROM edits", "UPDATE models SET model = 'x'", "CREATE TABLE public.t (a int)", "CREATE ROLE r", "ALTER ROLE strata_reader SUPERUSER", "SELECT lo_create(0)")
-    secrets = [f"SELECT * FROM public.{name}" for name in ("tokens", "users", "blobs", "answers", "tile_revisions")] + ["SELECT * FROM pg_authid", "SELECT * FROM records.t1"]
-    machine = ("COPY (SELECT 1) TO PROGRAM 'id'", "SELECT pg_read_file('/etc/passwd')", "COPY (SELECT 1) TO '/tmp/x'", "SELECT pg_ls_dir('/')")
-    for what, statements, keeps in (("Changing anything, with `default_transaction_read_only` switched off first", changes, "rights of the role, not a setting"), ("Tables of tokens, people, files and texels", secrets, "rights on views alone"),
-                                    ("Files and commands of the server's machine", machine, "no such rights")):
-        done = [reader.run("SET default_transaction_read_only = off", statement) for statement in statements]
-        let = [statement for statement, each in zip(statements, done) if each.returncode == 0 or not any(word in each.stderr for word in refused)]
-        section.tried(what, f"{len(let)} let through", "0 let through", keeps, f"{len(statements)} statements")
-    others = [reader.run("SELECT 1", password="wrong"), reader.run("SELECT 1", user="strata"), reader.run("SELECT 1", user="postgres"), reader.run("SELECT 1", database="postgres")]
-    section.tried("A wrong password, another role, another database", f"{sum(each.returncode == 0 for each in others)} let in", "0 let in", "a password of its own for one role and one database")
+    changes = (
+        "DELETE FROM edits",
+        "UPDATE models SET model = 'x'",
+        "CREATE TABLE public.t (a int)",
+        "CREATE ROLE r",
+        "ALTER ROLE strata_reader SUPERUSER",
+        "SELECT lo_create(0)",
+    )
+    secrets = [
+        f"SELECT * FROM public.{name}"
+        for name in ("tokens", "users", "blobs", "answers", "tile_revisions")
+    ] + ["SELECT * FROM pg_authid", "SELECT * FROM records.t1"]
+    machine = (
+        "COPY (SELECT 1) TO PROGRAM 'id'",
+        "SELECT pg_read_file('/etc/passwd')",
+        "COPY (SELECT 1) TO '/tmp/x'",
+        "SELECT pg_ls_dir('/')",
+    )
+    for what, statements, keeps in (
+        (
+            "Changing anything, with `default_transaction_read_only` switched off first",
+            changes,
+            "rights of the role, not a setting",
+        ),
+        ("Tables of tokens, people, files and texels", secrets, "rights on views alone"),
+        ("Files and commands of the server's machine", machine, "no such rights"),
+    ):
+        done = [
+            reader.run("SET default_transaction_read_only = off", statement)
+            for statement in statements
+        ]
+        let = [
+            statement
+            for statement, each in zip(statements, done)
+            if each.returncode == 0 or not any(word in each.stderr for word in refused)
+        ]
+        section.tried(
+            what, f"{len(let)} let through", "0 let through", keeps, f"{len(statements)} statements"
+        )
+    others = [
+        reader.run("SELECT 1", password="wrong"),
+        reader.run("SELECT 1", user="strata"),
+        reader.run("SELECT 1", user="postgres"),
+        reader.run("SELECT 1", database="postgres"),
+    ]
+    section.tried(
+        "A wrong password, another role, another database",
+        f"{sum(each.returncode == 0 for each in others)} let in",
+        "0 let in",
+        "a password of its own for one role and one database",
+    )
 
 
 def kiosk(table):
@@ -70,27 +169,108 @@ def kiosk(table):
     with StrataServer() as server:
         _, files, thread = kiosk_site.make_site(server)
         server.add_person("carl", "curator")
-        tour = kiosk_site.ALL + "/" + server.ok("POST", kiosk_site.ALL, kiosk_site.TOUR).json()["slug"]
+        tour = (
+            kiosk_site.ALL + "/" + server.ok("POST", kiosk_site.ALL, kiosk_site.TOUR).json()["slug"]
+        )
         made, secret = kiosk_site.make_kiosk(server, tour)
         answered, refused = kiosk_site.sweep(server, secret, tour, files, thread)
-        section.tried("Every call of the contract that changes something, or reads what no kiosk shows", 403, 403, "a list of what is open: all else is closed, what is added later, too", f"{refused} calls; {answered} that read the tour's model are open")
+        section.tried(
+            "Every call of the contract that changes something, or reads what no kiosk shows",
+            403,
+            403,
+            "a list of what is open: all else is closed, what is added later, too",
+            f"{refused} calls; {answered} that read the tour's model are open",
+        )
         kiosk_site.others_closed(server, secret, files)
-        section.tried("Other models, tables that are neither behind its layers nor in the tour, private files", 404, 404, "the address is held against the tour")
-        section.tried("Signing in with it, or accepting an invitation", statuses([server.post("/login", {"token": secret}, token=False, headers={"Origin": server.url}), server.post("/invitations/accept", {"invitation": secret, "password": "seven blue herons at noon"}, token=False, headers={"Origin": server.url})]), {401, 403}, "it is no token of a person")
-        as_session = {server.get(kiosk_site.M, token=False, headers={"Cookie": "strata_session=" + secret}).status, server.get(kiosk_site.M, token=False, headers={"Cookie": "strata_kiosk=" + secret}).status, upgraded(server, token="", cookie="strata_session=" + secret, origin=server.url)}
-        section.tried("As the cookie of a session, or its own cookie without the page's mark", as_session, 401, "each cookie counts for its own page alone")
-        section.tried("Its live connection from a foreign page, to another model", {upgraded(server, token="", cookie="strata_kiosk=" + secret, origin=FOREIGN, query="?as=kiosk"), upgraded(server, "other", token=secret)}, {403, 404}, "as for people")
+        section.tried(
+            "Other models, tables that are neither behind its layers nor in the tour, private files",
+            404,
+            404,
+            "the address is held against the tour",
+        )
+        section.tried(
+            "Signing in with it, or accepting an invitation",
+            statuses(
+                [
+                    server.post(
+                        "/login", {"token": secret}, token=False, headers={"Origin": server.url}
+                    ),
+                    server.post(
+                        "/invitations/accept",
+                        {"invitation": secret, "password": "seven blue herons at noon"},
+                        token=False,
+                        headers={"Origin": server.url},
+                    ),
+                ]
+            ),
+            {401, 403},
+            "it is no token of a person",
+        )
+        as_session = {
+            server.get(
+                kiosk_site.M, token=False, headers={"Cookie": "strata_session=" + secret}
+            ).status,
+            server.get(
+                kiosk_site.M, token=False, headers={"Cookie": "strata_kiosk=" + secret}
+            ).status,
+            upgraded(server, token="", cookie="strata_session=" + secret, origin=server.url),
+        }
+        section.tried(
+            "As the cookie of a session, or its own cookie without the page's mark",
+            as_session,
+            401,
+            "each cookie counts for its own page alone",
+        )
+        section.tried(
+            "Its live connection from a foreign page, to another model",
+            {
+                upgraded(
+                    server,
+                    token="",
+                    cookie="strata_kiosk=" + secret,
+                    origin=FOREIGN,
+                    query="?as=kiosk",
+                ),
+                upgraded(server, "other", token=secret),
+            },
+            {403, 404},
+            "as for people",
+        )
         with LiveClient(server, "sheet", token=secret) as connection:
             connection.hello(dpr=1, accept=["jpeg"])
             one = "6f2d1c9e-5a5b-4c55-9d55-0a7f0c8a2b01"
             answers = set()
-            for message in ({"op": "edit", "id": one, "layer": "cracks", "edit": {"op": "fill", "mode": "where", "where": "true", "value": 1}}, {"op": "undo", "id": one, "layer": "cracks"}, {"op": "presence", "pointer": [1, 1]}, {"op": "record.edit", "id": one, "table": 1, "key": 1, "editing": True}):
+            for message in (
+                {
+                    "op": "edit",
+                    "id": one,
+                    "layer": "cracks",
+                    "edit": {"op": "fill", "mode": "where", "where": "true", "value": 1},
+                },
+                {"op": "undo", "id": one, "layer": "cracks"},
+                {"op": "presence", "pointer": [1, 1]},
+                {"op": "record.edit", "id": one, "table": 1, "key": 1, "editing": True},
+            ):
                 connection.send(message)
                 answers.add(connection.receive_until("problem")["status"])
-            section.tried("Painting, undo, pointing and locks over its live connection", answers, 403, "five kinds of messages are let through")
+            section.tried(
+                "Painting, undo, pointing and locks over its live connection",
+                answers,
+                403,
+                "five kinds of messages are let through",
+            )
             server.ok("DELETE", f"/kiosks/{made['id']}")
             connection.until_closed()
-        section.tried("After it was revoked", {server.get(kiosk_site.M, token=secret).status, server.post("/auth/kiosk", {"link": secret}, token=False).status, upgraded(server, token=secret)}, 401, "at once, and open screens are closed")
+        section.tried(
+            "After it was revoked",
+            {
+                server.get(kiosk_site.M, token=secret).status,
+                server.post("/auth/kiosk", {"link": secret}, token=False).status,
+                upgraded(server, token=secret),
+            },
+            401,
+            "at once, and open screens are closed",
+        )
         server.assert_clean_log()
 
 
@@ -99,8 +279,22 @@ def projects(table):
     with StrataServer() as server:
         sites = make_sites(server)
         guest = Someone(server, "Gus", "guest")
-        section.tried("Every address of the contract in a project that a guest has no role in, by slug and by id, to read and to change", "404 as of what is not there" if nothing_is_seen(server, guest, sites["villa"]) > 120 else "few", "404 as of what is not there",
-                      "the project is looked up before the handler runs", "more than 120 addresses; lists, uploads and the live connection, too")
+        section.tried(
+            "Every address of the contract in a project that a guest has no role in, by slug and by id, to read and to change",
+            "404 as of what is not there"
+            if nothing_is_seen(server, guest, sites["villa"]) > 120
+            else "few",
+            "404 as of what is not there",
+            "the project is looked up before the handler runs",
+            "more than 120 addresses; lists, uploads and the live connection, too",
+        )
         guest.now("villa", "curator")
-        section.tried("The same by somebody who is curator of another project", "404 as of what is not there" if nothing_is_seen(server, guest, sites["forum"]) > 120 else "few", "404 as of what is not there", "a role in one project is none elsewhere")
+        section.tried(
+            "The same by somebody who is curator of another project",
+            "404 as of what is not there"
+            if nothing_is_seen(server, guest, sites["forum"]) > 120
+            else "few",
+            "404 as of what is not there",
+            "a role in one project is none elsewhere",
+        )
         server.assert_clean_log()

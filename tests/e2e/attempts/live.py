@@ -6,12 +6,11 @@ import struct
 import time
 import uuid
 
+from attempts.tools import L, M, close_code, person
 from support.cameras import camera_from
 from support.live_client import LiveClient
 from support.process_memory import PeakGrowth
 from support.strata_server import LONG_S
-
-from attempts.tools import L, M, close_code, person
 
 KEPT = "problems, open"
 
@@ -24,6 +23,7 @@ def welcomed(server, **options):
 
 def messages(server, section):
     """What is refused with a problem; the connection goes on."""
+
     def refused(what, send, expected, keeps):
         with welcomed(server) as connection:
             send(connection)
@@ -32,17 +32,35 @@ def messages(server, section):
             assert connection.receive_until("problem")["status"] == 409, "it goes on"
             section.tried(what, f"{status}, goes on", f"{expected}, goes on", keeps)
 
-    refused("A message of 300 KB", lambda to: to.send({"op": "hello", "client": "x" * 300_000}), 413, "256 KiB a message")
-    refused("Lists nested 100 000 deep in a message", lambda to: to.send('{"op":"pick","id":' + "[" * 100_000 + "]" * 100_000 + "}"), 422, "32 objects and lists within each other")
+    refused(
+        "A message of 300 KB",
+        lambda to: to.send({"op": "hello", "client": "x" * 300_000}),
+        413,
+        "256 KiB a message",
+    )
+    refused(
+        "Lists nested 100 000 deep in a message",
+        lambda to: to.send('{"op":"pick","id":' + "[" * 100_000 + "]" * 100_000 + "}"),
+        422,
+        "32 objects and lists within each other",
+    )
     refused("A binary message", lambda to: to.send_raw(2, b"\0" * 1000), 415, "clients send text")
-    refused("JSON that is none", lambda to: to.send("{]"), 400, "read by the protocol's own schemas")
+    refused(
+        "JSON that is none", lambda to: to.send("{]"), 400, "read by the protocol's own schemas"
+    )
     with LiveClient(server, "sheet") as connection:
         connection.send({"op": "undo", "id": str(uuid.uuid4()), "layer": "marks"})
-        section.tried("An order before `hello`", connection.receive_until("problem")["status"], 409, "nobody is there before they said who")
+        section.tried(
+            "An order before `hello`",
+            connection.receive_until("problem")["status"],
+            409,
+            "nobody is there before they said who",
+        )
 
 
 def frames(server, section):
     """What ends the connection, by its code (RFC 6455)."""
+
     def ended(what, send, expected, keeps):
         with welcomed(server) as connection:
             try:
@@ -54,23 +72,51 @@ def frames(server, section):
     def fragments(connection):
         connection.socket.sendall(b"\x01\x80\0\0\0\0")
         for _ in range(100):
-            connection.socket.sendall(b"\x00\xff" + struct.pack(">Q", 1 << 16) + bytes(4) + b" " * (1 << 16))
+            connection.socket.sendall(
+                b"\x00\xff" + struct.pack(">Q", 1 << 16) + bytes(4) + b" " * (1 << 16)
+            )
 
     with PeakGrowth(server) as growth:
-        ended("A message that says it has 4 EiB", lambda to: to.socket.sendall(b"\x81\xff" + struct.pack(">Q", 1 << 62) + bytes(4)), 1009, "4 MiB, then the connection ends")
+        ended(
+            "A message that says it has 4 EiB",
+            lambda to: to.socket.sendall(b"\x81\xff" + struct.pack(">Q", 1 << 62) + bytes(4)),
+            1009,
+            "4 MiB, then the connection ends",
+        )
         ended("A message in pieces without end", fragments, 1009, "4 MiB, whatever it is cut into")
-    section.tried("… both in the server's memory", "bounded", "bounded", "nothing is allocated for what a message says of itself", growth.checked(64))
-    ended("Frames that are not masked, have unknown bits or kinds, or pings of 200 bytes", lambda to: to.socket.sendall(b"\x81\x02{}"), 1002, "the framing is checked")
+    section.tried(
+        "… both in the server's memory",
+        "bounded",
+        "bounded",
+        "nothing is allocated for what a message says of itself",
+        growth.checked(64),
+    )
+    ended(
+        "Frames that are not masked, have unknown bits or kinds, or pings of 200 bytes",
+        lambda to: to.socket.sendall(b"\x81\x02{}"),
+        1002,
+        "the framing is checked",
+    )
     for broken in (b"\xf1\x82\0\0\0\0{}", b"\x83\x82\0\0\0\0{}", b"\x89\xfe\x00\xc8" + bytes(204)):
         with welcomed(server) as connection:
             connection.socket.sendall(broken)
             assert close_code(connection) == 1002, broken
-    ended("Text that is not UTF-8", lambda to: to.send_raw(1, b"\xff\xfe"), 1007, "the framing is checked")
+    ended(
+        "Text that is not UTF-8",
+        lambda to: to.send_raw(1, b"\xff\xfe"),
+        1007,
+        "the framing is checked",
+    )
 
 
 def floods(server, section):
     """As fast as they can be sent."""
-    camera = {"view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1], "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -20.2, 0], "width": 64, "height": 64}
+    camera = {
+        "view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1],
+        "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -20.2, 0],
+        "width": 64,
+        "height": 64,
+    }
     with PeakGrowth(server) as growth, welcomed(server) as connection, welcomed(server) as other:
         sent = 0
         try:
@@ -82,28 +128,54 @@ def floods(server, section):
         other.send({"op": "pick", "id": str(uuid.uuid4()), "camera": camera, "x": 1, "y": 1})
         other.receive_until("picked")
     assert code in (1008, "cut off"), code  # the code is lost where the flood was still on its way
-    section.tried("50 000 messages without a pause", "ended, others are served", "ended, others are served", "500 a second and 1000 at once, then 429; after 2000 refusals more than were taken the connection ends with 1008", growth.checked(64))
+    section.tried(
+        "50 000 messages without a pause",
+        "ended, others are served",
+        "ended, others are served",
+        "500 a second and 1000 at once, then 429; after 2000 refusals more than were taken the connection ends with 1008",
+        growth.checked(64),
+    )
     with PeakGrowth(server) as growth, welcomed(server) as connection:
         for _ in range(20_000):
             connection.socket.sendall(b"\x89\x80\0\0\0\0")
         connection.send({"op": "hello"})
         assert connection.receive_until("problem")["status"] == 409
-    section.tried("20 000 pings", "answered, goes on", "answered, goes on", "pongs wait for nobody: one is kept", growth.checked(64))
+    section.tried(
+        "20 000 pings",
+        "answered, goes on",
+        "answered, goes on",
+        "pongs wait for nobody: one is kept",
+        growth.checked(64),
+    )
     with PeakGrowth(server) as growth:
         crowd = [welcomed(server) for _ in range(200)]
         assert server.get("//livez").status == 200
         for connection in crowd:
             connection.socket.close()
-    section.tried("200 live connections of one person", "all let in", "all let in", "**no limit of their own**: 2048 connections in all", growth.checked(256))
+    section.tried(
+        "200 live connections of one person",
+        "all let in",
+        "all let in",
+        "**no limit of their own**: 2048 connections in all",
+        growth.checked(256),
+    )
     with welcomed(server, receive_buffer=4096) as lazy, PeakGrowth(server) as growth:
         sent = 0
         try:
             for sent in range(6000):
-                lazy.send({"op": "pick", "id": "x" * 200, "camera": camera, "x": 1, "y": 1, "unknown": 1})
+                lazy.send(
+                    {"op": "pick", "id": "x" * 200, "camera": camera, "x": 1, "y": 1, "unknown": 1}
+                )
         except OSError:
             pass
         assert server.get("//livez").status == 200
-    section.tried("6000 questions of somebody who reads no answer", "ended or waiting, others are served", "ended or waiting, others are served", "4096 answers or 16 MiB wait at most, then it ends with 1013; a message that does not leave within 60 s ends it, too", growth.checked(64))
+    section.tried(
+        "6000 questions of somebody who reads no answer",
+        "ended or waiting, others are served",
+        "ended or waiting, others are served",
+        "4096 answers or 16 MiB wait at most, then it ends with 1013; a message that does not leave within 60 s ends it, too",
+        growth.checked(64),
+    )
 
 
 def unread_pictures(server, section):
@@ -113,7 +185,12 @@ def unread_pictures(server, section):
     head = 10 + struct.unpack("<H", raster[8:10])[0]
     texels = bytearray(len(raster) - head)
     texels[0::2], texels[1::2] = os.urandom(len(texels) // 2), b"\1" * (len(texels) // 2)
-    server.ok("PUT", f"{M}/layers/{slug}/texels.npy", raster[:head] + texels, headers={"Content-Type": "application/x-npy"})
+    server.ok(
+        "PUT",
+        f"{M}/layers/{slug}/texels.npy",
+        raster[:head] + texels,
+        headers={"Content-Type": "application/x-npy"},
+    )
     camera = camera_from(server.get(M).json(), [0, 0, 1], 4096, 2160, up=(0, 1, 0))
     with welcomed(server, receive_buffer=4096) as lazy, PeakGrowth(server) as growth:
         end = time.monotonic() + LONG_S
@@ -128,7 +205,13 @@ def unread_pictures(server, section):
             pass
         code = close_code(lazy)
     assert code in (1013, "cut off"), code
-    section.tried("Pictures of noise, of 4096 x 2160 pixels, that are acknowledged and not read", "ended", "ended", "64 MiB or 256 pictures wait at most, then it ends with 1013", growth.checked(768))
+    section.tried(
+        "Pictures of noise, of 4096 x 2160 pixels, that are acknowledged and not read",
+        "ended",
+        "ended",
+        "64 MiB or 256 pictures wait at most, then it ends with 1013",
+        growth.checked(768),
+    )
     server.ok("DELETE", f"{M}/layers/{slug}")
 
 
@@ -137,32 +220,104 @@ def in_others_names(server, section):
     mia = server.add_person("mia", "annotator")
     eve = server.add_person("eve", "viewer")
     server.ok("POST", M + "/layers", {"name": "Tomb", "type": "u8", "visibility": "private"})
-    edit = {"op": "edit", "id": str(uuid.uuid4()), "layer": "tomb", "edit": {"op": "fill", "mode": "where", "where": "x < 7", "value": 1}}
-    with welcomed(server) as owner, welcomed(server, token=mia) as hand, welcomed(server, token=eve) as eyes:
+    edit = {
+        "op": "edit",
+        "id": str(uuid.uuid4()),
+        "layer": "tomb",
+        "edit": {"op": "fill", "mode": "where", "where": "x < 7", "value": 1},
+    }
+    with welcomed(server) as owner, welcomed(server, token=mia) as hand, welcomed(
+        server, token=eve
+    ) as eyes:
+
         def answer(connection, message):
             connection.send(message)
             told = connection.receive_until("saved", "problem")
             return 200 if told["op"] == "saved" else told["status"]
 
         assert answer(owner, edit) == 200
-        section.tried("An edit of a private layer, sent again with its id by who does not see the layer", answer(hand, edit), 404, "the layer is looked for before the id")
-        section.tried("The same id with an edit of another layer, to hear what became of the first", answer(hand, {**edit, "layer": "marks"}), 422, "a repeat is told to who made the edit")
-        section.tried("An edit with somebody else's name in it", answer(hand, {**edit, "id": str(uuid.uuid4()), "layer": "marks", "user": "owner"}), 422, "unknown members are refused; the name is that of who came in")
-        changes = [{**edit, "layer": "marks"}, {"op": "undo", "id": edit["id"], "layer": "marks"}, {"op": "redo", "id": edit["id"], "layer": "marks"}, {"op": "record.edit", "id": edit["id"], "table": 1, "key": 1, "editing": True},
-                   {"op": "stroke.begin", "id": edit["id"], "stroke": edit["id"], "layer": "marks", "value": 1, "camera": server.get(M + "/views/front").json()["camera"], "radius_px": 8}]
-        section.tried("Edits, undo, redo, a stroke and a record's lock by somebody who may only look", {answer(eyes, {**message, "id": str(uuid.uuid4())}) for message in changes}, 403, "the role is compared at each message")
+        section.tried(
+            "An edit of a private layer, sent again with its id by who does not see the layer",
+            answer(hand, edit),
+            404,
+            "the layer is looked for before the id",
+        )
+        section.tried(
+            "The same id with an edit of another layer, to hear what became of the first",
+            answer(hand, {**edit, "layer": "marks"}),
+            422,
+            "a repeat is told to who made the edit",
+        )
+        section.tried(
+            "An edit with somebody else's name in it",
+            answer(hand, {**edit, "id": str(uuid.uuid4()), "layer": "marks", "user": "owner"}),
+            422,
+            "unknown members are refused; the name is that of who came in",
+        )
+        changes = [
+            {**edit, "layer": "marks"},
+            {"op": "undo", "id": edit["id"], "layer": "marks"},
+            {"op": "redo", "id": edit["id"], "layer": "marks"},
+            {"op": "record.edit", "id": edit["id"], "table": 1, "key": 1, "editing": True},
+            {
+                "op": "stroke.begin",
+                "id": edit["id"],
+                "stroke": edit["id"],
+                "layer": "marks",
+                "value": 1,
+                "camera": server.get(M + "/views/front").json()["camera"],
+                "radius_px": 8,
+            },
+        ]
+        section.tried(
+            "Edits, undo, redo, a stroke and a record's lock by somebody who may only look",
+            {answer(eyes, {**message, "id": str(uuid.uuid4())}) for message in changes},
+            403,
+            "the role is compared at each message",
+        )
         stroke = str(uuid.uuid4())
         owner.send({**changes[-1], "id": str(uuid.uuid4()), "stroke": stroke})
-        section.tried("Going on with a stroke that somebody else began", answer(hand, {"op": "stroke.extend", "id": str(uuid.uuid4()), "stroke": stroke, "n": 0, "path": [[1, 1]]}), 404, "strokes are their person's")
+        section.tried(
+            "Going on with a stroke that somebody else began",
+            answer(
+                hand,
+                {
+                    "op": "stroke.extend",
+                    "id": str(uuid.uuid4()),
+                    "stroke": stroke,
+                    "n": 0,
+                    "path": [[1, 1]],
+                },
+            ),
+            404,
+            "strokes are their person's",
+        )
 
 
 def outlived(server, section):
     """Connections that are open while the right to them ends."""
+
     def demoted(user):
         server.ok("PATCH", f"/users/{user}", {"role": "viewer"})
 
-    ends = [("sign-out", lambda browser, user: browser.ok("POST", "/logout")), ("a token that is revoked", None), ("a new password", lambda browser, user: browser.ok("POST", "/me/password", {"current": "seven blue herons at noon", "password": "twelve otters and a heron"})),
-            ("another role", lambda browser, user: demoted(user)), ("disabling", lambda browser, user: server.ok("PATCH", f"/users/{user}", {"disabled": True})), ("deletion", lambda browser, user: server.ok("DELETE", f"/users/{user}"))]
+    ends = [
+        ("sign-out", lambda browser, user: browser.ok("POST", "/logout")),
+        ("a token that is revoked", None),
+        (
+            "a new password",
+            lambda browser, user: browser.ok(
+                "POST",
+                "/me/password",
+                {"current": "seven blue herons at noon", "password": "twelve otters and a heron"},
+            ),
+        ),
+        ("another role", lambda browser, user: demoted(user)),
+        (
+            "disabling",
+            lambda browser, user: server.ok("PATCH", f"/users/{user}", {"disabled": True}),
+        ),
+        ("deletion", lambda browser, user: server.ok("DELETE", f"/users/{user}")),
+    ]
     codes, longest = set(), 0.0
     for number, (_, end) in zip(itertools.count(1), ends):
         user = f"open{number}"
@@ -178,12 +333,23 @@ def outlived(server, section):
             end(browser, user)
         codes.add(close_code(connection))
         longest = max(longest, time.monotonic() - start)
-    section.tried("Connections that are open at " + ", ".join(what for what, _ in ends), codes, 1008, "sockets are closed by the call that ends the right", f"{max(1, round(longest))} s at most")
+    section.tried(
+        "Connections that are open at " + ", ".join(what for what, _ in ends),
+        codes,
+        1008,
+        "sockets are closed by the call that ends the right",
+        f"{max(1, round(longest))} s at most",
+    )
 
 
 def attempts(server, table):
     section = table.section("Live connections")
-    camera = {"view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1], "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -20.2, 0], "width": 640, "height": 480}
+    camera = {
+        "view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1],
+        "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.02, -1, 0, 0, -20.2, 0],
+        "width": 640,
+        "height": 480,
+    }
     server.ok("POST", M + "/views", {"name": "Front", "camera": camera})
     for attempt in (messages, frames, floods, unread_pictures, in_others_names, outlived):
         attempt(server, section)

@@ -5,13 +5,11 @@ import re
 import socket
 import time
 
+from attempts.tools import M, statuses
 from support.cameras import camera_from
 from support.meshes import folded_grid
 from support.process_memory import PeakGrowth
 from support.strata_server import LONG_S, StrataServer, wait_for
-
-from attempts.tools import M, statuses
-
 
 
 def long_condition(layer):
@@ -32,8 +30,13 @@ def sent(server, path, body, token):
     """A connection that has asked, and does not read."""
     text = json.dumps(body).encode()
     link = socket.create_connection((server.host, server.port), timeout=LONG_S)
-    link.sendall((f"POST /api/v1{path} HTTP/1.1\r\nHost: {server.host}:{server.port}\r\nAuthorization: Bearer {token}\r\n"
-                  f"Content-Type: application/json\r\nContent-Length: {len(text)}\r\n\r\n").encode() + text)
+    link.sendall(
+        (
+            f"POST /api/v1{path} HTTP/1.1\r\nHost: {server.host}:{server.port}\r\nAuthorization: Bearer {token}\r\n"
+            f"Content-Type: application/json\r\nContent-Length: {len(text)}\r\n\r\n"
+        ).encode()
+        + text
+    )
     return link
 
 
@@ -43,13 +46,25 @@ def status_of(link):
 
 
 def is_idle(server):
-    return metric(server, "strata_questions_under_way") == metric(server, "strata_waiting_questions") == 0
+    return (
+        metric(server, "strata_questions_under_way")
+        == metric(server, "strata_waiting_questions")
+        == 0
+    )
 
 
 def lists(server, section, viewer):
     listed = ",".join(["1"] * 1900)
-    answers = [server.post(M + "/select", {"where": f"{each} in ({listed})"}, token=viewer) for each in ("k", "n", "k not", "n not")]
-    section.tried("Lists of 1900 items in a condition, by a viewer", statuses(answers), 200, "lists are sets, and a condition over bytes is a table: what a texel costs does not grow with them")
+    answers = [
+        server.post(M + "/select", {"where": f"{each} in ({listed})"}, token=viewer)
+        for each in ("k", "n", "k not", "n not")
+    ]
+    section.tried(
+        "Lists of 1900 items in a condition, by a viewer",
+        statuses(answers),
+        200,
+        "lists are sets, and a condition over bytes is a table: what a texel costs does not grow with them",
+    )
 
 
 def steps_after(server, links):
@@ -58,7 +73,10 @@ def steps_after(server, links):
     for link in links:
         link.close()
     wait_for(lambda: is_idle(server), "an idle server")
-    wait_for(lambda: metric(server, "strata_questions_left_total") == left + len(links), "all of them gone")
+    wait_for(
+        lambda: metric(server, "strata_questions_left_total") == left + len(links),
+        "all of them gone",
+    )
     at_rest = metric(server, "strata_question_steps_total")
     time.sleep(0.5)
     return metric(server, "strata_question_steps_total") - at_rest
@@ -68,19 +86,34 @@ def leaving(server, section, viewer):
     links = [sent(server, M + "/select", {"where": LONG}, viewer) for _ in range(3)]
     wait_for(lambda: metric(server, "strata_questions_under_way") > 0, "a question under way")
     steps = steps_after(server, links)
-    section.tried("Three questions of many seconds whose client leaves at once", "ended" if steps == 0 else f"{steps} steps more", "ended", "the server looks ten times a second who is still there")
+    section.tried(
+        "Three questions of many seconds whose client leaves at once",
+        "ended" if steps == 0 else f"{steps} steps more",
+        "ended",
+        "the server looks ten times a second who is still there",
+    )
 
 
 def beside(server, section, viewer):
     links = []
 
     def as_many_wait_as_may():
-        links.extend(sent(server, M + "/select", {"where": LONG}, viewer) for _ in range(15))  # some may be answered meanwhile
+        # some may be answered meanwhile
+        links.extend(sent(server, M + "/select", {"where": LONG}, viewer) for _ in range(15))
         return metric(server, "strata_waiting_questions") >= 32
 
     wait_for(as_many_wait_as_may, "questions that wait")
-    asked = [server.post(M + "/select", {"where": "k > 3"}), server.get(M + "/layers/k/statistics"), server.get(M + "/position?coords=POINT(10%2010%200)")]
-    section.tried("Dozens of such questions of one person: what another one asks meanwhile", statuses(asked), 200, "questions take turns by the time that each person's took, and a person's are answered two at a time")
+    asked = [
+        server.post(M + "/select", {"where": "k > 3"}),
+        server.get(M + "/layers/k/statistics"),
+        server.get(M + "/position?coords=POINT(10%2010%200)"),
+    ]
+    section.tried(
+        "Dozens of such questions of one person: what another one asks meanwhile",
+        statuses(asked),
+        200,
+        "questions take turns by the time that each person's took, and a person's are answered two at a time",
+    )
     refused = []
     for link in links:
         link.settimeout(0)
@@ -88,7 +121,13 @@ def beside(server, section, viewer):
             refused.append(int(re.match(rb"HTTP/1\.1 (\d+)", link.recv(64))[1]))
         except BlockingIOError:
             pass
-    section.tried("The same: their own", set(refused) - {200}, 429, "32 of a person wait", f"{refused.count(429)} refused")
+    section.tried(
+        "The same: their own",
+        set(refused) - {200},
+        429,
+        "32 of a person wait",
+        f"{refused.count(429)} refused",
+    )
     for link in links:
         link.close()
     wait_for(lambda: is_idle(server), "an idle server")
@@ -96,21 +135,40 @@ def beside(server, section, viewer):
 
 def budgets(server, section, viewer):
     answers = [server.post(M + "/select", {"where": long_condition("f")}, token=viewer)]
-    section.tried("A condition of a thousand parts over 4096² texels, by a viewer", statuses(answers), 422, "20 thousand million steps for viewers, known before it begins")
+    section.tried(
+        "A condition of a thousand parts over 4096² texels, by a viewer",
+        statuses(answers),
+        422,
+        "20 thousand million steps for viewers, known before it begins",
+    )
 
 
 def empty_layer(server, section, viewer):
     server.ok("POST", M + "/layers", {"name": "Vast", "type": "u8", "resolution": 16384})
     with PeakGrowth(server) as growth:
         answer = server.get(M + "/layers/vast/statistics", token=viewer)
-    section.tried("Statistics of an empty layer of 16384²", answer.status, 200, "nothing is worked out about the surface where nothing is painted", growth.checked(200))
+    section.tried(
+        "Statistics of an empty layer of 16384²",
+        answer.status,
+        200,
+        "nothing is worked out about the surface where nothing is painted",
+        growth.checked(200),
+    )
 
 
 def points(server, section, viewer):
     body = b'{"points":[' + b"[1,2,3]," * 1_199_999 + b"[1,2,3]]}"
     with PeakGrowth(server) as growth:
-        answer = server.post(M + "/positions", body, headers={"Content-Type": "application/json"}, token=viewer)
-    section.tried("1 200 000 points at once", answer.status, 422, "a list is counted before its items are built", growth.checked(200))
+        answer = server.post(
+            M + "/positions", body, headers={"Content-Type": "application/json"}, token=viewer
+        )
+    section.tried(
+        "1 200 000 points at once",
+        answer.status,
+        422,
+        "a list is counted before its items are built",
+        growth.checked(200),
+    )
 
 
 def pictures(server, section, viewer):
@@ -123,7 +181,13 @@ def pictures(server, section, viewer):
         answers = list(hands.map(lambda _: server.post(M + "/frame", small), range(3)))
         unfinished = sum(not_yet(link) for link in links)
     assert unfinished > 0, "the small ones waited for all of the large ones"
-    section.tried("Six pictures of 8192² by one person: small ones of another meanwhile", statuses(answers), 200, "large pictures are drawn in bands between which others have theirs, and are nowhere as a whole", growth.checked(600))
+    section.tried(
+        "Six pictures of 8192² by one person: small ones of another meanwhile",
+        statuses(answers),
+        200,
+        "large pictures are drawn in bands between which others have theirs, and are nowhere as a whole",
+        growth.checked(600),
+    )
     steps_after(server, links)
     section.tried("The same: their client leaves", "ended", "ended", "between two bands")
 
@@ -140,17 +204,34 @@ def stop(server, section, viewer):
     links = [sent(server, M + "/select", {"where": LONG}, viewer) for _ in range(3)]
     wait_for(lambda: metric(server, "strata_questions_under_way") > 0, "a question under way")
     code = server.stop()
-    section.tried("The server is stopped meanwhile", {status_of(link) for link in links}, 503, "questions end with the server", "" if code == 0 else f"exit status {code}")
+    section.tried(
+        "The server is stopped meanwhile",
+        {status_of(link) for link in links},
+        503,
+        "questions end with the server",
+        "" if code == 0 else f"exit status {code}",
+    )
 
 
 def attempts(table):
     section = table.section("One reader beside the others")
     with StrataServer() as server:
-        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048)
-        for layer in ({"name": "k", "type": "u8"}, {"name": "n", "type": "f32"}, {"name": "f", "type": "f32", "resolution": 4096}):
+        server.import_model(
+            folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
+        )
+        for layer in (
+            {"name": "k", "type": "u8"},
+            {"name": "n", "type": "f32"},
+            {"name": "f", "type": "f32", "resolution": 4096},
+        ):
             server.ok("POST", M + "/layers", layer)
-        server.ok("POST", M + "/layers/k/edits", {"op": "fill", "mode": "where", "where": "true", "value": 7})
+        server.ok(
+            "POST",
+            M + "/layers/k/edits",
+            {"op": "fill", "mode": "where", "where": "true", "value": 7},
+        )
         viewer = server.add_person("eve", "viewer")
-        for attempt in (points, empty_layer, lists, leaving, beside, budgets, pictures, stop):  # memory first: surfaces are baked for the others
+        # memory first: surfaces are baked for the others
+        for attempt in (points, empty_layer, lists, leaving, beside, budgets, pictures, stop):
             attempt(server, section, viewer)
         server.assert_clean_log()

@@ -7,7 +7,17 @@ from support.live_client import Closed, LiveClient, Refused
 M, L, T = "/models/sheet", "/models/sheet/layers/marks", "/tables/kept"
 FILL = {"op": "fill", "mode": "where", "where": "x < 1", "value": 1}
 FOREIGN = "https://elsewhere.example"
-WORDS = {"model": "sheet", "layer": "marks", "table": "kept", "key": "1", "column": "note", "project": "default", "user": "owner", "name": "sheet.ply", "format": "npy"}
+WORDS = {
+    "model": "sheet",
+    "layer": "marks",
+    "table": "kept",
+    "key": "1",
+    "column": "note",
+    "project": "default",
+    "user": "owner",
+    "name": "sheet.ply",
+    "format": "npy",
+}
 METHODS = ("get", "post", "put", "patch", "delete")
 
 

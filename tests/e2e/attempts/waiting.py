@@ -7,13 +7,12 @@ import ssl
 import tempfile
 import time
 
+from attempts.tools import M
 from support.certificates import make_certificate, trusting
 from support.live_client import Closed, LiveClient
 from support.meshes import folded_grid
 from support.process_memory import PeakGrowth
 from support.strata_server import LONG_S, StrataServer, wait_for
-
-from attempts.tools import M
 
 LATE_S = 120  # a busy machine may be late by this, and its clocks may start late
 CONNECTIONS = 2048
@@ -46,12 +45,33 @@ def connected(server, first=b""):
 
 
 def cut(section, what, took, limit_s, keeps):
-    answer = f"cut off after {limit_s} s" if limit_s / 2 <= took <= limit_s + LATE_S else f"after {took:.0f} s"
-    section.tried(what, answer, f"cut off after {limit_s} s", keeps, f"{round(took)} s (held to {limit_s + LATE_S})")
+    answer = (
+        f"cut off after {limit_s} s"
+        if limit_s / 2 <= took <= limit_s + LATE_S
+        else f"after {took:.0f} s"
+    )
+    section.tried(
+        what,
+        answer,
+        f"cut off after {limit_s} s",
+        keeps,
+        f"{round(took)} s (held to {limit_s + LATE_S})",
+    )
 
 
 def post(server, path, length, *more):
-    return "\r\n".join((f"POST /api/v1{path} HTTP/1.1", f"Host: {server.host}", "Content-Type: application/json", f"Content-Length: {length}") + more).encode() + b"\r\n\r\n"
+    return (
+        "\r\n".join(
+            (
+                f"POST /api/v1{path} HTTP/1.1",
+                f"Host: {server.host}",
+                "Content-Type: application/json",
+                f"Content-Length: {length}",
+            )
+            + more
+        ).encode()
+        + b"\r\n\r\n"
+    )
 
 
 def drops_of_a_body(server):
@@ -89,7 +109,9 @@ def expired(server):
     token = server.ok("POST", "/me/tokens", {"name": "old", "days": 1}).json()
     with LiveClient(server, "sheet", token=token["secret"]) as connection:
         connection.hello(dpr=1, accept=["jpeg"])
-        server.sql(f"UPDATE tokens SET expires = now() - interval '1 second' WHERE id = {token['token']['id']}")
+        server.sql(
+            f"UPDATE tokens SET expires = now() - interval '1 second' WHERE id = {token['token']['id']}"
+        )
         start = time.monotonic()
         try:
             while True:
@@ -106,13 +128,21 @@ def slow_readers(server):
         link.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         link.settimeout(LONG_S)
         link.connect((server.host, server.port))
-        link.sendall(f"GET /api/v1{M}/layers/marks/texels.csv HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer {server.token}\r\n\r\n".encode())
+        link.sendall(
+            f"GET /api/v1{M}/layers/marks/texels.csv HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer {server.token}\r\n\r\n".encode()
+        )
         links.append(link)
-    wait_for(lambda: server.get(M + "/layers/marks/texels.csv?cell=20mm").status == 503, "the downloads to take their places")
+    wait_for(
+        lambda: server.get(M + "/layers/marks/texels.csv?cell=20mm").status == 503,
+        "the downloads to take their places",
+    )
     others = {server.get(M).status, server.get(M + "/layers/marks/statistics").status}
     for link in links:
         link.close()
-    wait_for(lambda: server.get(M + "/layers/marks/texels.csv?cell=20mm").status == 200, "the places to be free again")
+    wait_for(
+        lambda: server.get(M + "/layers/marks/texels.csv?cell=20mm").status == 200,
+        "the places to be free again",
+    )
     return others
 
 
@@ -155,13 +185,19 @@ def half_open_tls(server):
         pass
     hello = greeting.read()
     with concurrent.futures.ThreadPoolExecutor(3) as hands:
-        return list(hands.map(lambda first: until_closed(connected(server, first)), (b"", hello[:20], hello)))
+        return list(
+            hands.map(
+                lambda first: until_closed(connected(server, first)), (b"", hello[:20], hello)
+            )
+        )
 
 
 def allow_descriptors(count):
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     if hard != resource.RLIM_INFINITY and hard < count:
-        print(f"only {hard} descriptors may be open: too many connections are not tried", flush=True)
+        print(
+            f"only {hard} descriptors may be open: too many connections are not tried", flush=True
+        )
         return False
     if soft < count:
         resource.setrlimit(resource.RLIMIT_NOFILE, (count, hard))
@@ -172,33 +208,108 @@ def plain(table):
     section = table.section("Slow and idle connections")
     may_crowd = allow_descriptors(2 * CONNECTIONS + 1000)
     with StrataServer() as server:
-        server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048)
+        server.import_model(
+            folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
+        )
         server.ok("POST", M + "/layers", {"name": "Marks", "type": "u8"})
-        server.ok("POST", M + "/layers/marks/edits", {"op": "fill", "mode": "where", "where": "true", "value": 1})
+        server.ok(
+            "POST",
+            M + "/layers/marks/edits",
+            {"op": "fill", "mode": "where", "where": "true", "value": 1},
+        )
         crowded = crowd(server) if may_crowd else None
         kept_alive = b"GET /livez HTTP/1.1\r\nHost: x\r\n\r\n"
         with concurrent.futures.ThreadPoolExecutor(16) as hands:
             silent = hands.submit(lambda: until_closed(connected(server)))
-            heads = [hands.submit(lambda: until_closed(connected(server, b"GET / HTTP/1.1\r\nHost: x\r\n"), 1, b"X: y\r\n")) for _ in range(3)]
-            second = hands.submit(lambda: until_closed(connected(server, kept_alive + b"GET / HT"), 5, b"T"))
-            body = hands.submit(lambda: until_closed(connected(server, post(server, "/login", 1000) + b"{")))
-            refused = hands.submit(lambda: until_closed(connected(server, post(server, "/users", 1000))))
-            no_pong, of_age, drops, readers = (hands.submit(each, server) for each in (deaf, expired, drops_of_a_body, slow_readers))
-            cut(section, "A connection that says nothing", silent.result(), 10, "10 s from connecting to the end of the first head")
-            cut(section, "A head of which a line comes each second (slow-loris)", max(head.result() for head in heads), 10, "10 s from connecting to the end of the first head, however it trickles")
-            cut(section, "A second head that comes letter by letter on a connection that was served", second.result(), 60, "60 s from an answer to the end of the next head")
+            heads = [
+                hands.submit(
+                    lambda: until_closed(
+                        connected(server, b"GET / HTTP/1.1\r\nHost: x\r\n"), 1, b"X: y\r\n"
+                    )
+                )
+                for _ in range(3)
+            ]
+            second = hands.submit(
+                lambda: until_closed(connected(server, kept_alive + b"GET / HT"), 5, b"T")
+            )
+            body = hands.submit(
+                lambda: until_closed(connected(server, post(server, "/login", 1000) + b"{"))
+            )
+            refused = hands.submit(
+                lambda: until_closed(connected(server, post(server, "/users", 1000)))
+            )
+            no_pong, of_age, drops, readers = (
+                hands.submit(each, server)
+                for each in (deaf, expired, drops_of_a_body, slow_readers)
+            )
+            cut(
+                section,
+                "A connection that says nothing",
+                silent.result(),
+                10,
+                "10 s from connecting to the end of the first head",
+            )
+            cut(
+                section,
+                "A head of which a line comes each second (slow-loris)",
+                max(head.result() for head in heads),
+                10,
+                "10 s from connecting to the end of the first head, however it trickles",
+            )
+            cut(
+                section,
+                "A second head that comes letter by letter on a connection that was served",
+                second.result(),
+                60,
+                "60 s from an answer to the end of the next head",
+            )
             cut(section, "A body that stops", body.result(), 60, "60 s without a byte")
-            cut(section, "A body that stops, of a call that was refused", refused.result(), 60, "60 s without a byte")
-            cut(section, "200 bodies that come a byte a second", drops.result(), 60, "a body has a minute, and a second more for each kilobyte; others are served meanwhile")
-            section.tried("6 downloads that nobody reads", readers.result(), 200, "4 streams at once: **further downloads get 503** until one ends, or does not move for 60 s; all else is served")
+            cut(
+                section,
+                "A body that stops, of a call that was refused",
+                refused.result(),
+                60,
+                "60 s without a byte",
+            )
+            cut(
+                section,
+                "200 bodies that come a byte a second",
+                drops.result(),
+                60,
+                "a body has a minute, and a second more for each kilobyte; others are served meanwhile",
+            )
+            section.tried(
+                "6 downloads that nobody reads",
+                readers.result(),
+                200,
+                "4 streams at once: **further downloads get 503** until one ends, or does not move for 60 s; all else is served",
+            )
             code, took = of_age.result()
             assert took <= 45 + LATE_S, took
-            section.tried("A live connection whose token comes of age", code, 1008, "asked again every 30 s, and what is remembered is 10 s old at most", f"{round(took)} s (held to {45 + LATE_S})")
-            cut(section, "A live connection that answers no ping", no_pong.result(), 60, "pinged after 30 s, ended after 60")
+            section.tried(
+                "A live connection whose token comes of age",
+                code,
+                1008,
+                "asked again every 30 s, and what is remembered is 10 s old at most",
+                f"{round(took)} s (held to {45 + LATE_S})",
+            )
+            cut(
+                section,
+                "A live connection that answers no ping",
+                no_pong.result(),
+                60,
+                "pinged after 30 s, ended after 60",
+            )
         if crowded:
             took, memory = crowded
             assert took <= 10 + LATE_S, took
-            section.tried(f"{CONNECTIONS + 100} silent connections from one address", "those above 2048 are closed, room after 10 s", "those above 2048 are closed, room after 10 s", f"{CONNECTIONS} connections in all, **none by address** (see above)", f"{round(took)} s (held to {10 + LATE_S}); {memory}")
+            section.tried(
+                f"{CONNECTIONS + 100} silent connections from one address",
+                "those above 2048 are closed, room after 10 s",
+                "those above 2048 are closed, room after 10 s",
+                f"{CONNECTIONS} connections in all, **none by address** (see above)",
+                f"{round(took)} s (held to {10 + LATE_S}); {memory}",
+            )
         assert server.get("//livez").status == 200 and server.stop() == 0
         server.assert_clean_log()
 
@@ -211,7 +322,13 @@ def tls(table):
         with StrataServer(options=["--tls-cert", chain, "--tls-key", key]) as server:
             server.tls = trusting(chain)
             took = half_open_tls(server)
-            cut(section, "A connection that says nothing, half a greeting, or a greeting and nothing more", max(took), 10, "10 s for the handshake")
+            cut(
+                section,
+                "A connection that says nothing, half a greeting, or a greeting and nothing more",
+                max(took),
+                10,
+                "10 s for the handshake",
+            )
             old = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
             old.load_verify_locations(chain)
             old.minimum_version, old.maximum_version = ssl.TLSVersion.TLSv1, ssl.TLSVersion.TLSv1_1
@@ -223,7 +340,15 @@ def tls(table):
                 spoken = "refused"
             section.tried("TLS 1.0 and 1.1", spoken, "refused", "1.2 and 1.3 alone")
             offered = set()
-            for weak in ("AES128-SHA", "AES256-SHA", "AES128-GCM-SHA256", "ECDHE-ECDSA-AES128-SHA", "ECDHE-RSA-AES128-SHA", "ECDHE-ECDSA-AES256-SHA384", "ECDHE-RSA-AES256-SHA384"):
+            for weak in (
+                "AES128-SHA",
+                "AES256-SHA",
+                "AES128-GCM-SHA256",
+                "ECDHE-ECDSA-AES128-SHA",
+                "ECDHE-RSA-AES128-SHA",
+                "ECDHE-ECDSA-AES256-SHA384",
+                "ECDHE-RSA-AES256-SHA384",
+            ):
                 old.minimum_version = old.maximum_version = ssl.TLSVersion.TLSv1_2
                 old.set_ciphers(weak + ":@SECLEVEL=0")
                 try:
@@ -231,19 +356,67 @@ def tls(table):
                         offered.add(weak)
                 except (ssl.SSLError, OSError):
                     pass
-            section.tried("TLS 1.2 without forward secrecy, or with a cipher that authenticates separately", sorted(offered) or "refused", "refused", "ECDHE with AES-GCM or ChaCha20-Poly1305 alone")
-            link = connected(server, f"GET /x HTTP/1.1\r\nHost: {server.host}:{server.port}\r\nCookie: strata_session=x\r\n\r\n".encode())
+            section.tried(
+                "TLS 1.2 without forward secrecy, or with a cipher that authenticates separately",
+                sorted(offered) or "refused",
+                "refused",
+                "ECDHE with AES-GCM or ChaCha20-Poly1305 alone",
+            )
+            link = connected(
+                server,
+                f"GET /x HTTP/1.1\r\nHost: {server.host}:{server.port}\r\nCookie: strata_session=x\r\n\r\n".encode(),
+            )
             head = link.recv(65536).decode()
-            section.tried("Plain http at the same port", int(head.split()[1]), 308, "sent on to https; nothing is served openly")
-            assert head.startswith("HTTP/1.1 308 Permanent Redirect\r\n") and f"Location: {server.url}/x\r\n" in head, head
-            whole = server.post("/login", {"token": server.token}, token=False).headers["Set-Cookie"]
+            section.tried(
+                "Plain http at the same port",
+                int(head.split()[1]),
+                308,
+                "sent on to https; nothing is served openly",
+            )
+            assert (
+                head.startswith("HTTP/1.1 308 Permanent Redirect\r\n")
+                and f"Location: {server.url}/x\r\n" in head
+            ), head
+            whole = server.post("/login", {"token": server.token}, token=False).headers[
+                "Set-Cookie"
+            ]
             cookie = whole.split(";")[0]
-            forged = server.request("PATCH", "/me", {"full_name": "x"}, token=False, headers={"Cookie": cookie, "Origin": f"http://{server.host}:{server.port}"})
-            section.tried("A change from a page of the same name that came by http", forged.status, 403, "by https the server's own pages are those by https")
-            assert whole.startswith("__Host-strata_session=") and "; Path=/;" in whole and "Domain" not in whole, whole
+            forged = server.request(
+                "PATCH",
+                "/me",
+                {"full_name": "x"},
+                token=False,
+                headers={"Cookie": cookie, "Origin": f"http://{server.host}:{server.port}"},
+            )
+            section.tried(
+                "A change from a page of the same name that came by http",
+                forged.status,
+                403,
+                "by https the server's own pages are those by https",
+            )
+            assert (
+                whole.startswith("__Host-strata_session=")
+                and "; Path=/;" in whole
+                and "Domain" not in whole
+            ), whole
             plain = cookie.removeprefix("__Host-")
-            section.tried("A cookie that a neighbouring host of the same domain has set", server.get("/me", token=False, headers={"Cookie": plain}).status, 401, "by https its name is `__Host-…`, which browsers take from this host alone")
+            section.tried(
+                "A cookie that a neighbouring host of the same domain has set",
+                server.get("/me", token=False, headers={"Cookie": plain}).status,
+                401,
+                "by https its name is `__Host-…`, which browsers take from this host alone",
+            )
             lasts = server.get("//", token=False).headers["Strict-Transport-Security"]
-            section.tried("A later visit by http", lasts, "max-age=31536000", "Strict-Transport-Security: browsers ask by https for a year")
-            section.tried("The cookie on its way by http", "Secure" if "; Secure" in whole else whole, "Secure", "browsers send it by https alone")
+            section.tried(
+                "A later visit by http",
+                lasts,
+                "max-age=31536000",
+                "Strict-Transport-Security: browsers ask by https for a year",
+            )
+            section.tried(
+                "The cookie on its way by http",
+                "Secure" if "; Secure" in whole else whole,
+                "Secure",
+                "browsers send it by https alone",
+            )
             server.assert_clean_log()

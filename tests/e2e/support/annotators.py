@@ -11,8 +11,8 @@ from support.ledger import Change
 from support.live_client import AWAY, LiveClient, Refused
 from support.live_line import WAYS, Line
 
-MOST_WAITING = 16        # messages that one person has sent and that are not durable
-MOST_ATTEMPTS = 1000     # of a message that the server has no room for
+MOST_WAITING = 16  # messages that one person has sent and that are not durable
+MOST_ATTEMPTS = 1000  # of a message that the server has no room for
 TURNS_EVERY_S = 0.1
 VALUES = [1, 2, 3, 4, 5, 6, 255]
 
@@ -32,7 +32,7 @@ class Annotator(threading.Thread):
         self.angle = 2 * math.pi * number / site.people
         self.line, self.lines, self.hanging = None, [], []
         self.waiting, self.done = {}, []  # by id what is not known to be durable, in order; what is
-        self.again = False                # something was put off
+        self.again = False  # something was put off
         self.cuts = dict.fromkeys(WAYS, 0)
         self.camera_seq, self.next_turn, self.cut_at, self.cut_way = 0, 0.0, 0.0, WAYS[0]
         self.drained = threading.Event()
@@ -57,7 +57,13 @@ class Annotator(threading.Thread):
 
     def open_line(self):
         number = len(self.lines)
-        live = LiveClient(self.site.server, self.site.model["id"], token="", cookie=self.browser.cookie, origin=self.site.server.url)
+        live = LiveClient(
+            self.site.server,
+            self.site.model["id"],
+            token="",
+            cookie=self.browser.cookie,
+            origin=self.site.server.url,
+        )
         welcome = live.hello(accept=["jpeg"])
         self.line = Line(live, self.hears, self.ledger.fault, number)
         self.lines.append(self.line)
@@ -65,7 +71,11 @@ class Annotator(threading.Thread):
         self.look(moving=self.turning)
         low, high = self.site.cut_every
         self.cut_way = self.random.choice(WAYS)
-        self.cut_at = math.inf if self.site.stopping.is_set() else time.monotonic() + self.random.uniform(low, high)
+        self.cut_at = (
+            math.inf
+            if self.site.stopping.is_set()
+            else time.monotonic() + self.random.uniform(low, high)
+        )
         return welcome
 
     def camera(self):
@@ -107,7 +117,9 @@ class Annotator(threading.Thread):
             self.ledger.claims += list(saved_through.items())
             if self.random.random() < 0.5:
                 for change in list(self.waiting.values()):
-                    if change.begin and change.message["n"] <= saved_through.get(change.message["stroke"], -1):
+                    if change.begin and change.message["n"] <= saved_through.get(
+                        change.message["stroke"], -1
+                    ):
                         change.promised = True
                         del self.waiting[change.id]
         if self.done and self.random.random() < 0.4:  # somebody whose answers were lost
@@ -159,7 +171,14 @@ class Annotator(threading.Thread):
 
     def hears_problem(self, message):
         change = self.ledger.changes.get(message.get("ref"))
-        if change and not change.saved_at and (message["status"] in (429, 503) or (change.begin and message["status"] in (404, 409))):
+        if (
+            change
+            and not change.saved_at
+            and (
+                message["status"] in (429, 503)
+                or (change.begin and message["status"] in (404, 409))
+            )
+        ):
             self.put_off(change)  # also a batch whose predecessor was put off
         elif change and not change.answer and not change.begin and message["status"] in (409, 422):
             change.refused = message["title"]  # nothing to undo, a fill beside the model
@@ -222,12 +241,17 @@ class Annotator(threading.Thread):
     def post(self, change):
         """Over HTTP until it is answered; now and then nobody waits for the answer, and all is asked again."""
         path = f"/models/{self.site.model['id']}/layers/{self.site.layer}/"
-        path, body = (path + "edits", change.message["edit"]) if "edit" in change.message else (path + change.message["op"], None)
+        path, body = (
+            (path + "edits", change.message["edit"])
+            if "edit" in change.message
+            else (path + change.message["op"], None)
+        )
         change.first_sent = time.monotonic()
         for _ in range(MOST_ATTEMPTS):
             change.lines.append(None)
             try:
-                if body and self.random.random() < 0.2:  # not an undo: what it does depends on when it arrives
+                # not an undo: what it does depends on when it arrives
+                if body and self.random.random() < 0.2:
                     self.site.ask_and_go(self.browser, path, body, change.id)
                 answer = self.browser.request("POST", path, body, **{"Idempotency-Key": change.id})
             except AWAY:
@@ -252,30 +276,57 @@ class Annotator(threading.Thread):
         raise AssertionError(f"{change.message} was put off again and again")
 
     def act(self):
-        kind = self.random.choices(("stroke", "dab", "polygon", "recolour", "bucket", "undo", "redo"), (70, 6, 6, 2, 1, 9, 5))[0]
+        kind = self.random.choices(
+            ("stroke", "dab", "polygon", "recolour", "bucket", "undo", "redo"),
+            (70, 6, 6, 2, 1, 9, 5),
+        )[0]
         if kind == "stroke":
             return self.stroke()
-        self.change(kind, {"op": kind} if kind in ("undo", "redo") else {"op": "edit", "edit": getattr(self, kind)()})
+        self.change(
+            kind,
+            {"op": kind}
+            if kind in ("undo", "redo")
+            else {"op": "edit", "edit": getattr(self, kind)()},
+        )
         if kind == "undo" and self.random.random() < 0.4:
             self.change("redo", {"op": "redo"})  # before a new stroke leaves nothing to put back
         return None
 
     def change(self, kind, message):
         by_http = self.random.random() < 0.5
-        self.deliver(Change(self, kind, {**message, "id": new_id(), "layer": self.site.layer}, by_http=by_http))
+        self.deliver(
+            Change(
+                self, kind, {**message, "id": new_id(), "layer": self.site.layer}, by_http=by_http
+            )
+        )
 
     def value(self):
-        return {"erase": True} if self.random.random() < 0.15 else {"value": self.random.choice(VALUES)}
+        return (
+            {"erase": True}
+            if self.random.random() < 0.15
+            else {"value": self.random.choice(VALUES)}
+        )
 
     def brush(self):
-        return {**self.value(), "camera": self.camera(), "radius_px": self.random.randint(3, 40), **({"shape": "square"} if self.random.random() < 0.1 else {})}
+        return {
+            **self.value(),
+            "camera": self.camera(),
+            "radius_px": self.random.randint(3, 40),
+            **({"shape": "square"} if self.random.random() < 0.1 else {}),
+        }
 
     def points(self, count, start=None):
         width, height = self.site.window
-        x, y = start or (self.random.uniform(0.3, 0.7) * width, self.random.uniform(0.25, 0.75) * height)
+        x, y = start or (
+            self.random.uniform(0.3, 0.7) * width,
+            self.random.uniform(0.25, 0.75) * height,
+        )
         path = []
         for _ in range(count):
-            x, y = x + self.random.uniform(-0.04, 0.04) * width, y + self.random.uniform(-0.05, 0.05) * height
+            x, y = (
+                x + self.random.uniform(-0.04, 0.04) * width,
+                y + self.random.uniform(-0.05, 0.05) * height,
+            )
             path.append([round(x, 2), round(y, 2)])
         return path
 
@@ -283,18 +334,39 @@ class Annotator(threading.Thread):
         return {"op": "stroke", **self.brush(), "path": self.points(3)}
 
     def polygon(self):
-        return {"op": "polygon", **self.value(), "camera": self.camera(), "path": self.points(self.random.randint(3, 6))}
+        return {
+            "op": "polygon",
+            **self.value(),
+            "camera": self.camera(),
+            "path": self.points(self.random.randint(3, 6)),
+        }
 
     def recolour(self):
         """What it does depends on all edits before it."""
-        return {"op": "fill", "mode": "where", "where": f"{self.site.layer} == {self.random.choice(VALUES)}", **self.value()}
+        return {
+            "op": "fill",
+            "mode": "where",
+            "where": f"{self.site.layer} == {self.random.choice(VALUES)}",
+            **self.value(),
+        }
 
     def bucket(self):
         x, y = self.points(1)[0]
-        return {"op": "fill", "mode": "connected", "at": {"camera": self.camera(), "x": x, "y": y}, **self.value()}
+        return {
+            "op": "fill",
+            "mode": "connected",
+            "at": {"camera": self.camera(), "x": x, "y": y},
+            **self.value(),
+        }
 
     def stroke(self):
-        begin = {"op": "stroke.begin", "id": new_id(), "stroke": new_id(), "layer": self.site.layer, **self.brush()}
+        begin = {
+            "op": "stroke.begin",
+            "id": new_id(),
+            "stroke": new_id(),
+            "layer": self.site.layer,
+            **self.brush(),
+        }
         try:
             self.line.send(begin)
         except AWAY:
@@ -303,7 +375,13 @@ class Annotator(threading.Thread):
         for n in range(self.random.randint(1, 10)):
             path = self.points(self.random.randint(1, 3), last)
             last = path[-1]
-            message = {"op": "stroke.extend", "id": new_id(), "stroke": begin["stroke"], "n": n, "path": path}
+            message = {
+                "op": "stroke.extend",
+                "id": new_id(),
+                "stroke": begin["stroke"],
+                "n": n,
+                "path": path,
+            }
             self.deliver(Change(self, "stroke", message, begin=begin))
             self.show_pointer(last)
             self.pause(self.random.uniform(0.5, 1.5) / self.site.pace)

@@ -6,7 +6,10 @@ import threading
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 PAGE = os.path.join(ROOT, "docs", "security.md")
-BEGIN, END = "<!-- attempts: written by tests/e2e/security_attempts_test.py --update-docs -->", "<!-- end of attempts -->"
+BEGIN, END = (
+    "<!-- attempts: written by tests/e2e/security_attempts_test.py --update-docs -->",
+    "<!-- end of attempts -->",
+)
 HEAD = "| attempt | answer | measured | what keeps it |\n|---|---|---|---|\n"
 
 
@@ -23,11 +26,20 @@ class Section:
 
     def tried(self, attempt, answer, expected, keeps, measured=""):
         """Fails where the answer is another one than expected."""
-        assert told(answer) == told(expected), f"{self.title}: {attempt}: {told(answer)}, not {told(expected)} {measured}"
+        assert told(answer) == told(
+            expected
+        ), f"{self.title}: {attempt}: {told(answer)}, not {told(expected)} {measured}"
         self.rows.append((attempt, told(answer), measured, keeps))
 
     def markdown(self):
-        return f"### {self.title}\n\n" + HEAD + "".join("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |\n" for row in self.rows)
+        return (
+            f"### {self.title}\n\n"
+            + HEAD
+            + "".join(
+                "| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |\n"
+                for row in self.rows
+            )
+        )
 
 
 class AttemptTable:
@@ -52,8 +64,13 @@ class AttemptTable:
     def check_page(self):
         """The page tells what was answered."""
         kept, now = _compared(self._page()[1]), _compared(self.markdown())
-        differing = [f"- {row}" for row in kept if row not in now] + [f"+ {row}" for row in now if row not in kept]
-        assert kept == now, "docs/security.md tells something else; write it anew with --update-docs:\n" + "\n".join(differing or ["the order"])
+        differing = [f"- {row}" for row in kept if row not in now] + [
+            f"+ {row}" for row in now if row not in kept
+        ]
+        assert kept == now, (
+            "docs/security.md tells something else; write it anew with --update-docs:\n"
+            + "\n".join(differing or ["the order"])
+        )
 
     @staticmethod
     def _page():

@@ -42,5 +42,9 @@ def secret_of(invitation):
 
 def join(server, invitation, password=PASSWORD, **more):
     browser = Browser(server)
-    browser.ok("POST", "/invitations/accept", {"invitation": secret_of(invitation), "password": password, **more})
+    browser.ok(
+        "POST",
+        "/invitations/accept",
+        {"invitation": secret_of(invitation), "password": password, **more},
+    )
     return browser

@@ -8,8 +8,28 @@ def make_certificate(folder, name, key_type="ec"):
     """A certificate of 127.0.0.1 that signs itself: (chain, key)."""
     chain, key = os.path.join(folder, name + ".pem"), os.path.join(folder, name + ".key")
     kind = ["ec", "-pkeyopt", "ec_paramgen_curve:P-256"] if key_type == "ec" else ["rsa:2048"]
-    subprocess.run(["openssl", "req", "-x509", "-newkey", *kind, "-nodes", "-days", "2", "-subj", f"/CN={name}",
-                    "-addext", "subjectAltName=IP:127.0.0.1", "-keyout", key, "-out", chain], check=True, capture_output=True)
+    subprocess.run(
+        [
+            "openssl",
+            "req",
+            "-x509",
+            "-newkey",
+            *kind,
+            "-nodes",
+            "-days",
+            "2",
+            "-subj",
+            f"/CN={name}",
+            "-addext",
+            "subjectAltName=IP:127.0.0.1",
+            "-keyout",
+            key,
+            "-out",
+            chain,
+        ],
+        check=True,
+        capture_output=True,
+    )
     return chain, key
 
 

@@ -13,7 +13,10 @@ TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": 
 
 def _is_type(value, name):
     if name in ("number", "integer"):
-        return not isinstance(value, bool) and (isinstance(value, int) or (isinstance(value, float) and (name == "number" or value.is_integer())))
+        return not isinstance(value, bool) and (
+            isinstance(value, int)
+            or (isinstance(value, float) and (name == "number" or value.is_integer()))
+        )
     return isinstance(value, TYPES[name])
 
 
@@ -21,8 +24,10 @@ class Contract:
     def __init__(self, file=os.path.join(ROOT, "protocol", "generated", "openapi.json")):
         with open(file, encoding="utf-8") as opened:
             self.document = json.load(opened)
-        self.paths = [(re.compile(re.sub(r"\\{[^/]*?\\}", "[^/]+", re.escape(path)) + "$"), operations)
-                      for path, operations in self.document["paths"].items()]
+        self.paths = [
+            (re.compile(re.sub(r"\\{[^/]*?\\}", "[^/]+", re.escape(path)) + "$"), operations)
+            for path, operations in self.document["paths"].items()
+        ]
         self.paths.sort(key=lambda entry: entry[0].pattern.count("[^/]+"))
 
     def _resolve(self, node):
@@ -36,14 +41,24 @@ class Contract:
     def check(self, method, target, answer):
         """Raises where the answer is not one that the contract has."""
         path, method = target.split("?")[0], "GET" if method == "HEAD" else method
-        operation = next((operations[method.lower()] for pattern, operations in self.paths
-                          if pattern.match(path) and method.lower() in operations), None)
+        operation = next(
+            (
+                operations[method.lower()]
+                for pattern, operations in self.paths
+                if pattern.match(path) and method.lower() in operations
+            ),
+            None,
+        )
         if operation is None:
-            assert answer.status >= 400 or not path.startswith("/api/"), f"{method} {path} is not in the contract: {answer}"
+            assert answer.status >= 400 or not path.startswith(
+                "/api/"
+            ), f"{method} {path} is not in the contract: {answer}"
             return
         described = operation["responses"].get(str(answer.status))
         if described is None:
-            assert (answer.status == 403 and any(why in answer.body for why in FORBIDDEN_OF_ANY_CALL)), f"{method} {path}: the contract has no {answer.status}: {answer}"
+            assert answer.status == 403 and any(
+                why in answer.body for why in FORBIDDEN_OF_ANY_CALL
+            ), f"{method} {path}: the contract has no {answer.status}: {answer}"
             return
         media_type = (answer.headers.get("Content-Type") or "").split(";")[0]
         content = self._resolve(described).get("content", {})
@@ -51,10 +66,16 @@ class Contract:
         if not answer.body or not content or coding == "br":  # Python has no decoder for it
             return
         body = gzip.decompress(answer.body) if coding == "gzip" else answer.body
-        assert media_type in content or "*/*" in content, f"{method} {path} {answer.status}: {media_type} is not in the contract"
+        assert (
+            media_type in content or "*/*" in content
+        ), f"{method} {path} {answer.status}: {media_type} is not in the contract"
         if media_type.endswith("json") and "schema" in content.get(media_type, {}):
             wrong = list(self.faults(content[media_type]["schema"], json.loads(body), "body"))
-            assert not wrong, f"{method} {path} {answer.status} is not as in the contract:\n" + "\n".join(wrong[:10])
+            assert (
+                not wrong
+            ), f"{method} {path} {answer.status} is not as in the contract:\n" + "\n".join(
+                wrong[:10]
+            )
 
     def faults(self, schema, value, where):
         """What JSON Schema (as far as the contract uses it) says against the value."""
@@ -65,7 +86,9 @@ class Contract:
                 if not enough(fits):
                     yield f"{where}: fits {fits} of its alternatives"
         kinds = schema.get("type")
-        if kinds and not any(_is_type(value, kind) for kind in (kinds if isinstance(kinds, list) else [kinds])):
+        if kinds and not any(
+            _is_type(value, kind) for kind in (kinds if isinstance(kinds, list) else [kinds])
+        ):
             yield f"{where}: {value!r:.80} is not {kinds}"
             return
         if "enum" in schema and value not in schema["enum"]:
@@ -85,7 +108,9 @@ class Contract:
             if "pattern" in schema and not re.search(schema["pattern"], value):
                 yield f"{where}: {value!r:.80} does not match {schema['pattern']}"
         elif not isinstance(value, bool) and isinstance(value, (int, float)):
-            if not schema.get("minimum", value) <= value <= schema.get("maximum", value) or value <= schema.get("exclusiveMinimum", value - 1):
+            if not schema.get("minimum", value) <= value <= schema.get(
+                "maximum", value
+            ) or value <= schema.get("exclusiveMinimum", value - 1):
                 yield f"{where}: {value} is out of range"
 
     def _object_faults(self, schema, value, where):
@@ -93,7 +118,11 @@ class Contract:
         for name in schema.get("required", []):
             if name not in value:
                 yield f"{where}: {name} is missing"
-        if not schema.get("minProperties", 0) <= len(value) <= schema.get("maxProperties", len(value)):
+        if (
+            not schema.get("minProperties", 0)
+            <= len(value)
+            <= schema.get("maxProperties", len(value))
+        ):
             yield f"{where}: {len(value)} members"
         others = schema.get("additionalProperties", True)
         for name, item in value.items():

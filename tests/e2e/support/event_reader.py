@@ -13,7 +13,10 @@ class EventReader:
     def __init__(self, server, model, token=True, after=None):
         secret = server.token if token is True else token
         self.connection = http.client.HTTPConnection(server.host, server.port, timeout=LONG_S)
-        headers = {"Authorization": f"Bearer {secret}", **({"Last-Event-ID": after} if after else {})}
+        headers = {
+            "Authorization": f"Bearer {secret}",
+            **({"Last-Event-ID": after} if after else {}),
+        }
         self.connection.request("GET", f"/api/v1{model}/events", headers=headers)
         self.answer = self.connection.getresponse()
         self.events, self.last, self.ended = queue.Queue(), after, threading.Event()

@@ -8,7 +8,13 @@ def summary(seconds):
     if not ordered:
         return {"count": 0}
     rank = lambda share: round(1000 * ordered[min(len(ordered) - 1, int(share * len(ordered)))], 1)
-    return {"count": len(ordered), "ms_p50": rank(0.5), "ms_p95": rank(0.95), "ms_p99": rank(0.99), "ms_max": round(1000 * ordered[-1], 1)}
+    return {
+        "count": len(ordered),
+        "ms_p50": rank(0.5),
+        "ms_p95": rank(0.95),
+        "ms_p99": rank(0.99),
+        "ms_max": round(1000 * ordered[-1], 1),
+    }
 
 
 def histogram(seconds, steps_a_doubling=4):
@@ -19,7 +25,10 @@ def histogram(seconds, steps_a_doubling=4):
         counts[min(len(ends) - 1, bisect.bisect_left(ends, 1000 * each))] += 1
     first = next((i for i, count in enumerate(counts) if count), 0)
     last = max((i for i, count in enumerate(counts) if count), default=0)
-    return [{"ms": round(end, 2), "count": count} for end, count in list(zip(ends, counts))[first:last + 1]]
+    return [
+        {"ms": round(end, 2), "count": count}
+        for end, count in list(zip(ends, counts))[first : last + 1]
+    ]
 
 
 class Sight:
@@ -27,7 +36,16 @@ class Sight:
 
     def __init__(self, annotator):
         self.turning = annotator.turning
-        self.lines = [(line.frames[0][0], line.ended, [t for t, _ in line.frames], [s for _, s in line.frames]) for line in annotator.lines if line.frames]
+        self.lines = [
+            (
+                line.frames[0][0],
+                line.ended,
+                [t for t, _ in line.frames],
+                [s for _, s in line.frames],
+            )
+            for line in annotator.lines
+            if line.frames
+        ]
         self.starts = [line[0] for line in self.lines]
 
     def after(self, sent, sequence):
@@ -46,7 +64,13 @@ def latencies(ledger, annotators):
     found = {"applied": [], "saved": [], "still": [], "turning": [], "own": []}
     away = 0
     for change in ledger.changes.values():
-        if not change.begin or not change.answer or not change.saved_at or len(change.lines) != 1 or change.answer[1] == 0:
+        if (
+            not change.begin
+            or not change.answer
+            or not change.saved_at
+            or len(change.lines) != 1
+            or change.answer[1] == 0
+        ):
             continue
         if change.applied_at:
             found["applied"].append(change.applied_at - change.first_sent)
@@ -56,5 +80,7 @@ def latencies(ledger, annotators):
             if seconds is None:
                 away += name != change.user
             else:
-                found["own" if name == change.user else "turning" if sight.turning else "still"].append(seconds)
+                found[
+                    "own" if name == change.user else "turning" if sight.turning else "still"
+                ].append(seconds)
     return found, away

@@ -6,11 +6,17 @@ class Change:
     """One message that changes something, and what the server said of it."""
 
     def __init__(self, annotator, kind, message, begin=None, by_http=False):
-        self.user, self.kind, self.message, self.begin, self.by_http = annotator.name, kind, message, begin, by_http
+        self.user, self.kind, self.message, self.begin, self.by_http = (
+            annotator.name,
+            kind,
+            message,
+            begin,
+            by_http,
+        )
         self.id = message["id"]
         self.first_sent = self.applied_at = self.saved_at = None
-        self.lines = []        # numbers of the connections that it was sent on, each time
-        self.answer = None     # (sequence, texels_changed, area_m2)
+        self.lines = []  # numbers of the connections that it was sent on, each time
+        self.answer = None  # (sequence, texels_changed, area_m2)
         self.promised = False  # a welcome said that it was saved
         self.refused = None
 
@@ -20,11 +26,11 @@ class Ledger:
 
     def __init__(self):
         self.lock = threading.RLock()
-        self.changes = {}   # id -> change
-        self.batches = {}   # (stroke, n) -> change
-        self.claims = []    # (stroke, n): a welcome said that all up to n is saved
+        self.changes = {}  # id -> change
+        self.batches = {}  # (stroke, n) -> change
+        self.claims = []  # (stroke, n): a welcome said that all up to n is saved
         self.repeats = self.unsaved = self.put_off = 0
-        self.dropped = []   # codes of connections that the server ended
+        self.dropped = []  # codes of connections that the server ended
         self.faults = []
 
     def add(self, change):
@@ -34,7 +40,11 @@ class Ledger:
                 self.batches[change.message["stroke"], change.message["n"]] = change
 
     def named(self, message):
-        return self.batches.get((message["stroke"], message["n"])) if "stroke" in message else self.changes.get(message.get("id"))
+        return (
+            self.batches.get((message["stroke"], message["n"]))
+            if "stroke" in message
+            else self.changes.get(message.get("id"))
+        )
 
     def told(self, change, message, now, saved):
         """True when it is durable now and was not before."""
@@ -43,7 +53,9 @@ class Ledger:
             if change.answer is None:
                 change.answer = answer
             elif change.answer != answer:
-                self.faults.append(f"{change.kind} {change.id} of {change.user} was answered {change.answer}, then {answer}")
+                self.faults.append(
+                    f"{change.kind} {change.id} of {change.user} was answered {change.answer}, then {answer}"
+                )
             if not saved:
                 change.applied_at = change.applied_at or now
                 return False
@@ -59,4 +71,6 @@ class Ledger:
 
     def saved(self):
         with self.lock:
-            return [change for change in self.changes.values() if change.saved_at or change.promised]
+            return [
+                change for change in self.changes.values() if change.saved_at or change.promised
+            ]

@@ -33,7 +33,17 @@ AWAY = (OSError, http.client.HTTPException, Closed)  # the server or the connect
 
 
 class LiveClient:
-    def __init__(self, server, model, origin=None, token=None, cookie=None, receive_buffer=None, subprotocol="strata.v1", query=""):
+    def __init__(
+        self,
+        server,
+        model,
+        origin=None,
+        token=None,
+        cookie=None,
+        receive_buffer=None,
+        subprotocol="strata.v1",
+        query="",
+    ):
         port = server.port
         if port is None:
             raise ConnectionRefusedError("the server is down")
@@ -46,9 +56,15 @@ class LiveClient:
         if server.tls:
             self.socket = server.tls.wrap_socket(self.socket, server_hostname=server.host)
         self.buffer, self.bytes_received = b"", 0
-        lines = [f"GET /api/v1/models/{model}/live{query} HTTP/1.1", f"Host: {server.host}:{port}", "Upgrade: websocket",
-                 "Connection: Upgrade", "Sec-WebSocket-Version: 13",
-                 "Sec-WebSocket-Key: " + base64.b64encode(os.urandom(16)).decode(), "Sec-WebSocket-Protocol: " + subprotocol]
+        lines = [
+            f"GET /api/v1/models/{model}/live{query} HTTP/1.1",
+            f"Host: {server.host}:{port}",
+            "Upgrade: websocket",
+            "Connection: Upgrade",
+            "Sec-WebSocket-Version: 13",
+            "Sec-WebSocket-Key: " + base64.b64encode(os.urandom(16)).decode(),
+            "Sec-WebSocket-Protocol: " + subprotocol,
+        ]
         secret = server.token if token is None else token
         if secret:
             lines.append("Authorization: Bearer " + secret)
@@ -60,7 +76,11 @@ class LiveClient:
         head = self._until(b"\r\n\r\n")
         status = int(head.split(b" ")[1])
         if status != 101:
-            length = [int(line.split(b":")[1]) for line in head.split(b"\r\n") if line.lower().startswith(b"content-length:")]
+            length = [
+                int(line.split(b":")[1])
+                for line in head.split(b"\r\n")
+                if line.lower().startswith(b"content-length:")
+            ]
             body = self._take(length[0]) if length else b""
             self.socket.close()
             raise Refused(status, body)
@@ -106,7 +126,9 @@ class LiveClient:
             head += bytes([0x80 | 127]) + struct.pack(">Q", size)
         mask = os.urandom(4)
         whole = (mask * (size // 4 + 1))[:size]
-        masked = (int.from_bytes(payload, "big") ^ int.from_bytes(whole, "big")).to_bytes(size, "big")
+        masked = (int.from_bytes(payload, "big") ^ int.from_bytes(whole, "big")).to_bytes(
+            size, "big"
+        )
         return head + mask + masked
 
     def send(self, message):
@@ -139,14 +161,28 @@ class LiveClient:
                 continue
             if kind == 1:
                 return json.loads(content)
-            header = FRAME_HEADER.unpack(content[:FRAME_HEADER.size])
-            return {"op": "frame", "flags": header[3], "view_id": header[4], "frame": header[5], "camera_seq": header[6],
-                    "scene_sequence": header[7], "x": header[8], "y": header[9], "width": header[10], "height": header[11],
-                    "full_width": header[12], "full_height": header[13], "bytes": header[16], "payload": content[FRAME_HEADER.size:]}
+            header = FRAME_HEADER.unpack(content[: FRAME_HEADER.size])
+            return {
+                "op": "frame",
+                "flags": header[3],
+                "view_id": header[4],
+                "frame": header[5],
+                "camera_seq": header[6],
+                "scene_sequence": header[7],
+                "x": header[8],
+                "y": header[9],
+                "width": header[10],
+                "height": header[11],
+                "full_width": header[12],
+                "full_height": header[13],
+                "bytes": header[16],
+                "payload": content[FRAME_HEADER.size :],
+            }
 
     def receive_until(self, *ops):
         """The next message of these kinds; frames that come meanwhile are acknowledged."""
-        end = time.monotonic() + LONG_S  # the server's pings keep the socket's own limit from passing
+        # the server's pings keep the socket's own limit from passing
+        end = time.monotonic() + LONG_S
         while True:
             message = self.receive(end)
             if message["op"] == "frame" and message["flags"] & LAST_RECTANGLE:

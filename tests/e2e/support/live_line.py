@@ -30,7 +30,7 @@ class Line:
     def send_half(self, message):
         whole = LiveClient.framed(1, json.dumps(message).encode())
         with self.sending:
-            self.live.socket.sendall(whole[:random.randint(1, len(whole) - 1)])
+            self.live.socket.sendall(whole[: random.randint(1, len(whole) - 1)])
 
     def _read(self):
         try:
@@ -50,7 +50,9 @@ class Line:
         if not frame["flags"] & LAST_RECTANGLE:
             return
         now, sequence = time.monotonic(), frame["scene_sequence"]
-        assert sequence >= self.shown, f"a frame shows {sequence}, after one that showed {self.shown}"
+        assert (
+            sequence >= self.shown
+        ), f"a frame shows {sequence}, after one that showed {self.shown}"
         self.shown = sequence
         self.frames.append((now, sequence))
         self.send({"op": "ack", "view_id": frame["view_id"], "frame": frame["frame"]})
@@ -64,6 +66,8 @@ class Line:
             pass  # the server was quicker
         self.reader.join(LONG_S)
         if way in ("reset", "half a message"):
-            self.live.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            self.live.socket.setsockopt(
+                socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0)
+            )
         if way != "hang":
             self.live.socket.close()

@@ -9,15 +9,27 @@ _TICKS = os.sysconf("SC_CLK_TCK")
 
 def machine():
     with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
-        cpu = next((line.split(":", 1)[1].strip() for line in file if line.startswith("model name")), "unknown")
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
+        cpu = next(
+            (line.split(":", 1)[1].strip() for line in file if line.startswith("model name")),
+            "unknown",
+        )
+    commit = subprocess.run(
+        ["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False
+    ).stdout.strip()
     return {"cpu": cpu, "cores": os.cpu_count(), "commit": commit}
 
 
 def gl_renderer(binary):
     """As `strata doctor` names it."""
     said = subprocess.run([binary, "doctor"], capture_output=True, text=True, check=False).stdout
-    return next((line.split("Renderer:", 1)[1].strip() for line in said.splitlines() if "Renderer:" in line), "unknown")
+    return next(
+        (
+            line.split("Renderer:", 1)[1].strip()
+            for line in said.splitlines()
+            if "Renderer:" in line
+        ),
+        "unknown",
+    )
 
 
 def _stat(path):
@@ -75,8 +87,13 @@ class Watch:
         self.began, self.at_start = time.monotonic(), self._now()
 
     def _now(self):
-        return {"server": processor_seconds(self.pid), "postgresql": family_seconds(self.postmaster), "annotators": time.process_time(), "machine": machine_seconds(),
-                "threads": thread_seconds(self.pid)}
+        return {
+            "server": processor_seconds(self.pid),
+            "postgresql": family_seconds(self.postmaster),
+            "annotators": time.process_time(),
+            "machine": machine_seconds(),
+            "threads": thread_seconds(self.pid),
+        }
 
     def sample(self):
         self.loads.append(os.getloadavg()[0])
@@ -84,12 +101,30 @@ class Watch:
     def end(self, people):
         """Cores that were in use, and of them those of the server and its PostgreSQL for each viewer."""
         used, seconds = self._now(), time.monotonic() - self.began
-        spent = {name: used[name] - self.at_start[name] for name in ("server", "postgresql", "annotators", "machine")}
-        spent["others_on_the_machine"] = max(0.0, spent["machine"] - spent["server"] - spent["postgresql"] - spent["annotators"])
-        threads = {name: round((now - self.at_start["threads"].get(name, 0)) / seconds / people, 4) for name, now in used["threads"].items()}
+        spent = {
+            name: used[name] - self.at_start[name]
+            for name in ("server", "postgresql", "annotators", "machine")
+        }
+        spent["others_on_the_machine"] = max(
+            0.0, spent["machine"] - spent["server"] - spent["postgresql"] - spent["annotators"]
+        )
+        threads = {
+            name: round((now - self.at_start["threads"].get(name, 0)) / seconds / people, 4)
+            for name, now in used["threads"].items()
+        }
         self.loads.append(os.getloadavg()[0])
         loads = sorted(self.loads)
-        return {"seconds": round(seconds, 1), "cores_used": {name: round(each / seconds, 3) for name, each in spent.items()},
-                "cores_a_viewer": {"server": round(spent["server"] / seconds / people, 4), "postgresql": round(spent["postgresql"] / seconds / people, 4)},
-                "cores_a_viewer_by_thread": dict(sorted(((n, t) for n, t in threads.items() if t >= 0.0005), key=lambda item: -item[1])),
-                "load_average": {"min": loads[0], "median": loads[len(loads) // 2], "max": loads[-1]}}
+        return {
+            "seconds": round(seconds, 1),
+            "cores_used": {name: round(each / seconds, 3) for name, each in spent.items()},
+            "cores_a_viewer": {
+                "server": round(spent["server"] / seconds / people, 4),
+                "postgresql": round(spent["postgresql"] / seconds / people, 4),
+            },
+            "cores_a_viewer_by_thread": dict(
+                sorted(
+                    ((n, t) for n, t in threads.items() if t >= 0.0005), key=lambda item: -item[1]
+                )
+            ),
+            "load_average": {"min": loads[0], "median": loads[len(loads) // 2], "max": loads[-1]},
+        }

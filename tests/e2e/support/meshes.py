@@ -4,9 +4,15 @@ import struct
 
 
 def ply(vertices, faces):
-    head = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\nproperty float x\nproperty float y\n"
-            f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n").encode()
-    return head + b"".join(struct.pack("<3f", *v) for v in vertices) + b"".join(struct.pack("<B3i", 3, *f) for f in faces)
+    head = (
+        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\nproperty float x\nproperty float y\n"
+        f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+    ).encode()
+    return (
+        head
+        + b"".join(struct.pack("<3f", *v) for v in vertices)
+        + b"".join(struct.pack("<B3i", 3, *f) for f in faces)
+    )
 
 
 def _grid_faces(rows, columns):
@@ -21,8 +27,11 @@ def _grid_faces(rows, columns):
 def folded_grid(cells=20, size=100.0, fold=1.0):
     """A sheet in folds that hide one another from the side; with a small `fold` it is nearly flat."""
     step = size / cells
-    vertices = [(j * step, i * step, fold * (12 * math.sin(j * 0.9) + 4 * math.cos(i * 0.7)))
-                for i in range(cells + 1) for j in range(cells + 1)]
+    vertices = [
+        (j * step, i * step, fold * (12 * math.sin(j * 0.9) + 4 * math.cos(i * 0.7)))
+        for i in range(cells + 1)
+        for j in range(cells + 1)
+    ]
     return ply(vertices, [(a, c, b) for a, b, c in _grid_faces(cells, cells)])
 
 
@@ -33,12 +42,21 @@ def bumpy_ball(rows=40, columns=80, radius=50.0):
         for j in range(columns):
             polar, around = math.pi * i / rows, 2 * math.pi * j / columns
             r = radius * (1 + 0.04 * math.sin(6 * polar) * math.cos(5 * around))
-            vertices.append((r * math.sin(polar) * math.cos(around), r * math.sin(polar) * math.sin(around), r * math.cos(polar)))
+            vertices.append(
+                (
+                    r * math.sin(polar) * math.cos(around),
+                    r * math.sin(polar) * math.sin(around),
+                    r * math.cos(polar),
+                )
+            )
     vertices.append((0.0, 0.0, -radius))
     at = lambda i, j: 1 + (i - 1) * columns + j % columns
     faces = [(0, at(1, j), at(1, j + 1)) for j in range(columns)]
     for i in range(1, rows - 1):
         for j in range(columns):
-            faces += [(at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1))]
+            faces += [
+                (at(i, j), at(i + 1, j), at(i + 1, j + 1)),
+                (at(i, j), at(i + 1, j + 1), at(i, j + 1)),
+            ]
     faces += [(len(vertices) - 1, at(rows - 1, j + 1), at(rows - 1, j)) for j in range(columns)]
     return ply(vertices, faces)

@@ -10,12 +10,12 @@ class Raster:
     def __init__(self, content):
         assert content[:6] == b"\x93NUMPY", content[:20]
         size = struct.unpack("<H", content[8:10])[0]
-        head = ast.literal_eval(content[10:10 + size].decode())
+        head = ast.literal_eval(content[10 : 10 + size].decode())
         (value, kind), (valid, flag) = head["descr"]
         assert (value, valid, flag[1:]) == ("value", "valid", "b1"), head
         self.height, self.width = head["shape"]
         self.texel = struct.Struct("<" + _CODES[kind[1:]] + "?")
-        self.content = content[10 + size:]
+        self.content = content[10 + size :]
         assert len(self.content) == self.width * self.height * self.texel.size
         self.digest = hashlib.sha256(self.content).hexdigest()
 
@@ -24,7 +24,14 @@ class Raster:
         row_size = self.width * self.texel.size
         found = []
         for start in range(0, len(self.content), row_size):
-            here, there = self.content[start:start + row_size], other.content[start:start + row_size]
+            here, there = (
+                self.content[start : start + row_size],
+                other.content[start : start + row_size],
+            )
             if here != there:
-                found += [(a, b) for a, b in zip(self.texel.iter_unpack(here), self.texel.iter_unpack(there)) if a != b]
+                found += [
+                    (a, b)
+                    for a, b in zip(self.texel.iter_unpack(here), self.texel.iter_unpack(there))
+                    if a != b
+                ]
         return found

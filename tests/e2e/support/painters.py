@@ -13,15 +13,17 @@ class Book:
 
     def __init__(self):
         self.lock = threading.Condition()
-        self.edits = {}      # sequence -> (layer slug, edit, answer)
-        self.repeats = []    # (method, path, body, key, answer): HTTP edits to send again
+        self.edits = {}  # sequence -> (layer slug, edit, answer)
+        self.repeats = []  # (method, path, body, key, answer): HTTP edits to send again
         self.faults = []
         self.stopping = threading.Event()
 
     def saved(self, sequence, layer, edit, answer):
         with self.lock:
             if sequence in self.edits:
-                self.faults.append(f"sequence {sequence} was given twice: {self.edits[sequence]} and {(layer, edit)}")
+                self.faults.append(
+                    f"sequence {sequence} was given twice: {self.edits[sequence]} and {(layer, edit)}"
+                )
             self.edits[sequence] = (layer, edit, answer)
             self.lock.notify_all()
 
@@ -41,7 +43,13 @@ class Book:
 class Painter(threading.Thread):
     def __init__(self, server, model, layers, cameras, book, seed):
         super().__init__(daemon=True, name=f"{type(self).__name__} {seed}")
-        self.server, self.model, self.layers, self.cameras, self.book = server, model, layers, cameras, book
+        self.server, self.model, self.layers, self.cameras, self.book = (
+            server,
+            model,
+            layers,
+            cameras,
+            book,
+        )
         self.random = random.Random(seed)
 
     def path(self, points):
@@ -54,7 +62,12 @@ class Painter(threading.Thread):
 
     def stroke(self, points):
         layer, values = self.random.choice(self.layers)
-        edit = {"op": "stroke", "camera": self.random.choice(self.cameras), "radius_px": self.random.randint(3, 25), "path": self.path(points)}
+        edit = {
+            "op": "stroke",
+            "camera": self.random.choice(self.cameras),
+            "radius_px": self.random.randint(3, 25),
+            "path": self.path(points),
+        }
         if self.random.random() < 0.15:
             edit["erase"] = True
         else:
@@ -81,7 +94,9 @@ class HttpPainter(Painter):
             try:
                 if self.connection is None:
                     self.connection = self.server.connect()
-                answer = self.server.post(path, edit, headers={"Idempotency-Key": key}, connection=self.connection)
+                answer = self.server.post(
+                    path, edit, headers={"Idempotency-Key": key}, connection=self.connection
+                )
             except AWAY:
                 self.connection = None
                 time.sleep(0.02)
@@ -111,10 +126,26 @@ class LivePainter(Painter):
             try:
                 with LiveClient(self.server, self.model) as live:
                     live.hello()
-                    live.send({"op": "stroke.begin", "id": begin, "stroke": stroke, "layer": layer, **tool})
+                    live.send(
+                        {
+                            "op": "stroke.begin",
+                            "id": begin,
+                            "stroke": stroke,
+                            "layer": layer,
+                            **tool,
+                        }
+                    )
                     for n, path in enumerate(batches):
                         if n not in saved:
-                            live.send({"op": "stroke.extend", "id": ids[n], "stroke": stroke, "n": n, "path": path})
+                            live.send(
+                                {
+                                    "op": "stroke.extend",
+                                    "id": ids[n],
+                                    "stroke": stroke,
+                                    "n": n,
+                                    "path": path,
+                                }
+                            )
                     self.collect(live, layer, edit, stroke, batches, ids, saved)
                     if len(saved) == len(batches):
                         live.send({"op": "stroke.end", "id": str(uuid.uuid4()), "stroke": stroke})
@@ -133,7 +164,9 @@ class LivePainter(Painter):
                 if n not in saved:
                     saved.add(n)
                     start = [batches[n - 1][-1]] if n else []
-                    self.book.saved(message["sequence"], layer, {**edit, "path": start + batches[n]}, message)
+                    self.book.saved(
+                        message["sequence"], layer, {**edit, "path": start + batches[n]}, message
+                    )
             elif message["op"] == "unsaved":
                 return  # sent again on a new connection
             elif message["op"] == "problem":

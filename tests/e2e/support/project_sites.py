@@ -34,22 +34,73 @@ def make_sites(server):
     for name in ("Villa", "Forum"):
         slug = name.lower()
         project = server.ok("POST", "/projects", {"name": name}).json()
-        job = server.ok("POST", "/models?" + urllib.parse.urlencode({"filename": "x.ply", "name": name + " wall", "unit": "mm", "project": slug}), folded_grid(fold=0.001)).json()["id"]
+        job = server.ok(
+            "POST",
+            "/models?"
+            + urllib.parse.urlencode(
+                {"filename": "x.ply", "name": name + " wall", "unit": "mm", "project": slug}
+            ),
+            folded_grid(fold=0.001),
+        ).json()["id"]
         model = server.ok("GET", f"/models/{server.wait_for_job(job)['model']}").json()
-        server.ok("POST", f"/models/{model['slug']}/layers", {"name": "Marks", "type": "u8", "resolution": 2048})
-        table = server.ok("POST", f"/projects/{slug}/tables", {"name": name + " finds", "columns": [{"name": "Photo", "kind": "picture"}, {"name": "What"}]}).json()
-        server.ok("POST", f"/tables/{table['id']}/records", {"records": [{"values": {"what": "a coin"}}]})
-        attachment = server.ok("POST", f"/tables/{table['id']}/records/1/attachments?column=photo&name=x.png", PNG).json()["attachments"][0]
-        comment = server.ok("POST", f"/models/{model['slug']}/comments", {"text": "Look here.", "position": [0, 0, 0]}).json()
-        camera = {"view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -300, 1], "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.1, -1, 0, 0, -21, 0], "width": 400, "height": 400}
+        server.ok(
+            "POST",
+            f"/models/{model['slug']}/layers",
+            {"name": "Marks", "type": "u8", "resolution": 2048},
+        )
+        table = server.ok(
+            "POST",
+            f"/projects/{slug}/tables",
+            {
+                "name": name + " finds",
+                "columns": [{"name": "Photo", "kind": "picture"}, {"name": "What"}],
+            },
+        ).json()
+        server.ok(
+            "POST", f"/tables/{table['id']}/records", {"records": [{"values": {"what": "a coin"}}]}
+        )
+        attachment = server.ok(
+            "POST", f"/tables/{table['id']}/records/1/attachments?column=photo&name=x.png", PNG
+        ).json()["attachments"][0]
+        comment = server.ok(
+            "POST",
+            f"/models/{model['slug']}/comments",
+            {"text": "Look here.", "position": [0, 0, 0]},
+        ).json()
+        camera = {
+            "view": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -300, 1],
+            "projection": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.1, -1, 0, 0, -21, 0],
+            "width": 400,
+            "height": 400,
+        }
         server.ok("POST", f"/models/{model['slug']}/views", {"name": "Plan", "camera": camera})
-        server.ok("POST", f"/models/{model['slug']}/tours", {"name": "Round", "languages": ["en"], "stops": [{"view": "plan", "title": {"en": "Here"}}]})
-        kiosk = server.ok("POST", f"/models/{model['slug']}/tours/round/kiosks", {"name": "Hall"}).json()["kiosk"]
-        sites[slug] = {"comment": comment, "kiosk": {"id": kiosk["id"]}, "project": project, "model": model, "table": table, "attachment": attachment, "job": {"id": job}}
+        server.ok(
+            "POST",
+            f"/models/{model['slug']}/tours",
+            {
+                "name": "Round",
+                "languages": ["en"],
+                "stops": [{"view": "plan", "title": {"en": "Here"}}],
+            },
+        )
+        kiosk = server.ok(
+            "POST", f"/models/{model['slug']}/tours/round/kiosks", {"name": "Hall"}
+        ).json()["kiosk"]
+        sites[slug] = {
+            "comment": comment,
+            "kiosk": {"id": kiosk["id"]},
+            "project": project,
+            "model": model,
+            "table": table,
+            "attachment": attachment,
+            "job": {"id": job},
+        }
     return sites
 
 
-PNG = bytes.fromhex("89504e470d0a1a0a0000000d4948445200000001000000010802000000907753de0000000c49444154789c6360f8cf0000000301010018dd8db40000000049454e44ae426082")
+PNG = bytes.fromhex(
+    "89504e470d0a1a0a0000000d4948445200000001000000010802000000907753de0000000c49444154789c6360f8cf0000000301010018dd8db40000000049454e44ae426082"
+)
 
 
 def doors(server, site):
@@ -57,7 +108,9 @@ def doors(server, site):
     for path, operations in server.contract.document["paths"].items():
         place = next((name for name in IN_PROJECTS if "{" + name + "}" in path), None)
         if place is None or path.endswith("/live"):
-            assert place or all(name in OF_THE_SITE for name in re.findall(r"\{(\w+)\}", path)), f"whose is {path}?"
+            assert place or all(
+                name in OF_THE_SITE for name in re.findall(r"\{(\w+)\}", path)
+            ), f"whose is {path}?"
             continue
         for ref in ("id", "slug"):
             if ref not in site[place]:
@@ -66,7 +119,9 @@ def doors(server, site):
             address = re.sub(r"\{(?!" + place + r"\})\w+\}", "1", path.removeprefix("/api/v1"))
             for method in operations:
                 if method in ("get", "post", "put", "patch", "delete"):
-                    yield method.upper(), address.replace("{" + place + "}", there), address.replace("{" + place + "}", ghost), there, ghost
+                    yield method.upper(), address.replace(
+                        "{" + place + "}", there
+                    ), address.replace("{" + place + "}", ghost), there, ghost
 
 
 def nothing_is_seen(server, guest, site):
@@ -76,17 +131,33 @@ def nothing_is_seen(server, guest, site):
         body = {} if method in ("POST", "PUT", "PATCH") else None
         seen, missing = guest.request(method, there, body), guest.request(method, nowhere, body)
         assert seen.status == missing.status == 404, (method, there, seen, missing)
-        assert seen.json()["detail"].replace(f"`{ref}`", "`x`") == missing.json()["detail"].replace(f"`{ghost}`", "`x`"), (there, seen, missing)
+        assert seen.json()["detail"].replace(f"`{ref}`", "`x`") == missing.json()["detail"].replace(
+            f"`{ghost}`", "`x`"
+        ), (there, seen, missing)
         count += 1
     assert count > 120, f"only {count} doors were tried"
     slug = site["project"]["slug"]
     for path, member in (("/projects", "projects"), ("/models", "models"), ("/jobs", "jobs")):
         listed = guest.ok("GET", path).json()
-        assert slug not in str(listed) and site["model"]["slug"] not in str(listed) and listed["total"] == len(listed[member]), listed
-    assert guest.status("GET", "/models?project=" + slug) == guest.status("GET", "/models?project=ghost") == 404
+        assert (
+            slug not in str(listed)
+            and site["model"]["slug"] not in str(listed)
+            and listed["total"] == len(listed[member])
+        ), listed
+    assert (
+        guest.status("GET", "/models?project=" + slug)
+        == guest.status("GET", "/models?project=ghost")
+        == 404
+    )
     upload = "/models?" + urllib.parse.urlencode({"filename": "x.ply", "project": slug})
-    assert guest.status("POST", upload, folded_grid()) == guest.status("POST", upload.replace(slug, "ghost"), folded_grid()) == 404
-    assert guest.status("POST", "/models?filename=x.ply", folded_grid()) == 404, "the project `default`"
+    assert (
+        guest.status("POST", upload, folded_grid())
+        == guest.status("POST", upload.replace(slug, "ghost"), folded_grid())
+        == 404
+    )
+    assert (
+        guest.status("POST", "/models?filename=x.ply", folded_grid()) == 404
+    ), "the project `default`"
     try:
         LiveClient(server, site["model"]["slug"], token="", cookie=guest.cookie, origin=server.url)
         raise AssertionError("a guest looks at a model of another project")

@@ -21,14 +21,33 @@ class Reader:
         self.port = port
 
     def command(self, user="strata_reader", database="strata"):
-        return ["psql", "-X", "-h", "127.0.0.1", "-p", str(self.port), "-U", user, "-d", database, "-v", "ON_ERROR_STOP=1"]
+        return [
+            "psql",
+            "-X",
+            "-h",
+            "127.0.0.1",
+            "-p",
+            str(self.port),
+            "-U",
+            user,
+            "-d",
+            database,
+            "-v",
+            "ON_ERROR_STOP=1",
+        ]
 
     def environment(self, password=None):
         return {**os.environ, "PGPASSWORD": password or self.password, "PGCONNECT_TIMEOUT": "60"}
 
     def run(self, *statements, password=None, **more):
-        command = self.command(**more) + ["--csv"] + [word for statement in statements for word in ("-c", statement)]
-        return subprocess.run(command, capture_output=True, text=True, check=False, env=self.environment(password))
+        command = (
+            self.command(**more)
+            + ["--csv"]
+            + [word for statement in statements for word in ("-c", statement)]
+        )
+        return subprocess.run(
+            command, capture_output=True, text=True, check=False, env=self.environment(password)
+        )
 
     def rows(self, *statements):
         done = self.run(*statements)

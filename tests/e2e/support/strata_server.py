@@ -20,7 +20,8 @@ from .contract import Contract
 
 LONG_S = 180
 
-# Calls that tokens for scripts may not make, the owner's among them once an administrator has a password.
+# Calls that tokens for scripts may not make, the owner's among them once an administrator has a
+# password.
 OF_ACCOUNTS = re.compile(r"/(users|groups|me/)|/projects/[^/]+/(members|groups)(/|$)|.*/kiosks$")
 
 
@@ -59,7 +60,8 @@ class StrataServer:
         self.binary = os.environ["STRATA_BINARY"]
         self.token = secrets.token_hex(24)
         self.options = list(options)  # of `serve`
-        # Under /tmp and open to all: PostgreSQL does not run as root, so its user must reach the folder.
+        # Under /tmp and open to all: PostgreSQL does not run as root, so its user must reach the
+        # folder.
         self.data = tempfile.mkdtemp(prefix="strata-e2e-", dir="/tmp")
         os.chmod(self.data, 0o755)
         self.process = None
@@ -70,7 +72,12 @@ class StrataServer:
         self.log = []
         self.changed = threading.Condition()
         if demo:
-            done = subprocess.run([self.binary, "demo", "--data", self.data], capture_output=True, text=True, check=False)
+            done = subprocess.run(
+                [self.binary, "demo", "--data", self.data],
+                capture_output=True,
+                text=True,
+                check=False,
+            )
             if done.returncode != 0:
                 raise AssertionError(f"strata demo failed: {done.stderr}")
 
@@ -86,7 +93,9 @@ class StrataServer:
         if self.process and ended is None:
             self.kill()
         if failure[0]:
-            print("the server " + (f"had ended with {ended}" if ended is not None else "was running"))
+            print(
+                "the server " + (f"had ended with {ended}" if ended is not None else "was running")
+            )
             print("--- log of the server\n" + "\n".join(self.log[-200:]), flush=True)
         self.remove()
 
@@ -100,9 +109,14 @@ class StrataServer:
 
     def start(self):
         """Starts it (again) and returns once it listens."""
-        self.process = subprocess.Popen([self.binary, "serve", "--data", self.data, "--listen", "127.0.0.1:0", *self.options],
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.environment(),
-                                        preexec_fn=_end_with_parent)
+        self.process = subprocess.Popen(
+            [self.binary, "serve", "--data", self.data, "--listen", "127.0.0.1:0", *self.options],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=self.environment(),
+            preexec_fn=_end_with_parent,
+        )
         threading.Thread(target=self._read_log, args=(self.process.stderr,), daemon=True).start()
         port = link = None
         for line in self.process.stdout:
@@ -112,7 +126,9 @@ class StrataServer:
                 link = line.split()[-1]
                 break
         if not port or not link:
-            raise AssertionError(f"the server ended with {self.process.wait()}:\n" + "\n".join(self.log[-50:]))
+            raise AssertionError(
+                f"the server ended with {self.process.wait()}:\n" + "\n".join(self.log[-50:])
+            )
         with self.changed:
             self.port, self.link = port, link
             self.changed.notify_all()
@@ -141,7 +157,9 @@ class StrataServer:
     def postmaster(self):
         """Process id of the private PostgreSQL, or None."""
         try:
-            with open(os.path.join(self.data, "postgres", "pgdata", "postmaster.pid"), encoding="ascii") as file:
+            with open(
+                os.path.join(self.data, "postgres", "pgdata", "postmaster.pid"), encoding="ascii"
+            ) as file:
                 pid = int(file.readline())
             with open(f"/proc/{pid}/stat", encoding="ascii") as file:
                 return None if file.read().rsplit(")", 1)[1].split()[0] == "Z" else pid
@@ -155,15 +173,37 @@ class StrataServer:
             level = line.split(" ")[1:2]
             if level == ["E"] or (level == ["W"] and not any(word in line for word in warnings)):
                 bad.append(line)
-            elif level and level[0] not in ("I", "D", "W", "E") and not any(word in line for word in warnings):
+            elif (
+                level
+                and level[0] not in ("I", "D", "W", "E")
+                and not any(word in line for word in warnings)
+            ):
                 bad.append(line)  # not a line of the log: a crash, a sanitizer, a library
         assert not bad, "the log of the server is not clean:\n" + "\n".join(bad[:50])
 
     def sql(self, statement):
         """By the private database's own door, for what no other door does. What it answers, without names of columns."""
-        with open(os.path.join(self.data, "postgres", "pgdata", "postmaster.pid"), encoding="ascii") as file:
+        with open(
+            os.path.join(self.data, "postgres", "pgdata", "postmaster.pid"), encoding="ascii"
+        ) as file:
             port = file.read().splitlines()[3]
-        psql = ["psql", "-X", "-At", "-h", os.path.join(self.data, "postgres"), "-p", port, "-U", "strata", "-d", "strata", "-v", "ON_ERROR_STOP=1", "-c", statement]
+        psql = [
+            "psql",
+            "-X",
+            "-At",
+            "-h",
+            os.path.join(self.data, "postgres"),
+            "-p",
+            port,
+            "-U",
+            "strata",
+            "-d",
+            "strata",
+            "-v",
+            "ON_ERROR_STOP=1",
+            "-c",
+            statement,
+        ]
         return subprocess.run(psql, check=True, capture_output=True, text=True).stdout.strip()
 
     # --- HTTP
@@ -193,7 +233,9 @@ class StrataServer:
         target = path[1:] if path.startswith("//") else "/api/v1" + path
         sent = {}
         if token:
-            sent["Authorization"] = "Bearer " + (token if isinstance(token, str) else self.owners_secret(path))
+            sent["Authorization"] = "Bearer " + (
+                token if isinstance(token, str) else self.owners_secret(path)
+            )
         if isinstance(body, (dict, list)):
             body = json.dumps(body).encode()
             sent["Content-Type"] = "application/json"
@@ -221,17 +263,30 @@ class StrataServer:
         return answer
 
     def wait_for_job(self, job):
-        return wait_for(lambda: (lambda now: now if now["state"] not in ("queued", "running") else None)(
-            self.ok("GET", f"/jobs/{job}").json()), f"job {job}")
+        return wait_for(
+            lambda: (lambda now: now if now["state"] not in ("queued", "running") else None)(
+                self.ok("GET", f"/jobs/{job}").json()
+            ),
+            f"job {job}",
+        )
 
     def add_person(self, user, role):
         """A token for scripts of a new person."""
-        invitation = self.ok("POST", "/users", {"user": user, "role": role}).json()["path"].partition("#")[2]
+        invitation = (
+            self.ok("POST", "/users", {"user": user, "role": role}).json()["path"].partition("#")[2]
+        )
         of_page = {"Origin": self.url}
-        joined = self.ok("POST", "/invitations/accept", {"invitation": invitation, "password": f"{user} and seven blue herons"},
-                         headers=of_page, token=False)
+        joined = self.ok(
+            "POST",
+            "/invitations/accept",
+            {"invitation": invitation, "password": f"{user} and seven blue herons"},
+            headers=of_page,
+            token=False,
+        )
         of_page["Cookie"] = joined.headers["Set-Cookie"].split(";")[0]
-        return self.ok("POST", "/me/tokens", {"name": "tests"}, headers=of_page, token=False).json()["secret"]
+        return self.ok(
+            "POST", "/me/tokens", {"name": "tests"}, headers=of_page, token=False
+        ).json()["secret"]
 
     def import_model(self, content, filename, **query):
         """Imports and returns the model."""

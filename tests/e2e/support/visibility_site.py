@@ -12,9 +12,32 @@ from support.pictures import png
 
 M = "/models/sheet"  # nearly flat, x and y from 0 to 100 mm
 VALUE = 48611.5  # painted on the secret layer
-LAYER, KEYS, COLUMN, CELL, FILE, CRACK = "tomb-q7x", "bones-q5v", "hoard-q8y", "gold-q9z", "relic-q6w.png", "secret-q3u"
-MARKS = [mark.encode() for mark in (LAYER, "tomb q7x", KEYS, "bones q5v", COLUMN, "hoard q8y", CELL, FILE, CRACK, "secret q3u", str(VALUE))] + [struct.pack("<f", VALUE)]
-GHOSTS = {LAYER: "tomb-zzz", KEYS: "bones-zzz", COLUMN: "hoard-zzz"}  # as long, since messages count characters
+LAYER, KEYS, COLUMN, CELL, FILE, CRACK = (
+    "tomb-q7x",
+    "bones-q5v",
+    "hoard-q8y",
+    "gold-q9z",
+    "relic-q6w.png",
+    "secret-q3u",
+)
+MARKS = [
+    mark.encode()
+    for mark in (
+        LAYER,
+        "tomb q7x",
+        KEYS,
+        "bones q5v",
+        COLUMN,
+        "hoard q8y",
+        CELL,
+        FILE,
+        CRACK,
+        "secret q3u",
+        str(VALUE),
+    )
+] + [struct.pack("<f", VALUE)]
+# as long, since messages count characters
+GHOSTS = {LAYER: "tomb-zzz", KEYS: "bones-zzz", COLUMN: "hoard-zzz"}
 PNG = png(8, 8, lambda x, y: (200, 100, 50))
 JSON_CHANGES = ("post", "put", "patch")
 
@@ -29,32 +52,91 @@ def leaks(body):
 
 
 def make_site(server):
-    model = server.import_model(folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048)
+    model = server.import_model(
+        folded_grid(fold=0.001), "sheet.ply", name="Sheet", unit="mm", resolution=2048
+    )
     camera = camera_from(model, (0, 0, 1), up=(0, 1, 0))
     server.ok("POST", M + "/layers", {"name": "Cracks", "type": "u8"})
-    columns = [{"name": "Name"}, {"name": "Depth", "kind": "numeric"}, {"name": "Photo", "kind": "picture"}, {"name": "Edge", "kind": "line"}]
-    server.ok("POST", M + "/layers", {"name": "Finds", "kind": "database", "type": "u16", "columns": columns})
-    server.ok("POST", "/tables/finds/records", {"records": [{"values": {"name": f"Find {n}", "depth": n}} for n in (1, 2)]})
-    public = server.ok("POST", query("/tables/finds/records/1/attachments", name="plan.png"), PNG).json()["attachments"][0]
+    columns = [
+        {"name": "Name"},
+        {"name": "Depth", "kind": "numeric"},
+        {"name": "Photo", "kind": "picture"},
+        {"name": "Edge", "kind": "line"},
+    ]
+    server.ok(
+        "POST",
+        M + "/layers",
+        {"name": "Finds", "kind": "database", "type": "u16", "columns": columns},
+    )
+    server.ok(
+        "POST",
+        "/tables/finds/records",
+        {"records": [{"values": {"name": f"Find {n}", "depth": n}} for n in (1, 2)]},
+    )
+    public = server.ok(
+        "POST", query("/tables/finds/records/1/attachments", name="plan.png"), PNG
+    ).json()["attachments"][0]
     for layer, value in (("cracks", 3), ("finds", 1)):
-        server.ok("POST", f"{M}/layers/{layer}/edits", {"op": "fill", "mode": "where", "where": "x < 5", "value": value})  # little, since every texel is told again and again
+        # little, since every texel is told again and again
+        server.ok(
+            "POST",
+            f"{M}/layers/{layer}/edits",
+            {"op": "fill", "mode": "where", "where": "x < 5", "value": value},
+        )
     before = server.ok("POST", M + "/frame", {"camera": camera, "format": "png"}).body
     # Secrets, from their first moment.
     secret = {"visibility": "private"}
     server.ok("POST", M + "/layers", {"name": "Tomb q7x", "type": "f32", **secret})
-    server.ok("POST", f"{M}/layers/{LAYER}/edits", {"op": "fill", "mode": "where", "where": "true", "value": VALUE})
-    server.ok("POST", M + "/layers", {"name": "Bones q5v", "kind": "database", "type": "u16", "table": "finds", **secret})
-    server.ok("POST", f"{M}/layers/{KEYS}/edits", {"op": "fill", "mode": "where", "where": f'"{LAYER}" > 0', "value": 2})
+    server.ok(
+        "POST",
+        f"{M}/layers/{LAYER}/edits",
+        {"op": "fill", "mode": "where", "where": "true", "value": VALUE},
+    )
+    server.ok(
+        "POST",
+        M + "/layers",
+        {"name": "Bones q5v", "kind": "database", "type": "u16", "table": "finds", **secret},
+    )
+    server.ok(
+        "POST",
+        f"{M}/layers/{KEYS}/edits",
+        {"op": "fill", "mode": "where", "where": f'"{LAYER}" > 0', "value": 2},
+    )
     server.ok("POST", "/tables/finds/columns", {"name": "Hoard q8y", **secret})
     server.ok("POST", "/tables/finds/columns", {"name": "Secret q3u", "kind": "line", **secret})
     line = [{"model": model["id"], "coordinates": [[10, 10, 0], [90, 90, 0]]}]
     server.ok("PATCH", "/tables/finds/records/1", {"values": {COLUMN: CELL, CRACK: line}})
-    hidden = server.ok("POST", query("/tables/finds/records/1/attachments", name=FILE, column="photo", visibility="private"), PNG).json()["attachments"][0]
-    thread = server.ok("POST", M + "/comments", {"text": f"{CELL} lies here", "position": [50, 50, 0], "layer": LAYER}).json()["id"]
+    hidden = server.ok(
+        "POST",
+        query(
+            "/tables/finds/records/1/attachments", name=FILE, column="photo", visibility="private"
+        ),
+        PNG,
+    ).json()["attachments"][0]
+    thread = server.ok(
+        "POST",
+        M + "/comments",
+        {"text": f"{CELL} lies here", "position": [50, 50, 0], "layer": LAYER},
+    ).json()["id"]
     server.ok("POST", f"/comments/{thread}/replies", {"text": f"Much {CELL}?"})
     column_shown = {"layer": "finds", "highlight": {"filter": f"\"{COLUMN}\" = '{CELL}'"}}
-    server.ok("POST", M + "/views", {"name": "Plan", "camera": camera, "layers": [{"layer": LAYER, "opacity": 0.5}, column_shown]})
-    stop = {"view": "plan", "title": {"en": "Here"}, "layers": [LAYER], "records": [{"table": "finds", "keys": [1], "columns": [{"column": COLUMN}, {"column": "name"}]}]}
+    server.ok(
+        "POST",
+        M + "/views",
+        {
+            "name": "Plan",
+            "camera": camera,
+            "layers": [{"layer": LAYER, "opacity": 0.5}, column_shown],
+        },
+    )
+    stop = {
+        "view": "plan",
+        "title": {"en": "Here"},
+        "layers": [LAYER],
+        "records": [
+            {"table": "finds", "keys": [1], "columns": [{"column": COLUMN}, {"column": "name"}]}
+        ],
+    }
     server.ok("POST", M + "/tours", {"name": "Round", "languages": ["en"], "stops": [stop]})
     server.ok("POST", M + "/tours/round/kiosks", {"name": "Hall"})
     assert hidden["visibility"] == "private" and public["visibility"] == "public"
@@ -65,9 +147,30 @@ def words(server, public):
     """What the parameters of paths stand for, public things alone."""
     job = server.get("/jobs").json()["jobs"][0]["id"]
     look = server.get(M + "/looks").json()["looks"]
-    return {"project": ["default"], "model": ["sheet"], "layer": ["cracks", "finds"], "table": ["finds"], "key": ["1"], "column": ["name", "depth", "photo"], "attachment": [str(public["id"])],
-            "job": [str(job)], "look": [each["slug"] for each in look] or ["1"], "comment": ["1"], "view": ["plan"], "tour": ["round"], "kiosk": ["1"], "name": ["sheet.ply"], "format": ["npy", "png", "tif"], "tool": ["1"], "template": ["1"],
-            "user": ["owner"], "group": ["1"], "entry": ["layer-1"], "session": ["1"], "token": ["1"]}
+    return {
+        "project": ["default"],
+        "model": ["sheet"],
+        "layer": ["cracks", "finds"],
+        "table": ["finds"],
+        "key": ["1"],
+        "column": ["name", "depth", "photo"],
+        "attachment": [str(public["id"])],
+        "job": [str(job)],
+        "look": [each["slug"] for each in look] or ["1"],
+        "comment": ["1"],
+        "view": ["plan"],
+        "tour": ["round"],
+        "kiosk": ["1"],
+        "name": ["sheet.ply"],
+        "format": ["npy", "png", "tif"],
+        "tool": ["1"],
+        "template": ["1"],
+        "user": ["owner"],
+        "group": ["1"],
+        "entry": ["layer-1"],
+        "session": ["1"],
+        "token": ["1"],
+    }
 
 
 def fillings(path, words_of):
@@ -75,17 +178,45 @@ def fillings(path, words_of):
     parameter = re.search(r"\{(\w+)\}", path)
     if not parameter:
         return [path]
-    return [filled for word in words_of[parameter[1]] for filled in fillings(path.replace(parameter[0], word, 1), words_of)]
+    return [
+        filled
+        for word in words_of[parameter[1]]
+        for filled in fillings(path.replace(parameter[0], word, 1), words_of)
+    ]
 
 
 def queries(server, path, operation):
     """No query, then each parameter with each value that the contract tells of it."""
-    parameters = [server.contract._resolve(each) for each in operation.get("parameters", []) + server.contract.document["paths"][path].get("parameters", [])]
+    parameters = [
+        server.contract._resolve(each)
+        for each in operation.get("parameters", [])
+        + server.contract.document["paths"][path].get("parameters", [])
+    ]
     parameters = [each for each in parameters if each["in"] == "query"]
-    given = {"coords": ["POINT Z(50 50 0)"], "filter": ["depth > 0"], "sortby": ["name", "-depth"], "at": ["1", "2"], "where": ["cracks > 0"], "include": ["pieces,perimeter,quantiles"], "cell": ["20mm"],
-             "columns": ["name,depth"], "key": ["1"], "layers": ["cracks"], "parameter-name": ["cracks,finds"], "project": ["default"]}
-    values = {each["name"]: given.get(each["name"]) or [str(value) for value in server.contract._resolve(each["schema"]).get("enum", [])] for each in parameters}
-    base = {each["name"]: values[each["name"]][0] for each in parameters if each.get("required") and values[each["name"]]}
+    given = {
+        "coords": ["POINT Z(50 50 0)"],
+        "filter": ["depth > 0"],
+        "sortby": ["name", "-depth"],
+        "at": ["1", "2"],
+        "where": ["cracks > 0"],
+        "include": ["pieces,perimeter,quantiles"],
+        "cell": ["20mm"],
+        "columns": ["name,depth"],
+        "key": ["1"],
+        "layers": ["cracks"],
+        "parameter-name": ["cracks,finds"],
+        "project": ["default"],
+    }
+    values = {
+        each["name"]: given.get(each["name"])
+        or [str(value) for value in server.contract._resolve(each["schema"]).get("enum", [])]
+        for each in parameters
+    }
+    base = {
+        each["name"]: values[each["name"]][0]
+        for each in parameters
+        if each.get("required") and values[each["name"]]
+    }
     yield base
     for name, choices in values.items():
         for choice in choices:
@@ -95,41 +226,85 @@ def queries(server, path, operation):
 def reading_bodies(camera):
     """Questions that have a body."""
     line = {"places": [[5, 5, 0], [95, 95, 0]], "step_mm": 5}
-    return {"positions": [{"points": [[50, 50, 0]]}], "pick": [{"camera": camera, "x": 300, "y": 200}], "profile": [line], "select": [{"where": "cracks > 0", "layers": ["cracks", "finds"]}],
-            "cross_table": [{"rows": "finds", "columns": "cracks"}], "frame": [{"camera": camera, "format": "png"}, {"camera": camera, "format": "png", "at": 2}],
-            "record_extent": [{"filter": "depth > 0"}], "make_figure": [{"format": "svg", "dpi": 50}, {"format": "svg", "dpi": 50, "view": "plan"}, {"format": "svg", "dpi": 50, "labels": {"layer": "finds", "column": "name"}}],
-            "match_attachments": [{"pattern": "{name}.png", "column": "name", "names": ["Find 1.png"]}]}
+    return {
+        "positions": [{"points": [[50, 50, 0]]}],
+        "pick": [{"camera": camera, "x": 300, "y": 200}],
+        "profile": [line],
+        "select": [{"where": "cracks > 0", "layers": ["cracks", "finds"]}],
+        "cross_table": [{"rows": "finds", "columns": "cracks"}],
+        "frame": [
+            {"camera": camera, "format": "png"},
+            {"camera": camera, "format": "png", "at": 2},
+        ],
+        "record_extent": [{"filter": "depth > 0"}],
+        "make_figure": [
+            {"format": "svg", "dpi": 50},
+            {"format": "svg", "dpi": 50, "view": "plan"},
+            {"format": "svg", "dpi": 50, "labels": {"layer": "finds", "column": "name"}},
+        ],
+        "match_attachments": [{"pattern": "{name}.png", "column": "name", "names": ["Find 1.png"]}],
+    }
 
 
 def sweep(server, token, words_of, camera):
     """Every question of the contract about what is public: how many were answered, and which told a secret."""
     bodies, answered, told = reading_bodies(camera), 0, {}
     for path, operations in server.contract.document["paths"].items():
-        if not path.startswith("/api/v1") or path.endswith(("/live", "/events")):  # without an end; events_test.py listens
+        # without an end; events_test.py listens
+        if not path.startswith("/api/v1") or path.endswith(("/live", "/events")):
             continue
         for method, operation in operations.items():
-            asked = bodies.get(operation["operationId"]) if method == "post" and isinstance(operation, dict) else [None] if method == "get" else None
+            asked = (
+                bodies.get(operation["operationId"])
+                if method == "post" and isinstance(operation, dict)
+                else [None]
+                if method == "get"
+                else None
+            )
             for filled in fillings(path.removeprefix("/api/v1"), words_of) if asked else []:
                 for parameters in queries(server, path, operation):
                     for body in asked:
                         for accept in ("application/json", "text/csv"):
-                            answer = server.request(method.upper(), query(filled, **parameters), body, token=token, headers={"Accept": accept})
+                            answer = server.request(
+                                method.upper(),
+                                query(filled, **parameters),
+                                body,
+                                token=token,
+                                headers={"Accept": accept},
+                            )
                             answered += answer.status == 200
                             if leaks(answer.body):
-                                told.setdefault(operation["operationId"], (filled, parameters, leaks(answer.body)))
+                                told.setdefault(
+                                    operation["operationId"],
+                                    (filled, parameters, leaks(answer.body)),
+                                )
     return answered, told
 
 
 def same_answer(server, token, method, path, body, secret, ghost, headers=None):
     """What is there and not for them answers like what is not there."""
+
     def swapped(thing):
-        return type(thing)(re.sub(re.escape(secret), ghost, thing)) if isinstance(thing, str) else \
-            [swapped(item) for item in thing] if isinstance(thing, list) else {swapped(k): swapped(v) for k, v in thing.items()} if isinstance(thing, dict) else thing
+        return (
+            type(thing)(re.sub(re.escape(secret), ghost, thing))
+            if isinstance(thing, str)
+            else [swapped(item) for item in thing]
+            if isinstance(thing, list)
+            else {swapped(k): swapped(v) for k, v in thing.items()}
+            if isinstance(thing, dict)
+            else thing
+        )
 
     there = server.request(method, path, body, token=token, headers=headers)
     nowhere = server.request(method, swapped(path), swapped(body), token=token, headers=headers)
     plain = there.body.decode().replace(urllib.parse.quote(secret), ghost).replace(secret, ghost)
-    assert there.status == nowhere.status >= 400 and plain == nowhere.body.decode(), (method, path, body, there, nowhere)
+    assert there.status == nowhere.status >= 400 and plain == nowhere.body.decode(), (
+        method,
+        path,
+        body,
+        there,
+        nowhere,
+    )
     return there.status
 
 
@@ -137,7 +312,13 @@ def doors_closed(server, token, words_of, hidden, thread):
     """Every address that leads to a secret, and those that name one beside it."""
     count = 0
     for path, operations in server.contract.document["paths"].items():
-        for name, secret, ghost in (("layer", LAYER, GHOSTS[LAYER]), ("layer", KEYS, GHOSTS[KEYS]), ("column", COLUMN, GHOSTS[COLUMN]), ("attachment", str(hidden["id"]), "987654"), ("comment", str(thread), "987654")):
+        for name, secret, ghost in (
+            ("layer", LAYER, GHOSTS[LAYER]),
+            ("layer", KEYS, GHOSTS[KEYS]),
+            ("column", COLUMN, GHOSTS[COLUMN]),
+            ("attachment", str(hidden["id"]), "987654"),
+            ("comment", str(thread), "987654"),
+        ):
             if "{" + name + "}" not in path:
                 continue
             for filled in fillings(path.removeprefix("/api/v1"), {**words_of, name: [secret]}):
@@ -146,9 +327,24 @@ def doors_closed(server, token, words_of, hidden, thread):
                         continue
                     body = {} if method in JSON_CHANGES else None
                     if secret.isdigit():  # the id as a whole
-                        answers = [server.request(method.upper(), filled.replace(f"/{secret}", f"/{ref}"), body, token=token) for ref in (secret, ghost)]
-                        assert answers[0].status == answers[1].status >= 400, (method, filled, answers)
-                        assert answers[0].body.decode().replace(f"`{secret}`", f"`{ghost}`") == answers[1].body.decode(), (method, filled, answers)
+                        answers = [
+                            server.request(
+                                method.upper(),
+                                filled.replace(f"/{secret}", f"/{ref}"),
+                                body,
+                                token=token,
+                            )
+                            for ref in (secret, ghost)
+                        ]
+                        assert answers[0].status == answers[1].status >= 400, (
+                            method,
+                            filled,
+                            answers,
+                        )
+                        assert (
+                            answers[0].body.decode().replace(f"`{secret}`", f"`{ghost}`")
+                            == answers[1].body.decode()
+                        ), (method, filled, answers)
                     else:
                         same_answer(server, token, method.upper(), filled, body, secret, ghost)
                     count += 1
@@ -157,25 +353,63 @@ def doors_closed(server, token, words_of, hidden, thread):
 
 def names_unknown(server, token, camera):
     """Names of secrets in expressions, filters and lists."""
-    asked = [("GET", query(M + "/position", coords="POINT Z(50 50 0)", **{"parameter-name": LAYER}), None),
-             ("POST", M + "/positions", {"points": [[50, 50, 0]], "layers": [LAYER]}),
-             ("POST", M + "/profile", {"places": [[5, 5, 0], [95, 95, 0]], "step_mm": 5, "layers": [LAYER]}),
-             ("POST", M + "/select", {"where": f'"{LAYER}" > 0'}), ("POST", M + "/select", {"where": "cracks > 0", "layers": [LAYER]}),
-             ("POST", M + "/select", {"where": f'finds."{COLUMN}" = \'x\''}),
-             ("GET", query(M + "/layers/cracks/statistics", where=f'valid("{LAYER}")'), None),
-             ("GET", query(M + "/layers/finds/texels.csv", columns=COLUMN), None), ("GET", query(M + "/layers/finds/texels.csv", where=f'"{LAYER}" > 0'), None),
-             ("POST", M + "/cross-table", {"rows": KEYS, "columns": "cracks"}), ("POST", M + "/cross-table", {"rows": "cracks", "columns": KEYS}),
-             ("POST", M + "/frame", {"camera": camera, "layers": [LAYER]}),
-             ("POST", M + "/frame", {"camera": camera, "highlights": [{"layer": KEYS, "highlight": {"keys": [2]}}]}),
-             ("POST", M + "/frame", {"camera": camera, "highlights": [{"layer": "finds", "highlight": {"filter": f'"{COLUMN}" is not null'}}]}),
-             ("POST", M + "/layers/finds/extent", {"filter": f'"{COLUMN}" is not null'}),
-             ("GET", query("/tables/finds/records", filter=f'"{COLUMN}" is not null'), None), ("GET", query("/tables/finds/records", sortby=COLUMN), None),
-             ("GET", query(M + "/layers/finds/records", filter=f'"{COLUMN}" is not null'), None),
-             ("POST", "/tables/finds/attachments/match", {"pattern": "{" + COLUMN + "}.png", "column": COLUMN, "names": ["a.png"]}),
-             ("POST", M + "/layers/cracks/edits", {"op": "fill", "mode": "where", "where": f'"{LAYER}" > 0', "value": 1}),
-             ("POST", "/tables/finds/records", {"values": {COLUMN: "x"}}), ("PATCH", "/tables/finds/records/2", {"values": {COLUMN: "x"}}),
-             ("POST", query("/tables/finds/records/2/attachments", column=COLUMN), PNG)]
+    asked = [
+        (
+            "GET",
+            query(M + "/position", coords="POINT Z(50 50 0)", **{"parameter-name": LAYER}),
+            None,
+        ),
+        ("POST", M + "/positions", {"points": [[50, 50, 0]], "layers": [LAYER]}),
+        (
+            "POST",
+            M + "/profile",
+            {"places": [[5, 5, 0], [95, 95, 0]], "step_mm": 5, "layers": [LAYER]},
+        ),
+        ("POST", M + "/select", {"where": f'"{LAYER}" > 0'}),
+        ("POST", M + "/select", {"where": "cracks > 0", "layers": [LAYER]}),
+        ("POST", M + "/select", {"where": f"finds.\"{COLUMN}\" = 'x'"}),
+        ("GET", query(M + "/layers/cracks/statistics", where=f'valid("{LAYER}")'), None),
+        ("GET", query(M + "/layers/finds/texels.csv", columns=COLUMN), None),
+        ("GET", query(M + "/layers/finds/texels.csv", where=f'"{LAYER}" > 0'), None),
+        ("POST", M + "/cross-table", {"rows": KEYS, "columns": "cracks"}),
+        ("POST", M + "/cross-table", {"rows": "cracks", "columns": KEYS}),
+        ("POST", M + "/frame", {"camera": camera, "layers": [LAYER]}),
+        (
+            "POST",
+            M + "/frame",
+            {"camera": camera, "highlights": [{"layer": KEYS, "highlight": {"keys": [2]}}]},
+        ),
+        (
+            "POST",
+            M + "/frame",
+            {
+                "camera": camera,
+                "highlights": [
+                    {"layer": "finds", "highlight": {"filter": f'"{COLUMN}" is not null'}}
+                ],
+            },
+        ),
+        ("POST", M + "/layers/finds/extent", {"filter": f'"{COLUMN}" is not null'}),
+        ("GET", query("/tables/finds/records", filter=f'"{COLUMN}" is not null'), None),
+        ("GET", query("/tables/finds/records", sortby=COLUMN), None),
+        ("GET", query(M + "/layers/finds/records", filter=f'"{COLUMN}" is not null'), None),
+        (
+            "POST",
+            "/tables/finds/attachments/match",
+            {"pattern": "{" + COLUMN + "}.png", "column": COLUMN, "names": ["a.png"]},
+        ),
+        (
+            "POST",
+            M + "/layers/cracks/edits",
+            {"op": "fill", "mode": "where", "where": f'"{LAYER}" > 0', "value": 1},
+        ),
+        ("POST", "/tables/finds/records", {"values": {COLUMN: "x"}}),
+        ("PATCH", "/tables/finds/records/2", {"values": {COLUMN: "x"}}),
+        ("POST", query("/tables/finds/records/2/attachments", column=COLUMN), PNG),
+    ]
     for method, path, body in asked:
-        secret = next(each for each in (LAYER, KEYS, COLUMN) if each in urllib.parse.unquote(path) + str(body))
+        secret = next(
+            each for each in (LAYER, KEYS, COLUMN) if each in urllib.parse.unquote(path) + str(body)
+        )
         same_answer(server, token, method, path, body, secret, GHOSTS[secret])
     return len(asked)

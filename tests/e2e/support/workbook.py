@@ -15,10 +15,14 @@ class Workbook:
             assert file.testzip() is None
             self.sheet = xml.fromstring(file.read("xl/worksheets/sheet1.xml"))
             self.styles = xml.fromstring(file.read("xl/styles.xml"))
-            self.sheet_name = xml.fromstring(file.read("xl/workbook.xml")).find(f".//{_MAIN}sheet").get("name")
+            self.sheet_name = (
+                xml.fromstring(file.read("xl/workbook.xml")).find(f".//{_MAIN}sheet").get("name")
+            )
         self.formats = [int(f.get("numFmtId")) for f in self.styles.find(f"{_MAIN}cellXfs")]
         self.fonts = [int(f.get("fontId")) for f in self.styles.find(f"{_MAIN}cellXfs")]
-        self.codes = {int(f.get("numFmtId")): f.get("formatCode") for f in self.styles.iter(f"{_MAIN}numFmt")}
+        self.codes = {
+            int(f.get("numFmtId")): f.get("formatCode") for f in self.styles.iter(f"{_MAIN}numFmt")
+        }
         self.formulas = list(self.sheet.iter(f"{_MAIN}f"))
         self.width = len(next(self.sheet.iter(f"{_MAIN}row")))  # of the head, of at most 26 cells
         self.rows = [self._row(row) for row in self.sheet.iter(f"{_MAIN}row")]
@@ -33,7 +37,8 @@ class Workbook:
         kind = cell.get("t", "n")
         if kind == "inlineStr":
             written = "".join(t.text or "" for t in cell.iter(f"{_MAIN}t"))
-            return re.sub("_x([0-9A-Fa-f]{4})_", lambda escape: chr(int(escape[1], 16)), written)  # ST_Xstring
+            # ST_Xstring
+            return re.sub("_x([0-9A-Fa-f]{4})_", lambda escape: chr(int(escape[1], 16)), written)
         text = cell.find(f"{_MAIN}v").text
         if kind == "b":
             return text == "1"
@@ -42,7 +47,12 @@ class Workbook:
         if "yyyy" not in code:
             return float(text)
         moment = _FIRST_DAY + datetime.timedelta(days=float(text))
-        return moment.replace(microsecond=0) + datetime.timedelta(milliseconds=round(moment.microsecond / 1000)) if "hh" in code else moment.date()
+        return (
+            moment.replace(microsecond=0)
+            + datetime.timedelta(milliseconds=round(moment.microsecond / 1000))
+            if "hh" in code
+            else moment.date()
+        )
 
     @property
     def records(self):
@@ -52,7 +62,10 @@ class Workbook:
         bold = [font.find(f"{_MAIN}b") is not None for font in self.styles.find(f"{_MAIN}fonts")]
         first = next(self.sheet.iter(f"{_MAIN}row"))
         pane = self.sheet.find(f".//{_MAIN}pane")
-        return all(bold[self.fonts[int(cell.get("s", 0))]] for cell in first) and (pane.get("state"), pane.get("ySplit")) == ("frozen", "1")
+        return all(bold[self.fonts[int(cell.get("s", 0))]] for cell in first) and (
+            pane.get("state"),
+            pane.get("ySplit"),
+        ) == ("frozen", "1")
 
     @property
     def filtered(self):

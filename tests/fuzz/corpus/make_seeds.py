@@ -28,7 +28,8 @@ def ply(name, order, elements, rows):
 # 8 × 8 pixels: grey; and colours, 4:2:0, progressive.
 GREY_JPEG = (
     "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDABsSFBcUERsXFhceHBsgKEIrKCUlKFE6PTBCYFVlZF9VXVtqeJmBanGQc1tdhbWGkJ6jq62rZ4C8ybqmx5moq6T/"
-    "wAALCAAIAAgBAREA/8QAFAABAAAAAAAAAAAAAAAAAAAAAf/EABkQAQEAAwEAAAAAAAAAAAAAAAECAAMRBf/aAAgBAQAAPwA8PXMSXaTMnVXgGf/Z")
+    "wAALCAAIAAgBAREA/8QAFAABAAAAAAAAAAAAAAAAAAAAAf/EABkQAQEAAwEAAAAAAAAAAAAAAAECAAMRBf/aAAgBAQAAPwA8PXMSXaTMnVXgGf/Z"
+)
 PROGRESSIVE_JPEG = (
     "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDABsSFBcUERsXFhceHBsgKEIrKCUlKFE6PTBCYFVlZF9VXVtqeJmBanGQc1tdhbWGkJ6jq62rZ4C8ybqmx5moq6T/"
     "2wBDARweHigjKE4rK06kbl1upKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKT/wgARCAAIAAgDASIAAhEBAxEB/8QA"
@@ -36,13 +37,16 @@ PROGRESSIVE_JPEG = (
     "Akwf/8QAFhEBAQEAAAAAAAAAAAAAAAAAAgAR/9oACAEDAQE/ASdv/8QAFREBAQAAAAAAAAAAAAAAAAAAAAH/2gAIAQIBAT8Br//EABUQAQEAAAAAAAAAAAAA"
     "AAAAAAAR/9oACAEBAAY/Aq//xAAXEAEBAQEAAAAAAAAAAAAAAAABEQAx/9oACAEBAAE/ISUcC7//2gAMAwEAAgADAAAAEP8A/8QAFhEBAQEAAAAAAAAAAAAA"
     "AAAAAQAh/9oACAEDAQE/ECG3/8QAGBEAAgMAAAAAAAAAAAAAAAAAAAERQZH/2gAIAQIBAT8QV04w/8QAGBABAAMBAAAAAAAAAAAAAAAAAQARIVH/2gAIAQEA"
-    "AT8QV42jwJ//2Q==")
+    "AT8QV42jwJ//2Q=="
+)
 # The same size: WebP without loss and with, and inks.
 LOSSLESS_WEBP = (
-    "UklGRjgAAABXRUJQVlA4TCsAAAAvB8ABEJkyRPQ/NhHR/zCYadsmSMof6K4x8HhMgkAgSXaqZScgK2oYwv0PAA==")
+    "UklGRjgAAABXRUJQVlA4TCsAAAAvB8ABEJkyRPQ/NhHR/zCYadsmSMof6K4x8HhMgkAgSXaqZScgK2oYwv0PAA=="
+)
 LOSSY_WEBP = (
     "UklGRnQAAABXRUJQVlA4WAoAAAAQAAAABwAABwAAQUxQSAwAAAABD/Cy/4iI0IOI/gdWUDggQgAAABACAJ0BKggACAACgEIlsAJ0ugACuX1cSgAA/vii8/UPrt/1+zf/GI"
-    "MK/4Ydy//HJb/r/cdq8J4+m55FNvizMtAAAA==")
+    "MK/4Ydy//HJb/r/cdq8J4+m55FNvizMtAAAA=="
+)
 CMYK_JPEG = (
     "/9j/7gAOQWRvYmUAZAAAAAAC/9sAQwAGBAUGBQQGBgUGBwcGCAoQCgoJCQoUDg8MEBcUGBgXFBYWGh0lHxobIxwWFiAsICMmJykqKRkfLTAtKDAlKCko/9sAQwEHBwcKCA"
     "oTCgoTKBoWGigoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgoKCgo/8AAFAgACAAIBAERAAIRAQMRAQQRAP/EAB8AAAEFAQEBAQEBAAAA"
@@ -50,31 +54,80 @@ CMYK_JPEG = (
     "ZHSElKU1RVVldYWVpjZGVmZ2hpanN0dXZ3eHl6g4SFhoeIiYqSk5SVlpeYmZqio6Slpqeoqaqys7S1tre4ubrCw8TFxsfIycrS09TV1tfY2drh4uPk5ebn6Onq8fLz9PX2"
     "9/j5+v/EAB8BAAMBAQEBAQEBAQEAAAAAAAABAgMEBQYHCAkKC//EALURAAIBAgQEAwQHBQQEAAECdwABAgMRBAUhMQYSQVEHYXETIjKBCBRCkaGxwQkjM1LwFWJy0QoWJD"
     "ThJfEXGBkaJicoKSo1Njc4OTpDREVGR0hJSlNUVVZXWFlaY2RlZmdoaWpzdHV2d3h5eoKDhIWGh4iJipKTlJWWl5iZmqKjpKWmp6ipqrKztLW2t7i5usLDxMXGx8jJytLT"
-    "1NXW19jZ2uLj5OXm5+jp6vLz9PX29/j5+v/aAA4EAQACEQMRBAAAPwDrPFPxB+/++/Wvt8Fkvkc3E/D3xaHrn7Pn/Im3v/YQf/0XHX//2Q==")
+    "1NXW19jZ2uLj5OXm5+jp6vLz9PX29/j5+v/aAA4EAQACEQMRBAAAPwDrPFPxB+/++/Wvt8Fkvkc3E/D3xaHrn7Pn/Im3v/YQf/0XHX//2Q=="
+)
 XYZ = ["property float x", "property float y", "property float z"]
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.5)]
 for tag, order in (("ascii", ""), ("little", "<"), ("big", ">")):
-    ply(f"{tag}_quad.ply", order, ["element vertex 4", *XYZ, "element face 1", "property list uchar int vertex_indices"],
-        [("3f", p) for p in SQUARE] + [("B4i", (4, 0, 1, 2, 3))])
-    ply(f"{tag}_colour_uv.ply", order,
-        ["comment TextureFile a.png", "element vertex 4", "property double x", "property double y", "property short z",
-         "property ushort red", "property ushort green", "property ushort blue", "property ushort alpha",
-         "element face 1", "property list uchar uint vertex_index", "property list uchar float texcoord", "property int texnumber"],
+    ply(
+        f"{tag}_quad.ply",
+        order,
+        ["element vertex 4", *XYZ, "element face 1", "property list uchar int vertex_indices"],
+        [("3f", p) for p in SQUARE] + [("B4i", (4, 0, 1, 2, 3))],
+    )
+    ply(
+        f"{tag}_colour_uv.ply",
+        order,
+        [
+            "comment TextureFile a.png",
+            "element vertex 4",
+            "property double x",
+            "property double y",
+            "property short z",
+            "property ushort red",
+            "property ushort green",
+            "property ushort blue",
+            "property ushort alpha",
+            "element face 1",
+            "property list uchar uint vertex_index",
+            "property list uchar float texcoord",
+            "property int texnumber",
+        ],
         [("2dh4H", (*p[:2], int(p[2] * 2), 65535, 257, 0, 40000)) for p in SQUARE]
-        + [("B3IB6fi", (3, 0, 1, 2, 6, 0, 0, .5, 0, .5, .5, 0))])
-    ply(f"{tag}_strips.ply", order,
-        ["element other 1", "property list uchar short junk", "element vertex 4", *XYZ, "property float s", "property float t",
-         "property float red", "property float green", "property float blue", "element tristrips 1",
-         "property list int int vertex_indices"],
-        [("B2h", (2, 7, 8))] + [("8f", (*p, p[0], p[1], 1, .5, 0)) for p in SQUARE] + [("i6i", (6, 0, 1, 2, -1, 3, 1))])
-    ply(f"{tag}_face_colour.ply", order,
-        ["element vertex 4", *XYZ, "element face 2", "property list uchar int vertex_indices", "property uchar red",
-         "property uchar green", "property uchar blue"],
-        [("3f", p) for p in SQUARE] + [("B3i3B", (3, 0, 1, 2, 9, 8, 7)), ("B3i3B", (3, 0, 2, 3, 255, 0, 1))])
+        + [("B3IB6fi", (3, 0, 1, 2, 6, 0, 0, 0.5, 0, 0.5, 0.5, 0))],
+    )
+    ply(
+        f"{tag}_strips.ply",
+        order,
+        [
+            "element other 1",
+            "property list uchar short junk",
+            "element vertex 4",
+            *XYZ,
+            "property float s",
+            "property float t",
+            "property float red",
+            "property float green",
+            "property float blue",
+            "element tristrips 1",
+            "property list int int vertex_indices",
+        ],
+        [("B2h", (2, 7, 8))]
+        + [("8f", (*p, p[0], p[1], 1, 0.5, 0)) for p in SQUARE]
+        + [("i6i", (6, 0, 1, 2, -1, 3, 1))],
+    )
+    ply(
+        f"{tag}_face_colour.ply",
+        order,
+        [
+            "element vertex 4",
+            *XYZ,
+            "element face 2",
+            "property list uchar int vertex_indices",
+            "property uchar red",
+            "property uchar green",
+            "property uchar blue",
+        ],
+        [("3f", p) for p in SQUARE]
+        + [("B3i3B", (3, 0, 1, 2, 9, 8, 7)), ("B3i3B", (3, 0, 2, 3, 255, 0, 1))],
+    )
 
-ply("ascii_surplus.ply", "",
+ply(
+    "ascii_surplus.ply",
+    "",
     ["element vertex 4", *XYZ, "element face 1", "property list uchar int vertex_indices"],
-    [("", (*p, 255)) for p in SQUARE] + [("", (4, 0, 1, 2, 3, 9, 1))])
+    [("", (*p, 255)) for p in SQUARE] + [("", (4, 0, 1, 2, 3, 9, 1))],
+)
 
 OBJ = {
     "plain.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
@@ -125,19 +178,34 @@ STL = {
 def gltf(name, change, binary, glb=True):
     """A square of two triangles; `change` edits the JSON."""
     document = {
-        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "translation": [1, 2, 3]}],
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "translation": [1, 2, 3]}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
-                      {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
-        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteLength": 48},
+            {"buffer": 0, "byteOffset": 48, "byteLength": 12},
+        ],
         "buffers": [{"byteLength": len(binary)}],
     }
     change(document)
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     if glb:
-        text = (b"glTF" + struct.pack("<2I", 2, 28 + len(text) + len(binary)) + struct.pack("<I", len(text)) + b"JSON" + text
-                + struct.pack("<I", len(binary)) + b"BIN\0" + binary)
+        text = (
+            b"glTF"
+            + struct.pack("<2I", 2, 28 + len(text) + len(binary))
+            + struct.pack("<I", len(text))
+            + b"JSON"
+            + text
+            + struct.pack("<I", len(binary))
+            + b"BIN\0"
+            + binary
+        )
     GLTF[name] = text
 
 
@@ -148,25 +216,63 @@ uvs = struct.pack("<8H", 0, 0, 65535, 0, 65535, 65535, 0, 65535)
 
 def rich(d):
     d["bufferViews"] += [{"buffer": 0, "byteOffset": 60, "byteLength": 16, "byteStride": 4}]
-    d["accessors"] += [{"bufferView": 2, "componentType": 5123, "normalized": True, "count": 4, "type": "VEC2"}]
-    d["meshes"][0]["primitives"][0] |= {"material": 0, "attributes": {"POSITION": 0, "TEXCOORD_1": 2, "COLOR_0": 0}}
-    d["materials"] = [{"pbrMetallicRoughness": {"baseColorFactor": [1, .5, 0, 1], "baseColorTexture": {
-        "index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform": {"offset": [0, .5], "scale": [2, 2], "rotation": 1}}}}}]
+    d["accessors"] += [
+        {"bufferView": 2, "componentType": 5123, "normalized": True, "count": 4, "type": "VEC2"}
+    ]
+    d["meshes"][0]["primitives"][0] |= {
+        "material": 0,
+        "attributes": {"POSITION": 0, "TEXCOORD_1": 2, "COLOR_0": 0},
+    }
+    d["materials"] = [
+        {
+            "pbrMetallicRoughness": {
+                "baseColorFactor": [1, 0.5, 0, 1],
+                "baseColorTexture": {
+                    "index": 0,
+                    "texCoord": 1,
+                    "extensions": {
+                        "KHR_texture_transform": {
+                            "offset": [0, 0.5],
+                            "scale": [2, 2],
+                            "rotation": 1,
+                        }
+                    },
+                },
+            }
+        }
+    ]
     d["textures"] = [{"source": 0, "sampler": 0}]
     d["samplers"] = [{"wrapS": 33071, "wrapT": 33648}]
     d["images"] = [{"uri": "data:image/png;base64,iVBORw0KGgo="}]
-    d["nodes"] = [{"mesh": 0, "scale": [-1, 1, 1], "children": [1]}, {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 5, 5, 1]}]
-    d["accessors"][0]["sparse"] = {"count": 1, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}
+    d["nodes"] = [
+        {"mesh": 0, "scale": [-1, 1, 1], "children": [1]},
+        {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 5, 5, 1]},
+    ]
+    d["accessors"][0]["sparse"] = {
+        "count": 1,
+        "indices": {"bufferView": 1, "componentType": 5123},
+        "values": {"bufferView": 0},
+    }
 
 
 def compressed(d):
-    d["bufferViews"][1]["extensions"] = {"EXT_meshopt_compression": {
-        "buffer": 0, "byteOffset": 60, "byteLength": 24, "byteStride": 2, "count": 6, "mode": "TRIANGLES"}}
+    d["bufferViews"][1]["extensions"] = {
+        "EXT_meshopt_compression": {
+            "buffer": 0,
+            "byteOffset": 60,
+            "byteLength": 24,
+            "byteStride": 2,
+            "count": 6,
+            "mode": "TRIANGLES",
+        }
+    }
     d["extensionsRequired"] = ["EXT_meshopt_compression"]
 
 
 def draco(d):
-    d["meshes"][0]["primitives"][0]["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}}
+    d["meshes"][0]["primitives"][0]["extensions"] = {
+        "KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}
+    }
 
 
 def beside(d):
@@ -182,27 +288,62 @@ gltf("beside.gltf", beside, square, glb=False)
 
 
 def instanced(d):
-    d["bufferViews"] += [{"buffer": 0, "byteOffset": 60, "byteLength": 24}, {"buffer": 0, "byteOffset": 84, "byteLength": 16}]
-    d["accessors"] += [{"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"},
-                       {"bufferView": 3, "componentType": 5122, "normalized": True, "count": 2, "type": "VEC4"}]
-    d["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 2, "ROTATION": 3, "SCALE": 2}}}
+    d["bufferViews"] += [
+        {"buffer": 0, "byteOffset": 60, "byteLength": 24},
+        {"buffer": 0, "byteOffset": 84, "byteLength": 16},
+    ]
+    d["accessors"] += [
+        {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"},
+        {"bufferView": 3, "componentType": 5122, "normalized": True, "count": 2, "type": "VEC4"},
+    ]
+    d["nodes"][0]["extensions"] = {
+        "EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 2, "ROTATION": 3, "SCALE": 2}}
+    }
     d["extensionsRequired"] = ["EXT_mesh_gpu_instancing"]
 
 
 def second_version(d):
     """Eight vertices of 12 bytes, all zero but for a step: control modes 0 and 2, channels of bytes, shorts and words."""
     d["accessors"][0]["count"] = 8
-    d["bufferViews"][0] |= {"byteLength": 96, "byteStride": 12, "buffer": 1, "extensions": {"KHR_meshopt_compression": {
-        "buffer": 0, "byteOffset": 60, "byteLength": len(SECOND), "byteStride": 12, "count": 8, "mode": "ATTRIBUTES", "filter": "EXPONENTIAL"}}}
+    d["bufferViews"][0] |= {
+        "byteLength": 96,
+        "byteStride": 12,
+        "buffer": 1,
+        "extensions": {
+            "KHR_meshopt_compression": {
+                "buffer": 0,
+                "byteOffset": 60,
+                "byteLength": len(SECOND),
+                "byteStride": 12,
+                "count": 8,
+                "mode": "ATTRIBUTES",
+                "filter": "EXPONENTIAL",
+            }
+        },
+    }
     d["extensionsRequired"] = ["KHR_meshopt_compression"]
     d["textures"] = [{}]
     d["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]
     d["meshes"][0]["primitives"][0]["material"] = 0
 
 
-SECOND = (b"\xa1" + bytes((0b10101001, 0b10101000, 0b10101011)) + bytes((1, 0x55, 0xAA)) + bytes((1, 0xF0, 0x0F, 9, 9, 9, 9, 9, 9, 9, 9))
-          + bytes(range(8)) + bytes(9) + bytes(12) + bytes((0, 1, 0x42)))
-gltf("instanced.glb", instanced, square + struct.pack("<6f", 1, 2, 3, 4, 5, 6) + struct.pack("<8h", 0, 0, 0, 32767, 0, 0, 23170, 23170))
+SECOND = (
+    b"\xa1"
+    + bytes((0b10101001, 0b10101000, 0b10101011))
+    + bytes((1, 0x55, 0xAA))
+    + bytes((1, 0xF0, 0x0F, 9, 9, 9, 9, 9, 9, 9, 9))
+    + bytes(range(8))
+    + bytes(9)
+    + bytes(12)
+    + bytes((0, 1, 0x42))
+)
+gltf(
+    "instanced.glb",
+    instanced,
+    square
+    + struct.pack("<6f", 1, 2, 3, 4, 5, 6)
+    + struct.pack("<8h", 0, 0, 0, 32767, 0, 0, 23170, 23170),
+)
 gltf("meshopt_second.glb", second_version, square + SECOND)
 MTL = {
     "options.mtl": b"newmtl m\r\nKd .5 .25 0\nmap_Kd -s 2 2 1 -o .5 -clamp on a.png\nnewmtl n o\nd .5\nmap_Kd -mm 0 1 \\\n skin.<UDIM>.jpg\n",
@@ -214,27 +355,59 @@ ZIP = {}
 for method, tag in ((zipfile.ZIP_STORED, "stored"), (zipfile.ZIP_DEFLATED, "deflated")):
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", method) as archive:
-        for name, content in (("../a/pot.obj", OBJ["uv.obj"]), ("a/a.mtl", MTL["plain.mtl"]), ("readme.txt", b"text")):
+        for name, content in (
+            ("../a/pot.obj", OBJ["uv.obj"]),
+            ("a/a.mtl", MTL["plain.mtl"]),
+            ("readme.txt", b"text"),
+        ):
             archive.writestr(zipfile.ZipInfo(name), content, method)
     ZIP[tag + ".zip"] = packed.getvalue()
 SHP = maps.shp([[maps.square(0, 0, 10), maps.square(2, 2, 3)], [maps.square(20, 0, 5)]])
-AREAS = {"type": "FeatureCollection", "features": [
-    {"type": "Feature", "properties": {"id": 1, "what": "salt", "seen": True}, "geometry": {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 4]]]}},
-    {"type": "Feature", "properties": None, "geometry": {"type": "MultiPolygon", "coordinates": [[[[0, 0, 1], [4, 0, 1], [4, 4, 1]]]]}}]}
+AREAS = {
+    "type": "FeatureCollection",
+    "features": [
+        {
+            "type": "Feature",
+            "properties": {"id": 1, "what": "salt", "seen": True},
+            "geometry": {"type": "Polygon", "coordinates": [[[0, 0], [4, 0], [4, 4]]]},
+        },
+        {
+            "type": "Feature",
+            "properties": None,
+            "geometry": {
+                "type": "MultiPolygon",
+                "coordinates": [[[[0, 0, 1], [4, 0, 1], [4, 4, 1]]]],
+            },
+        },
+    ],
+}
 MAP = {
     "bare.shp": SHP,
-    "table.shp": SHP + maps.dbf([("ID", "N", 6, ["1", "-2.5"]), ("WHAT", "C", 8, ["salt", "Gr\xfcn"]), ("SEEN", "L", 1, ["T", "n"])]),
-    "numbers.tif": maps.tiff(4, 3, lambda x, y: x - y / 2, nodata="-9999", scale=0.5, origin=(10, 20), epsg=25830),
+    "table.shp": SHP
+    + maps.dbf(
+        [
+            ("ID", "N", 6, ["1", "-2.5"]),
+            ("WHAT", "C", 8, ["salt", "Gr\xfcn"]),
+            ("SEEN", "L", 1, ["T", "n"]),
+        ]
+    ),
+    "numbers.tif": maps.tiff(
+        4, 3, lambda x, y: x - y / 2, nodata="-9999", scale=0.5, origin=(10, 20), epsg=25830
+    ),
     "bands.tif": maps.tiff(3, 2, lambda x, y: (x, y), kind="h", samples=2),
     "colours.tif": maps.tiff(3, 2, lambda x, y: (255, x, y, 255 * (x > 0)), kind="B", samples=4),
     "areas.geojson": json.dumps(AREAS).encode(),
 }
 FORM_TYPE = b"multipart/form-data; boundary=XyZ\n"
 FORM = {
-    "files": FORM_TYPE + maps.form(**{"scan/a_obj": b"v 0 0 0", "scan/../b_mtl": b"", "c_png": b"\r\n--Xy\r\n"})[0],
+    "files": FORM_TYPE
+    + maps.form(**{"scan/a_obj": b"v 0 0 0", "scan/../b_mtl": b"", "c_png": b"\r\n--Xy\r\n"})[0],
     "field": b'multipart/form-data; charset=x; boundary="a b"\n--a b\r\n\r\nno head\r\n--a b\r\ncontent-disposition: form-data; '
-             b'name="f; filename=x"; filename="C:\\d\\e;.ply"; size=1\r\nX: y\r\n\r\nply\r\n--a b--\r\n',
-    "twice": FORM_TYPE + maps.form(a_obj=b"1")[0].replace(b"--XyZ--", b"--XyZ\r\nContent-Disposition: a;filename=a.obj\r\n\r\n\r\n--XyZ--"),
+    b'name="f; filename=x"; filename="C:\\d\\e;.ply"; size=1\r\nX: y\r\n\r\nply\r\n--a b--\r\n',
+    "twice": FORM_TYPE
+    + maps.form(a_obj=b"1")[0].replace(
+        b"--XyZ--", b"--XyZ\r\nContent-Disposition: a;filename=a.obj\r\n\r\n\r\n--XyZ--"
+    ),
 }
 TEXT = {
     "target": b"/api/v1/models/a%20b/layers/%E2%98%83?limit=10&offset=20&name=M%C3%BCll+1&empty",
@@ -264,7 +437,9 @@ PICTURE = {
     "rgb.tga": tga(5, 3, lambda x, y: (40 * x, 80 * y, 9)),
     "packed.tga": tga(5, 3, lambda x, y: (40 * x, 80 * y, 9), packed=True),
     "grey.tif": maps.tiff(5, 3, lambda x, y: 40 * x + y, kind="B"),
-    "deep.tif": maps.tiff(5, 3, lambda x, y: (9000 * x, 80 * y, 9), kind="H", samples=3, deflated=True),
+    "deep.tif": maps.tiff(
+        5, 3, lambda x, y: (9000 * x, 80 * y, 9), kind="H", samples=3, deflated=True
+    ),
     "alpha.tif": maps.tiff(3, 2, lambda x, y: (255, x, y, 255 * (x > 0)), kind="B", samples=4),
     "numbers.tif": maps.tiff(3, 2, lambda x, y: x / 3),
 }
@@ -275,24 +450,66 @@ RASTER = {  # the layer's type, then the file
     "i16.tif": b"\4" + maps.tiff(128, 128, stripes, kind="h", samples=2, deflated=True),
     "f32.tif": b"\7" + maps.tiff(128, 128, stripes, kind="f", samples=2, deflated=True),
     "u8.png": b"\0" + png(128, 128, lambda x, y: (x, 255 * (y % 2))),
-    "f32.npy": b"\7\x93NUMPY\1\0" + struct.pack("<H", len(numpy_head)) + numpy_head + struct.pack("<fB", 1.5, 1),
+    "f32.npy": b"\7\x93NUMPY\1\0"
+    + struct.pack("<H", len(numpy_head))
+    + numpy_head
+    + struct.pack("<fB", 1.5, 1),
 }
-REVISION = {"u8": b"\0\1\0\xff", "f32": b"\7" + struct.pack("<2f", 1, -2.5), "stored": b"\3\1\1(\xb5/\xfd\x20\x04\x21\0\0abcd"}
+REVISION = {
+    "u8": b"\0\1\0\xff",
+    "f32": b"\7" + struct.pack("<2f", 1, -2.5),
+    "stored": b"\3\1\1(\xb5/\xfd\x20\x04\x21\0\0abcd",
+}
 CSV = {
-    "comma": b"\xef\xbb\xbfkey,name\r\n1,\"a \"\"b\"\"\nc\"\r\n\r\n2,\r\n",
+    "comma": b'\xef\xbb\xbfkey,name\r\n1,"a ""b""\nc"\r\n\r\n2,\r\n',
     "semicolon": b"sep=;\nkey;depth\n1;3,5\n2;'=1+1",
-    "tab": b"key\tname\r1\t\"x\"\r",
+    "tab": b'key\tname\r1\t"x"\r',
 }
-EDTF = {name: text.encode() for name, text in {
-    "day": "1560-04-12?", "season": "2001-21~", "digits": "156X", "month": "1560-02-XX", "far": "Y-17000%", "range": "-0043~/0100-12?",
-    "open": "../1560"}.items()}
-COLUMN_VALUE = {name: bytes((kind, flags)) + text.encode() for name, kind, flags, text in (
-    ("text", 0, 0, '"\'=1+1"'), ("integer", 1, 1, "-42"), ("numeric", 2, 2, "3,5"), ("boolean", 3, 0, "Yes"), ("date", 4, 0, "2024-02-29"),
-    ("timestamp", 5, 0, "2024-02-29 12:30:15.123-01:30"), ("period", 6, 0, "1560~/.."), ("choice", 7, 1, '"=b"'),
-    ("url", 8, 0, "https://example.org/"), ("term", 9, 0, "4294967295"), ("relation", 10, 0, "[3, 1, 3]"), ("keys", 10, 1, "3; 1 2"))}
-for folder, seeds in (("stl", STL), ("gltf", GLTF), ("mtl", MTL), ("zip", ZIP), ("map", MAP), ("form", FORM), ("text", TEXT),
-                      ("expression", EXPRESSION), ("picture", PICTURE), ("raster", RASTER), ("revision", REVISION),
-                      ("csv", CSV), ("edtf", EDTF), ("column_value", COLUMN_VALUE)):
+EDTF = {
+    name: text.encode()
+    for name, text in {
+        "day": "1560-04-12?",
+        "season": "2001-21~",
+        "digits": "156X",
+        "month": "1560-02-XX",
+        "far": "Y-17000%",
+        "range": "-0043~/0100-12?",
+        "open": "../1560",
+    }.items()
+}
+COLUMN_VALUE = {
+    name: bytes((kind, flags)) + text.encode()
+    for name, kind, flags, text in (
+        ("text", 0, 0, '"\'=1+1"'),
+        ("integer", 1, 1, "-42"),
+        ("numeric", 2, 2, "3,5"),
+        ("boolean", 3, 0, "Yes"),
+        ("date", 4, 0, "2024-02-29"),
+        ("timestamp", 5, 0, "2024-02-29 12:30:15.123-01:30"),
+        ("period", 6, 0, "1560~/.."),
+        ("choice", 7, 1, '"=b"'),
+        ("url", 8, 0, "https://example.org/"),
+        ("term", 9, 0, "4294967295"),
+        ("relation", 10, 0, "[3, 1, 3]"),
+        ("keys", 10, 1, "3; 1 2"),
+    )
+}
+for folder, seeds in (
+    ("stl", STL),
+    ("gltf", GLTF),
+    ("mtl", MTL),
+    ("zip", ZIP),
+    ("map", MAP),
+    ("form", FORM),
+    ("text", TEXT),
+    ("expression", EXPRESSION),
+    ("picture", PICTURE),
+    ("raster", RASTER),
+    ("revision", REVISION),
+    ("csv", CSV),
+    ("edtf", EDTF),
+    ("column_value", COLUMN_VALUE),
+):
     (HERE / folder).mkdir(exist_ok=True)
     for name, content in seeds.items():
         (HERE / folder / name).write_bytes(content)
