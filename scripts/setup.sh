@@ -1,5 +1,7 @@
 # Sourced by ./run and ./test: installs what is missing on Debian 12 and leaves everything else alone.
 # Sets STRATA_CMAKE_ARGS. Quick when nothing is missing.
+# shellcheck shell=bash
+# shellcheck disable=SC2034  # the lists of packages are for who sources this
 
 say() { printf '\033[1m%s\033[0m\n' "$*" >&2; }
 die() { printf '\033[31m%s\033[0m\n' "$*" >&2; exit 1; }
@@ -27,25 +29,25 @@ apt_get() {
 # --no-remove: a package of the user's is never taken away to make room for one of ours.
 install_packages() {
   local missing
-  missing=$(missing_packages "$@")
-  [ -n "$missing" ] || return 0
-  say "Installing: $(echo $missing)"
+  mapfile -t missing < <(missing_packages "$@")
+  [ ${#missing[@]} -gt 0 ] || return 0
+  say "Installing: ${missing[*]}"
   # Without this, Debian's PostgreSQL starts a cluster of its own that nobody asked for.
-  if grep -q '^postgresql' <<<"$missing" && [ ! -e /etc/postgresql-common/createcluster.conf ]; then
+  if [[ " ${missing[*]}" == *" postgresql"* ]] && [ ! -e /etc/postgresql-common/createcluster.conf ]; then
     as_root mkdir -p /etc/postgresql-common
     echo 'create_main_cluster = false' | as_root tee /etc/postgresql-common/createcluster.conf >/dev/null
   fi
-  apt_get install -y --no-install-recommends --no-remove $missing >&2 ||
-    die "Could not install: $(echo $missing). The lines above say why."
+  apt_get install -y --no-install-recommends --no-remove "${missing[@]}" >&2 ||
+    die "Could not install: ${missing[*]}. The lines above say why."
 }
 
-build_packages="g++ cmake ninja-build pkg-config ccache mold git python3 python3-yaml ca-certificates
+build_packages=(g++ cmake ninja-build pkg-config ccache mold git python3 python3-yaml ca-certificates
   libegl-dev libgl-dev libepoxy-dev libglm-dev libpq-dev nlohmann-json3-dev libvalijson-dev libsimdjson-dev
   libturbojpeg0-dev libjpeg62-turbo-dev libsodium-dev libssl-dev libspdlog-dev libcli11-dev libzstd-dev zlib1g-dev libbrotli-dev libpng-dev libtiff-dev libwebp-dev libstb-dev
-  libembree-dev libmeshoptimizer-dev libqhull-dev libdraco-dev libzip-dev libshp-dev libgeos-dev libsqlite3-dev libxlsxwriter-dev libutf8proc-dev libpango1.0-dev libexpected-dev libgtest-dev libgmock-dev"
-run_packages="libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri postgresql-15 fonts-dejavu-core curl"
-test_packages="chromium openssl libpcre2-8-0 poppler-utils clang-format-14 xz-utils python3-pandas python3-openpyxl"
-fuzz_packages="clang-14 libclang-rt-14-dev llvm-14"
+  libembree-dev libmeshoptimizer-dev libqhull-dev libdraco-dev libzip-dev libshp-dev libgeos-dev libsqlite3-dev libxlsxwriter-dev libutf8proc-dev libpango1.0-dev libexpected-dev libgtest-dev libgmock-dev)
+run_packages=(libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri postgresql-15 fonts-dejavu-core curl)
+test_packages=(chromium openssl libpcre2-8-0 poppler-utils clang-format-14 black flake8 isort shellcheck xz-utils python3-pandas python3-openpyxl)
+fuzz_packages=(clang-14 libclang-rt-14-dev llvm-14)
 
 # A package that had better not be installed: its files are unpacked into build/deps instead. unpack_beside PACKAGE FILE-OF-IT WHY
 unpack_beside() {
@@ -125,10 +127,11 @@ setup_web_client() {
 
 # configure_and_build PRESET [TARGET…]
 configure_and_build() {
-  local preset=$1
+  local preset=$1 targets=()
   shift
+  [ $# = 0 ] || targets=(--target "$@")
   if [ ! -f "build/$preset/build.ninja" ]; then
     cmake --preset "$preset" "${STRATA_CMAKE_ARGS[@]}" >&2 || die "cmake failed."
   fi
-  cmake --build "build/$preset" -j "${STRATA_BUILD_JOBS:-$(nproc)}" ${*:+--target "$@"} >&2 || die "The build failed."
+  cmake --build "build/$preset" -j "${STRATA_BUILD_JOBS:-$(nproc)}" "${targets[@]}" >&2 || die "The build failed."
 }

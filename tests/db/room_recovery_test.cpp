@@ -1,6 +1,7 @@
 // Faults: the GPU's memory is used up or its context goes, the database is away or holds more than
 // the room knows, the room closes. Whatever happens, what was answered as saved is in the journal,
 // and the room and the GPU hold what the journal holds.
+#include <gmock/gmock.h>
 #include <libpq-fe.h>
 
 #include <chrono>

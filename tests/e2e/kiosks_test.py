@@ -8,19 +8,7 @@ import uuid
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.browsers import Browser, join
-from support.kiosk_site import (
-    ALL,
-    COLUMN,
-    LAYER,
-    STOP,
-    TOUR,
-    M,
-    make_kiosk,
-    make_site,
-    others_closed,
-    sweep,
-    told,
-)
+from support.kiosk_site import ALL, STOP, TOUR, M, make_kiosk, make_site, others_closed, sweep, told
 from support.live_client import LiveClient, Refused
 from support.strata_server import LONG_S, StrataServer, wait_for
 

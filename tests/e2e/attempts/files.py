@@ -6,7 +6,7 @@ import urllib.parse
 import uuid
 import zipfile
 
-from attempts.tools import FILL, L, M, T, statuses
+from attempts.tools import FILL, L, T, statuses
 from support.meshes import folded_grid
 from support.pictures import png
 from support.process_memory import PeakGrowth

@@ -137,6 +137,7 @@ class LiveClient:
     def receive(self, end=None):
         """The next message: a dict, or for a frame {"op": "frame", …its header…}."""
         content = b""
+        kind = 0  # of the message whose first part came
         while True:
             if end and time.monotonic() > end:
                 raise AssertionError(f"waited {LONG_S} s for a message")
