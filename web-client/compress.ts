@@ -14,7 +14,10 @@ function compress(folder: string): void {
     else if (kTexts.test(entry.name)) {
       const bytes = readFileSync(file);
       if (bytes.length < kMinBytes) continue;
-      const mode = { [constants.BROTLI_PARAM_MODE]: constants.BROTLI_MODE_TEXT, [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length };
+      const mode = {
+        [constants.BROTLI_PARAM_MODE]: constants.BROTLI_MODE_TEXT,
+        [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length,
+      };
       writeFileSync(`${file}.br`, brotliCompressSync(bytes, { params: mode }));
       writeFileSync(`${file}.gz`, gzipSync(bytes, { level: 9 }));
     }

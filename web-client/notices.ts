@@ -1,4 +1,5 @@
-// Leaves `third-party-notices.txt` in the build: the licences of the npm packages whose code is in it.
+// Leaves `third-party-notices.txt` in the build: the licences of the npm packages whose code is in
+// it.
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Plugin } from "vite";
@@ -7,7 +8,8 @@ const kFolder = /^(.*\/node_modules\/((?:@[^/]+\/)?[^/]+))\//;
 
 function notice_of(folder: string): string {
   const file = readdirSync(folder).find((name) => /^licen[cs]e/i.test(name));
-  if (!file || !existsSync(join(folder, file))) throw new Error(`${folder} has no licence file: its code cannot be shipped`);
+  if (!file || !existsSync(join(folder, file)))
+    throw new Error(`${folder} has no licence file: its code cannot be shipped`);
   return readFileSync(join(folder, file), "utf8").trim();
 }
 
@@ -23,10 +25,16 @@ export function third_party_notices(): Plugin {
           if (found) packages.set(found[2]!, found[1]!);
         }
       const notices = [...packages].sort().map(([name, folder]) => {
-        const { version } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8")) as { version: string };
+        const { version } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8")) as {
+          version: string;
+        };
         return `${name} ${version}\n\n${notice_of(folder)}\n`;
       });
-      this.emitFile({ type: "asset", fileName: "third-party-notices.txt", source: notices.join(`\n${"=".repeat(80)}\n\n`) });
+      this.emitFile({
+        type: "asset",
+        fileName: "third-party-notices.txt",
+        source: notices.join(`\n${"=".repeat(80)}\n\n`),
+      });
     },
   };
 }

@@ -12,13 +12,17 @@ export default defineConfig({
     target: "es2022",
     sourcemap: true,
     manifest: true, // what is loaded with what, for the test of the page's weight
-    // The server's content security policy allows only files of its own: nothing is inlined into the page.
+    // The server's content security policy allows only files of its own: nothing is inlined into
+    // the page.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
     rollupOptions: {
       input: { index: "index.html", "kiosk-worker": "src/kiosk/worker.ts" },
       // A service worker has an address that never changes.
-      output: { entryFileNames: ({ name }) => (name === "kiosk-worker" ? "kiosk-worker.js" : "assets/[name]-[hash].js") },
+      output: {
+        entryFileNames: ({ name }) =>
+          name === "kiosk-worker" ? "kiosk-worker.js" : "assets/[name]-[hash].js",
+      },
     },
   },
   server: {

@@ -1,15 +1,27 @@
-// The contract, held against Redocly's recommended rules of OpenAPI: generators and validators of others must see what the server enforces.
+// The contract, held against Redocly's recommended rules of OpenAPI: generators and validators of
+// others must see what the server enforces.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { kRoot, load_module } from "./support/modules.mjs";
 
 const { createConfig, lint } = load_module("@redocly/openapi-core");
 
-/** Calls that succeed by another answer: the owner's link leads on to the page (303), a live connection becomes a WebSocket (101). */
-const kWithoutSuccess = ["#/paths/~1login/get/responses", "#/paths/~1api~1v1~1models~1{model}~1live/get/responses"];
+/**
+ * Calls that succeed by another answer: the owner's link leads on to the page (303), a live
+ * connection becomes a WebSocket (101).
+ */
+const kWithoutSuccess = [
+  "#/paths/~1login/get/responses",
+  "#/paths/~1api~1v1~1models~1{model}~1live/get/responses",
+];
 
 /** Answers that the generator adds to calls of the JSON file (`generator/openapi.py`). */
-const kByGenerator = ["#/components/responses/UnknownHost", "#/components/responses/HeaderTooLarge", "#/components/responses/UnchangedAnswer", "#/components/responses/VersionMissing"];
+const kByGenerator = [
+  "#/components/responses/UnknownHost",
+  "#/components/responses/HeaderTooLarge",
+  "#/components/responses/UnchangedAnswer",
+  "#/components/responses/VersionMissing",
+];
 const is_known = ({ ruleId, location: [{ pointer }] }, file) =>
   (ruleId === "operation-2xx-response" && kWithoutSuccess.includes(pointer)) ||
   (ruleId === "no-unused-components" && file === "openapi.yaml" && kByGenerator.includes(pointer));
@@ -19,7 +31,10 @@ for (const file of ["openapi.yaml", "generated/openapi.json"]) {
   const found = await lint({ ref: join(kRoot, "protocol", file), config });
   const faults = found.filter((fault) => !is_known(fault, file));
   assert.deepEqual(
-    faults.map(({ severity, ruleId, message, location }) => `${file} ${location[0].pointer}: ${severity} ${ruleId}: ${message}`),
+    faults.map(
+      ({ severity, ruleId, message, location }) =>
+        `${file} ${location[0].pointer}: ${severity} ${ruleId}: ${message}`,
+    ),
     [],
   );
 }

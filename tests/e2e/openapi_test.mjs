@@ -1,6 +1,7 @@
-// Thousands of calls that fast-check makes of the contract, good ones and bad ones, against a real server: no answer may be a server's
-// mistake, each must be one that the contract describes for that call, and what the contract forbids must not be carried out.
-// STRATA_SEED repeats a run's calls, STRATA_OPERATION (an operationId) keeps to one operation.
+// Thousands of calls that fast-check makes of the contract, good ones and bad ones, against a real
+// server: no answer may be a server's mistake, each must be one that the contract describes for
+// that call, and what the contract forbids must not be carried out. STRATA_SEED repeats a run's
+// calls, STRATA_OPERATION (an operationId) keeps to one operation.
 import http from "node:http";
 import { fc } from "./support/arbitraries.mjs";
 import { calls_of } from "./support/calls.mjs";
@@ -9,19 +10,25 @@ import { Site } from "./support/site.mjs";
 import { kLong_ms, StrataServer } from "./support/strata-server.mjs";
 import { kSpare } from "./support/vocabulary.mjs";
 
-const kRounds = 5; // each operation is called early and late, and beside different ones; many more fill what has a limit (looks of a model)
+// each operation is called early and late, and beside different ones; many more fill what has a
+// limit (looks of a model)
+const kRounds = 5;
 const kCallsInRound = 10; // of each operation
 const kAtOnce = 4; // as many as may download: a fifth would be put off (503)
-const kSmallBody = 60_000; // what the server reads of a call that it refuses; larger ones ask first, since it may end the connection
+// what the server reads of a call that it refuses; larger ones ask first, since it may end the
+// connection
+const kSmallBody = 60_000;
 const kFewest = 2000;
 
 /** What cannot succeed here, or not surely. */
 const kExceptions = {
   live: "it becomes a WebSocket, which live_cases_test.py opens",
-  change_password: "it would end the owner's sessions and the token's rights on accounts; accounts_test.py does",
+  change_password:
+    "it would end the owner's sessions and the token's rights on accounts; accounts_test.py does",
   kiosk_self: "kiosks ask it, and nobody else; kiosks_test.py does",
   cancel_job: "the job may be over before it is asked to stop",
-  open_owner_link: "once the owner has chosen a password the link is worthless; the tests in browsers open it",
+  open_owner_link:
+    "once the owner has chosen a password the link is worthless; the tests in browsers open it",
 };
 
 const seed = Number(process.env.STRATA_SEED ?? Date.now() % 2 ** 31);
@@ -32,7 +39,8 @@ const agent = new http.Agent({ keepAlive: true, maxSockets: kAtOnce });
 const counts = new Map(contract.operations.map(({ id }) => [id, new Map()]));
 const slowest = [];
 
-const as_segment = (text) => encodeURIComponent(Buffer.from(text).toString()); // a lone surrogate becomes a replacement character
+// a lone surrogate becomes a replacement character
+const as_segment = (text) => encodeURIComponent(Buffer.from(text).toString());
 const secrets = () =>
   new Map([
     ["(the owner's token)", server.token],
@@ -48,13 +56,20 @@ const secrets = () =>
 function bytes_of(body) {
   if (body === null) return null;
   if (body.json !== undefined)
-    return Buffer.from([...secrets()].reduce((text, [word, secret]) => text.replaceAll(word, secret), JSON.stringify(body.json)));
+    return Buffer.from(
+      [...secrets()].reduce(
+        (text, [word, secret]) => text.replaceAll(word, secret),
+        JSON.stringify(body.json),
+      ),
+    );
   if (body.text !== undefined) return Buffer.from(body.text);
   if (body.hex !== undefined) return Buffer.from(body.hex, "hex");
   if (body.file) return site.files[body.file];
   if (body.form) {
     const parts = body.form.flatMap((name) => [
-      Buffer.from(`--XyZ\r\nContent-Disposition: form-data; name="file"; filename="${name}"\r\n\r\n`),
+      Buffer.from(
+        `--XyZ\r\nContent-Disposition: form-data; name="file"; filename="${name}"\r\n\r\n`,
+      ),
       site.files[name],
       Buffer.from("\r\n"),
     ]);
@@ -68,11 +83,21 @@ async function request_of(operation, { path, query, headers, body, token }) {
   const known = secrets();
   let target = operation.path;
   for (const [name, text] of Object.entries(path))
-    target = target.replace(`{${name}}`, as_segment(text === kSpare ? await site.spare(name) : (known.get(text) ?? text)));
-  const pairs = query.map(([name, text]) => [name, known.get(text) ?? Buffer.from(text).toString()]);
-  if (pairs.length > 0) target += `?${pairs.map(([name, text]) => `${as_segment(name)}=${as_segment(text)}`).join("&")}`;
-  const sent = Object.fromEntries(Object.entries(headers).map(([name, text]) => [name.toLowerCase(), text]));
-  if (token !== null && !operation.is_open) sent.authorization = `Bearer ${known.get(token) ?? token}`;
+    target = target.replace(
+      `{${name}}`,
+      as_segment(text === kSpare ? await site.spare(name) : (known.get(text) ?? text)),
+    );
+  const pairs = query.map(([name, text]) => [
+    name,
+    known.get(text) ?? Buffer.from(text).toString(),
+  ]);
+  if (pairs.length > 0)
+    target += `?${pairs.map(([name, text]) => `${as_segment(name)}=${as_segment(text)}`).join("&")}`;
+  const sent = Object.fromEntries(
+    Object.entries(headers).map(([name, text]) => [name.toLowerCase(), text]),
+  );
+  if (token !== null && !operation.is_open)
+    sent.authorization = `Bearer ${known.get(token) ?? token}`;
   return { method: operation.method, target, query: pairs, headers: sent, body: bytes_of(body) };
 }
 
@@ -91,7 +116,12 @@ function send({ method, target, headers, body }) {
       },
       (answer) => {
         const chunks = [];
-        const done = () => resolve({ status: answer.statusCode, headers: answer.headers, body: Buffer.concat(chunks) });
+        const done = () =>
+          resolve({
+            status: answer.statusCode,
+            headers: answer.headers,
+            body: Buffer.concat(chunks),
+          });
         answer.on("error", reject);
         answer.on("data", (chunk) => {
           chunks.push(chunk);
@@ -105,7 +135,9 @@ function send({ method, target, headers, body }) {
         });
       },
     );
-    request.on("timeout", () => request.destroy(new Error(`no answer within ${kLong_ms / 1000} s`)));
+    request.on("timeout", () =>
+      request.destroy(new Error(`no answer within ${kLong_ms / 1000} s`)),
+    );
     request.on("error", reject);
     if (body === null || body.length < kSmallBody) return request.end(body ?? undefined);
     request.setHeader("Expect", "100-continue");
@@ -123,7 +155,11 @@ async function check(operation, call) {
   tally.set(answer.status, (tally.get(answer.status) ?? 0) + 1);
   const faults = contract.faults_of_answer(operation, answer);
   if (answer.status < 300)
-    faults.push(...contract.faults_of_request(operation, request).map((fault) => `it was carried out although ${fault}`));
+    faults.push(
+      ...contract
+        .faults_of_request(operation, request)
+        .map((fault) => `it was carried out although ${fault}`),
+    );
   if (faults.length > 0)
     throw new Error(
       `${operation.method} ${request.target} ${answer.status}: ${faults.slice(0, 5).join("; ")}\n  ${answer.body.subarray(0, 600)}`,
@@ -142,13 +178,17 @@ async function run_all(tasks) {
 function tell_counts() {
   for (const [id, tally] of counts) {
     const of_class = (least) =>
-      [...tally].filter(([status]) => status >= least && status < least + 100).reduce((sum, [, count]) => sum + count, 0);
+      [...tally]
+        .filter(([status]) => status >= least && status < least + 100)
+        .reduce((sum, [, count]) => sum + count, 0);
     const refusals = [...tally]
       .filter(([status]) => status >= 400)
       .sort()
       .map(([status, count]) => `${count} × ${status}`)
       .join(", ");
-    console.log(`${id.padEnd(28)} ${String(of_class(200) + of_class(300)).padStart(4)} done   ${refusals}`);
+    console.log(
+      `${id.padEnd(28)} ${String(of_class(200) + of_class(300)).padStart(4)} done   ${refusals}`,
+    );
   }
 }
 
@@ -159,13 +199,20 @@ try {
   await server.start();
   server.viewer = (await server.add_person("Vera", "viewer")).token;
   await site.make();
-  const chosen = contract.operations.filter(({ id }) => (process.env.STRATA_OPERATION ?? id) === id);
+  const chosen = contract.operations.filter(
+    ({ id }) => (process.env.STRATA_OPERATION ?? id) === id,
+  );
   for (let round = 0; round < kRounds; ++round) {
-    const order = fc.sample(fc.shuffledSubarray(chosen, { minLength: chosen.length }), { seed: seed + round, numRuns: 1 })[0];
+    const order = fc.sample(fc.shuffledSubarray(chosen, { minLength: chosen.length }), {
+      seed: seed + round,
+      numRuns: 1,
+    })[0];
     await run_all(
       order.map((operation) => async () => {
         if (failures.some(({ id }) => id === operation.id)) return;
-        const property = fc.asyncProperty(calls_of(contract, operation), (call) => check(operation, call));
+        const property = fc.asyncProperty(calls_of(contract, operation), (call) =>
+          check(operation, call),
+        );
         const details = await fc.check(property, {
           seed: seed + 1000 * round + contract.operations.indexOf(operation),
           numRuns: kCallsInRound,
@@ -180,15 +227,23 @@ try {
   }
   const seconds = (performance.now() - begin) / 1000;
   tell_counts();
-  const sum = [...counts.values()].flatMap((tally) => [...tally.values()]).reduce((a, b) => a + b, 0);
-  console.log(`${sum} calls of ${chosen.length} operations in ${seconds.toFixed(0)} s, ${(sum / seconds).toFixed(0)} a second`);
-  for (const { ms, target } of slowest.sort((a, b) => b.ms - a.ms).slice(0, 5)) console.log(`${(ms / 1000).toFixed(1)} s: ${target}`);
+  const sum = [...counts.values()]
+    .flatMap((tally) => [...tally.values()])
+    .reduce((a, b) => a + b, 0);
+  console.log(
+    `${sum} calls of ${chosen.length} operations in ${seconds.toFixed(0)} s, ${(sum / seconds).toFixed(0)} a second`,
+  );
+  for (const { ms, target } of slowest.sort((a, b) => b.ms - a.ms).slice(0, 5))
+    console.log(`${(ms / 1000).toFixed(1)} s: ${target}`);
   if (failures.length > 0)
     throw new Error(
       `${failures.map(({ id, report }) => `${id}: ${report}`).join("\n\n")}\n\n${failures.length} operations failed. STRATA_SEED=${seed} makes the same calls.`,
     );
   const without = chosen
-    .filter(({ id }) => !(id in kExceptions) && ![...counts.get(id).keys()].some((status) => status < 400))
+    .filter(
+      ({ id }) =>
+        !(id in kExceptions) && ![...counts.get(id).keys()].some((status) => status < 400),
+    )
     .map(({ id }) => id);
   if (without.length > 0) throw new Error(`no call of these succeeded: ${without.join(", ")}`);
   if (!process.env.STRATA_OPERATION && sum < kFewest) throw new Error(`only ${sum} calls`);

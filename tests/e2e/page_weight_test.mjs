@@ -1,4 +1,5 @@
-// What a browser loads before it shows a page for the first time, in the coding that is larger (gzip, which browsers take by plain http, too).
+// What a browser loads before it shows a page for the first time, in the coding that is larger
+// (gzip, which browsers take by plain http, too).
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
@@ -21,12 +22,22 @@ function with_imports(key, found = new Set()) {
 
 function weight(...keys) {
   const pieces = new Set(keys.flatMap((key) => [...with_imports(key)]));
-  const files = new Set([...pieces].flatMap((key) => [manifest[key].file, ...(manifest[key].css ?? [])]));
-  const bytes = [...files].map((file) => statSync(existsSync(join(dist, `${file}.gz`)) ? join(dist, `${file}.gz`) : join(dist, file)).size);
+  const files = new Set(
+    [...pieces].flatMap((key) => [manifest[key].file, ...(manifest[key].css ?? [])]),
+  );
+  const bytes = [...files].map(
+    (file) =>
+      statSync(existsSync(join(dist, `${file}.gz`)) ? join(dist, `${file}.gz`) : join(dist, file))
+        .size,
+  );
   return bytes.reduce((sum, each) => sum + each, statSync(join(dist, "index.html")).size);
 }
 
-const kShell = ["index.html", Object.keys(manifest).find((key) => manifest[key].name === "strata-app")]; // others take from it, so it has no name of a source
+// others take from it, so it has no name of a source
+const kShell = [
+  "index.html",
+  Object.keys(manifest).find((key) => manifest[key].name === "strata-app"),
+];
 const kFirst = {
   "signing in": ["src/app/sign-in.ts"],
   "the gallery": ["src/app/home-page.ts"],

@@ -24,8 +24,11 @@ describe("a log of activity", () => {
   });
 
   it("forgets what does not meet the page, and what the page lacks though it would stand there", () => {
-    expect(ids(with_first_page(known, { lines: [line(9, 59), line(8, 58)], next: "earlier" }))).toEqual([9, 8]);
-    const gone = with_first_page(known, { lines: [line(4, 40), line(2, 20)], next: "earlier" }); // comment 3 was deleted
+    expect(
+      ids(with_first_page(known, { lines: [line(9, 59), line(8, 58)], next: "earlier" })),
+    ).toEqual([9, 8]);
+    // comment 3 was deleted
+    const gone = with_first_page(known, { lines: [line(4, 40), line(2, 20)], next: "earlier" });
     expect(ids(gone)).toEqual([4, 2, 1]);
     expect(ids(with_first_page(known, { lines: [], next: undefined }))).toEqual([]);
   });
@@ -38,7 +41,8 @@ describe("a log of activity", () => {
 
   it("is told by days", () => {
     const now = new Date(2026, 4, 4, 18);
-    const at = (id: number, day: number): Activity => line(id, 0, { time: new Date(2026, 4, day, 12).toISOString() });
+    const at = (id: number, day: number): Activity =>
+      line(id, 0, { time: new Date(2026, 4, day, 12).toISOString() });
     const days = by_day([at(4, 4), at(3, 4), at(2, 3), at(1, 1)], (iso) => told_day(iso, now));
     expect(days.map(({ day, lines }) => [day, lines.length])).toEqual([
       ["today", 2],
@@ -72,7 +76,10 @@ describe("the activity of a model", () => {
   beforeEach(() => {
     vi.useFakeTimers();
     asked.length = flown.length = 0;
-    answer = ({ before }) => Promise.resolve(before === undefined ? { activity: [line(2, 20)], next: "x" } : { activity: [line(1, 10)] });
+    answer = ({ before }) =>
+      Promise.resolve(
+        before === undefined ? { activity: [line(2, 20)], next: "x" } : { activity: [line(1, 10)] },
+      );
     activity = new Activities(api, host);
   });
   afterEach(() => {
@@ -136,9 +143,15 @@ describe("the activity of a model", () => {
   it("leads to comments that are there, and nowhere without a thing", async () => {
     const comment = line(1, 1, { kind: "comment", op: "written", model: 7, comment: 5 });
     expect(activity.leads_somewhere(comment)).toBe(true);
-    expect(activity.leads_somewhere(line(1, 1, { kind: "comment", op: "written", model: 7 }))).toBe(false);
-    expect(activity.leads_somewhere(line(1, 1, { kind: "layer", op: "deleted", model: 7 }))).toBe(false);
-    expect(activity.leads_somewhere(line(1, 1, { kind: "model", op: "changed", model: 8 }))).toBe(true);
+    expect(activity.leads_somewhere(line(1, 1, { kind: "comment", op: "written", model: 7 }))).toBe(
+      false,
+    );
+    expect(activity.leads_somewhere(line(1, 1, { kind: "layer", op: "deleted", model: 7 }))).toBe(
+      false,
+    );
+    expect(activity.leads_somewhere(line(1, 1, { kind: "model", op: "changed", model: 8 }))).toBe(
+      true,
+    );
     await activity.go_to(comment);
     expect(flown).toEqual([5]);
   });

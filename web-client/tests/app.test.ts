@@ -9,13 +9,35 @@ import { notices } from "../src/app/notices";
 import { PickProbe, type PickPurpose } from "../src/app/pick-probe";
 import { path_of_project, route_of } from "../src/app/routes";
 import { texts } from "../src/app/texts";
-import { class_palette, measurement_palette, presence_palette, record_palette } from "../src/core/palette";
+import {
+  class_palette,
+  measurement_palette,
+  presence_palette,
+  record_palette,
+} from "../src/core/palette";
 import type { Layer, Palette, ValueType } from "../src/core/types";
 
 const layer = (type: ValueType, palette: Palette, unit = ""): Layer => ({
-  id: 7, model: 1, name: "L", slug: "l", kind: "numeric", type, resolution: 2048, unit, description: "", labels: {}, descriptions: {}, palette,
-  opacity: 1, visible: true, locked: false, review: false, visibility: "public", order: 0, sequence: 0,
-}); // prettier-ignore
+  id: 7,
+  model: 1,
+  name: "L",
+  slug: "l",
+  kind: "numeric",
+  type,
+  resolution: 2048,
+  unit,
+  description: "",
+  labels: {},
+  descriptions: {},
+  palette,
+  opacity: 1,
+  visible: true,
+  locked: false,
+  review: false,
+  visibility: "public",
+  order: 0,
+  sequence: 0,
+});
 const classes = class_palette([
   { at: 2, label: "Plaster", color: "#ffffffff" },
   { at: 5, label: "", color: "#000000ff" },
@@ -25,7 +47,9 @@ describe("the brush's value", () => {
   it("starts with the first class, presence, or the middle of a measurement", () => {
     const brush = new BrushSettings();
     expect(brush.value_of(layer("u8", classes))).toBe(2);
-    expect(new BrushSettings().value_of(layer("u8", presence_palette("Salt", "#ffffffff")))).toBe(1);
+    expect(new BrushSettings().value_of(layer("u8", presence_palette("Salt", "#ffffffff")))).toBe(
+      1,
+    );
     expect(new BrushSettings().value_of(layer("f32", measurement_palette(0, 0.3)))).toBe(0.15);
     expect(new BrushSettings().value_of(layer("i16", measurement_palette(0, 5)))).toBe(3);
   });
@@ -68,7 +92,10 @@ describe("records", () => {
     const finds: Layer = { ...layer("u32", record_palette()), kind: "database" };
     expect(new BrushSettings().value_of(finds)).toBe(1);
     expect(describe_value(finds, 4711)).toBe("Record 4711");
-    const names = { label: (table: number, key: number) => (table === 3 && key === 4711 ? "Fibula" : null), term: () => null };
+    const names = {
+      label: (table: number, key: number) => (table === 3 && key === 4711 ? "Fibula" : null),
+      term: () => null,
+    };
     expect(describe_value({ ...finds, table: 3 }, 4711, names)).toBe("Fibula");
     expect(describe_value({ ...finds, table: 3 }, 4712, names)).toBe("Record 4712");
     expect(value_problem(finds, 4_294_967_296)).not.toBeNull();
@@ -77,12 +104,28 @@ describe("records", () => {
 
 describe("a changed layer", () => {
   const old = layer("u8", classes);
-  const same = { name: "L", unit: "", description: "", labels: {}, descriptions: {}, palette: class_palette(classes.points as never), visibility: "public" as const };
+  const same = {
+    name: "L",
+    unit: "",
+    description: "",
+    labels: {},
+    descriptions: {},
+    palette: class_palette(classes.points as never),
+    visibility: "public" as const,
+  };
   it("sends only what was changed", () => {
     expect(layer_changes(old, same)).toEqual({});
-    expect(layer_changes(old, { ...same, description: "by eye" })).toEqual({ description: "by eye" });
+    expect(layer_changes(old, { ...same, description: "by eye" })).toEqual({
+      description: "by eye",
+    });
     expect(layer_changes(old, { ...same, visibility: "team" })).toEqual({ visibility: "team" });
-    expect(layer_changes(old, { ...same, labels: { de: "Ebene" }, descriptions: { de: "nach Augenschein" } })).toEqual({ labels: { de: "Ebene" }, descriptions: { de: "nach Augenschein" } });
+    expect(
+      layer_changes(old, {
+        ...same,
+        labels: { de: "Ebene" },
+        descriptions: { de: "nach Augenschein" },
+      }),
+    ).toEqual({ labels: { de: "Ebene" }, descriptions: { de: "nach Augenschein" } });
     const palette = class_palette([{ at: 2, label: "Lime", color: "#ffffffff" }]);
     expect(layer_changes(old, { ...same, name: "M", palette })).toEqual({ name: "M", palette });
   });
@@ -90,7 +133,9 @@ describe("a changed layer", () => {
 
 describe("radio buttons", () => {
   it("the arrow keys go round, other keys are not theirs", () => {
-    expect(["ArrowRight", "ArrowDown", "ArrowLeft", "ArrowUp"].map((key) => arrow_step(key, 0, 3))).toEqual([1, 1, 2, 2]);
+    expect(
+      ["ArrowRight", "ArrowDown", "ArrowLeft", "ArrowUp"].map((key) => arrow_step(key, 0, 3)),
+    ).toEqual([1, 1, 2, 2]);
     expect(arrow_step("ArrowRight", 2, 3)).toBe(0);
     expect(arrow_step("Home", 0, 3)).toBeNull();
   });
@@ -111,8 +156,10 @@ describe("addresses", () => {
 describe("dropped files", () => {
   const named = (...paths: string[]): DroppedFile[] =>
     paths.map((path) => ({ path, file: { name: path.split("/").at(-1)! } as File }));
-  const chosen = (...paths: string[]): string[][] => choose_scans(named(...paths)).map((scan) => scan.files.map(({ path }) => path));
-  const names = (...paths: string[]): string[] => choose_scans(named(...paths)).map((scan) => scan.name);
+  const chosen = (...paths: string[]): string[][] =>
+    choose_scans(named(...paths)).map((scan) => scan.files.map(({ path }) => path));
+  const names = (...paths: string[]): string[] =>
+    choose_scans(named(...paths)).map((scan) => scan.name);
   const told = (): string => {
     let titles = "";
     notices.subscribe((shown) => (titles = shown.map((notice) => notice.title).join()))();
@@ -125,11 +172,18 @@ describe("dropped files", () => {
     ]);
   });
   it("of several meshes each brings what is called like it", () => {
-    expect(chosen("a.obj", "b.obj", "a.mtl", "b_0.png")).toEqual([["a.obj", "a.mtl"], ["b.obj", "b_0.png"]]);
+    expect(chosen("a.obj", "b.obj", "a.mtl", "b_0.png")).toEqual([
+      ["a.obj", "a.mtl"],
+      ["b.obj", "b_0.png"],
+    ]);
     expect(chosen("x/a.ply", "y/a.ply", "y/a.png")).toEqual([["a.ply"], ["a.ply", "a.png"]]);
   });
   it("of meshes that are called the same each is named with the folders that tell them apart", () => {
-    expect(names("a/mesh.obj", "b/mesh.obj", "c/other_pot.ply")).toEqual(["a/mesh", "b/mesh", "other pot"]);
+    expect(names("a/mesh.obj", "b/mesh.obj", "c/other_pot.ply")).toEqual([
+      "a/mesh",
+      "b/mesh",
+      "other pot",
+    ]);
     expect(names("x/in/mesh.obj", "y/in/mesh.obj")).toEqual(["x/in/mesh", "y/in/mesh"]);
     expect(names("mesh.obj", "b/mesh.obj")).toEqual(["mesh", "b/mesh"]);
     expect(names("deep/down/mesh_1.obj")).toEqual(["mesh 1"]);
@@ -145,10 +199,13 @@ describe("dropped files", () => {
 
 describe("the page's words", () => {
   const all = (value: unknown): string =>
-    typeof value === "string" ? value
-    : typeof value === "function" ? String((value as (...args: string[]) => unknown)("a", "b"))
-    : typeof value === "object" && value !== null ? Object.values(value).map(all).join("\n")
-    : ""; // prettier-ignore
+    typeof value === "string"
+      ? value
+      : typeof value === "function"
+        ? String((value as (...args: string[]) => unknown)("a", "b"))
+        : typeof value === "object" && value !== null
+          ? Object.values(value).map(all).join("\n")
+          : "";
   it("are those of people who study objects", () => {
     expect(all(texts)).not.toMatch(/texel|atlas|\bu8\b|\bf32\b|shader|websocket/i);
   });
@@ -166,7 +223,8 @@ describe("the probe under the pointer", () => {
       ask: (id, { x }) => void asked.push({ id, x }),
       answered: (message, purpose) => void answered.push([message.position?.[0], purpose]),
     });
-    const answer = (id: string, x: number): boolean => probe.answer({ op: "picked", id, hit: true, position: [x, 0, 0] });
+    const answer = (id: string, x: number): boolean =>
+      probe.answer({ op: "picked", id, hit: true, position: [x, 0, 0] });
     return { asked, answered, probe, answer };
   };
 
@@ -196,7 +254,10 @@ describe("the probe under the pointer", () => {
     answer(asked[0]!.id, 1);
     answer("another's question", 9);
     answer(asked[1]!.id, 3);
-    expect(answered).toEqual([[1, "hover"], [3, "take"]]); // prettier-ignore
+    expect(answered).toEqual([
+      [1, "hover"],
+      [3, "take"],
+    ]);
   });
   it("an answer that never comes, or a refusal, does not stop it", () => {
     const { asked, probe } = setup();

@@ -9,7 +9,10 @@ import type { Light, Look, LookShown, Plane } from "../src/core/protocol.gen";
 import { no_section, section_planes, with_box_side } from "../src/core/section";
 import { with_range } from "../src/core/palette";
 
-const bounds = { min: [0, 10, -4] as [number, number, number], max: [2, 20, 4] as [number, number, number] };
+const bounds = {
+  min: [0, 10, -4] as [number, number, number],
+  max: [2, 20, 4] as [number, number, number],
+};
 const above = (plane: Plane, [x, y, z]: [number, number, number]): boolean =>
   plane[0] * x + plane[1] * y + plane[2] * z + plane[3] >= 0;
 
@@ -18,7 +21,10 @@ describe("sections", () => {
     const [plane] = section_planes({ ...no_section(), mode: "y", position: 0.25 }, bounds);
     expect(above(plane!, [1, 12, 0])).toBe(true);
     expect(above(plane!, [1, 13, 0])).toBe(false);
-    const [other] = section_planes({ ...no_section(), mode: "y", position: 0.25, flipped: true }, bounds);
+    const [other] = section_planes(
+      { ...no_section(), mode: "y", position: 0.25, flipped: true },
+      bounds,
+    );
     expect(above(other!, [1, 12, 0])).toBe(false);
   });
 
@@ -28,7 +34,8 @@ describe("sections", () => {
     const one = with_box_side(whole, "min", 0, 0.5);
     expect(section_planes(one, bounds)).toEqual([[1, 0, 0, -1]]);
     let all = whole as ReturnType<typeof no_section>;
-    for (const axis of [0, 1, 2]) all = with_box_side(with_box_side(all, "min", axis, 0.2), "max", axis, 0.8);
+    for (const axis of [0, 1, 2])
+      all = with_box_side(with_box_side(all, "min", axis, 0.2), "max", axis, 0.8);
     const planes = section_planes(all, bounds);
     expect(planes).toHaveLength(6);
     expect(planes.every((plane) => above(plane, [1, 15, 0]))).toBe(true);
@@ -75,9 +82,19 @@ describe("the light's pad", () => {
 });
 
 const look = (id: number, visible: boolean): Look => ({
-  id, name: `L${id}`, slug: `l${id}`, description: "", media_type: "image/png", width: 8, height: 8, bytes: 9,
-  sha256: "a".repeat(64), opacity: 1, visible, order: id,
-}); // prettier-ignore
+  id,
+  name: `L${id}`,
+  slug: `l${id}`,
+  description: "",
+  media_type: "image/png",
+  width: 8,
+  height: 8,
+  bytes: 9,
+  sha256: "a".repeat(64),
+  opacity: 1,
+  visible,
+  order: id,
+});
 
 describe("how a person sees the model", () => {
   let sent: [LookShown[] | null, Light][];
@@ -91,13 +108,16 @@ describe("how a person sees the model", () => {
     planes = [];
     server = [look(1, true), look(2, false), look(3, false)];
     refuse_after = Infinity;
-    const answer = (body: unknown): Response => new Response(JSON.stringify(body), { headers: { ETag: '"1"' } });
+    const answer = (body: unknown): Response =>
+      new Response(JSON.stringify(body), { headers: { ETag: '"1"' } });
     const api = new Api(async (path, init) => {
       const id = Number(/looks\/(\d+)/.exec(path)?.[1]);
       if (!id) return answer({ looks: server, total: server.length });
       if (init?.method === "PATCH") {
         if (refuse_after-- <= 0) return new Response("", { status: 503 });
-        server = server.map((each) => (each.id === id ? { ...each, ...(JSON.parse(String(init.body)) as Partial<Look>) } : each));
+        server = server.map((each) =>
+          each.id === id ? { ...each, ...(JSON.parse(String(init.body)) as Partial<Look>) } : each,
+        );
       }
       return answer(server.find((each) => each.id === id));
     });
@@ -114,7 +134,10 @@ describe("how a person sees the model", () => {
     expect(sent.at(-1)![0]).toBeNull();
     appearance.set_visible(appearance.looks[1]!, true);
     appearance.set_opacity(appearance.looks[1]!, 0.5);
-    expect(sent.at(-1)![0]).toEqual([{ look: 1, opacity: 1 }, { look: 2, opacity: 0.5 }]);
+    expect(sent.at(-1)![0]).toEqual([
+      { look: 1, opacity: 1 },
+      { look: 2, opacity: 0.5 },
+    ]);
     appearance.set_visible(appearance.looks[1]!, false);
     appearance.set_opacity(appearance.looks[1]!, 1);
     expect(sent.at(-1)![0]).toBeNull();
@@ -177,7 +200,11 @@ describe("how a person sees the model", () => {
 
 describe("the range of a palette", () => {
   it("moves with the same colours at the same shares of it", () => {
-    const points = [{ at: 10, color: "#000000ff" }, { at: 15, color: "#888888ff" }, { at: 20, color: "#ffffffff" }]; // prettier-ignore
+    const points = [
+      { at: 10, color: "#000000ff" },
+      { at: 15, color: "#888888ff" },
+      { at: 20, color: "#ffffffff" },
+    ];
     const moved = with_range({ mode: "linear", min: 10, max: 20, points }, 0, 4);
     expect([moved.min, moved.max, ...moved.points.map(({ at }) => at)]).toEqual([0, 4, 0, 2, 4]);
     expect(moved.points.map(({ color }) => color)).toEqual(points.map(({ color }) => color));

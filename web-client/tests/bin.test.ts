@@ -5,7 +5,13 @@ import { notices, type Notice } from "../src/app/notices";
 import { ApiError } from "../src/core/api";
 import type { BinRestored } from "../src/core/protocol.gen";
 
-const cracks: BinRestored = { kind: "layer", restored: 3, name: "Cracks", slug: "cracks", model: 1 };
+const cracks: BinRestored = {
+  kind: "layer",
+  restored: 3,
+  name: "Cracks",
+  slug: "cracks",
+  model: 1,
+};
 
 describe("what was deleted", () => {
   let shown: readonly Notice[] = [];
@@ -39,7 +45,11 @@ describe("what was deleted", () => {
 
   it("comes back by the notice's button, and that is said", async () => {
     const back: BinRestored[] = [];
-    tell_binned(api, { kind: "layer", entry: "layer-3", name: "Cracks", project: "villa" }, (restored) => back.push(restored));
+    tell_binned(
+      api,
+      { kind: "layer", entry: "layer-3", name: "Cracks", project: "villa" },
+      (restored) => back.push(restored),
+    );
     expect(shown[0]!.title).toContain("Cracks");
     await undo();
     expect(asked).toEqual(["villa/layer-3"]);
@@ -48,14 +58,21 @@ describe("what was deleted", () => {
   });
 
   it("says why it does not", async () => {
-    answer = () => Promise.reject(new ApiError({ status: 409, title: "Cannot be restored", detail: "SU 1 is taken." }));
-    tell_binned(api, { kind: "record", entry: "record-5-1", name: "SU 1", project: "villa" }, () => expect.unreachable());
+    answer = () =>
+      Promise.reject(
+        new ApiError({ status: 409, title: "Cannot be restored", detail: "SU 1 is taken." }),
+      );
+    tell_binned(api, { kind: "record", entry: "record-5-1", name: "SU 1", project: "villa" }, () =>
+      expect.unreachable(),
+    );
     await undo();
     expect(shown[shown.length - 1]).toMatchObject({ kind: "problem", title: "Cannot be restored" });
   });
 
   it("is told with its new short name where that changed", () => {
     expect(told_restored(cracks)).not.toContain("cracks-2");
-    expect(told_restored({ ...cracks, slug: "cracks-2", former_slug: "cracks" })).toContain("cracks-2");
+    expect(told_restored({ ...cracks, slug: "cracks-2", former_slug: "cracks" })).toContain(
+      "cracks-2",
+    );
   });
 });

@@ -1,7 +1,16 @@
 import { describe, expect, it } from "vitest";
 
 import { kUpAxes, OrbitCamera, type StandardView, type UpAxis } from "../src/core/camera";
-import { add, dot, length, scale, subtract, transform, type Vec3, type Vec4 } from "../src/core/vector";
+import {
+  add,
+  dot,
+  length,
+  scale,
+  subtract,
+  transform,
+  type Vec3,
+  type Vec4,
+} from "../src/core/vector";
 
 // A building in UTM coordinates: doubles must hold millimetres there.
 const site = { min: [500_000, 4_100_000, 600] as Vec3, max: [500_040, 4_100_020, 612] as Vec3 };
@@ -18,13 +27,20 @@ function camera_on(up: UpAxis = "z", width = 1280, height = 720): OrbitCamera {
 const clip_of = (camera: OrbitCamera, point: Vec3): Vec4 =>
   transform(camera.projection_matrix(), transform(camera.view_matrix(), [...point, 1]));
 
-function expect_close(actual: readonly number[], wanted: readonly number[], tolerance = 1e-6): void {
+function expect_close(
+  actual: readonly number[],
+  wanted: readonly number[],
+  tolerance = 1e-6,
+): void {
   expect(actual.length).toBe(wanted.length);
-  actual.forEach((value, index) => expect(Math.abs(value - wanted[index]!)).toBeLessThan(tolerance));
+  actual.forEach((value, index) =>
+    expect(Math.abs(value - wanted[index]!)).toBeLessThan(tolerance),
+  );
 }
 
 describe("standard views", () => {
-  // Per up axis: the world direction from which "front" looks, and what is right and up in its picture.
+  // Per up axis: the world direction from which "front" looks, and what is right and up in its
+  // picture.
   const fronts: Record<UpAxis, { eye: Vec3; right: Vec3; up: Vec3 }> = {
     z: { eye: [0, -1, 0], right: [1, 0, 0], up: [0, 0, 1] },
     y: { eye: [0, 0, 1], right: [1, 0, 0], up: [0, 1, 0] },
@@ -65,7 +81,11 @@ describe("matrices", () => {
     const kind = perspective ? "perspective" : "orthographic";
 
     it(`the whole model lies within the ${kind} frustum after a fit, from any side and in any window`, () => {
-      for (const [width, height] of [[1280, 720], [390, 844], [100, 100]] as const) {
+      for (const [width, height] of [
+        [1280, 720],
+        [390, 844],
+        [100, 100],
+      ] as const) {
         for (let azimuth = -3; azimuth <= 3; azimuth += 0.7) {
           for (const elevation of [-1.5, -0.4, 0, 0.8, 1.57]) {
             const camera = camera_on("z", width, height);
@@ -74,7 +94,9 @@ describe("matrices", () => {
             camera.elevation = elevation;
             camera.fit();
             for (let corner = 0; corner < 8; ++corner) {
-              const point: Vec3 = [0, 1, 2].map((axis) => (corner & (1 << axis) ? site.max : site.min)[axis]!) as unknown as Vec3;
+              const point: Vec3 = [0, 1, 2].map(
+                (axis) => (corner & (1 << axis) ? site.max : site.min)[axis]!,
+              ) as unknown as Vec3;
               const [x, y, z, w] = clip_of(camera, point);
               expect(w).toBeGreaterThan(0);
               for (const value of [x, y, z]) expect(Math.abs(value / w)).toBeLessThan(1.000001);

@@ -1,6 +1,14 @@
 // What is chosen in the filter of a column, and the text that says so.
 import { describe, expect, it } from "vitest";
-import { chosen_in, condition_of, conditions_of, filter_kinds, filter_of, with_choice, type ColumnFilter } from "../src/core/column-filter";
+import {
+  chosen_in,
+  condition_of,
+  conditions_of,
+  filter_kinds,
+  filter_of,
+  with_choice,
+  type ColumnFilter,
+} from "../src/core/column-filter";
 import type { ColumnKind } from "../src/core/protocol.gen";
 import { count_values } from "../src/core/value-counts";
 
@@ -24,8 +32,16 @@ const chosen: [ReturnType<typeof column>, ColumnFilter, string][] = [
   [depth, { is: "range", from: "-1.5", to: "20" }, "depth between -1.5 and 20"],
   [depth, { is: "range", from: "1e-7", to: "" }, "depth >= 1e-7"],
   [depth, { is: "range", from: "", to: "3" }, "depth <= 3"],
-  [dug, { is: "range", from: "1999-01-01", to: "2001-12-31" }, "dug between '1999-01-01' and '2001-12-31'"],
-  [note, { is: "contains", text: "50 % of a_b's \\" }, "casei(note) like casei('%50 \\% of a\\_b''s \\\\%')"],
+  [
+    dug,
+    { is: "range", from: "1999-01-01", to: "2001-12-31" },
+    "dug between '1999-01-01' and '2001-12-31'",
+  ],
+  [
+    note,
+    { is: "contains", text: "50 % of a_b's \\" },
+    "casei(note) like casei('%50 \\% of a\\_b''s \\\\%')",
+  ],
   [note, { is: "empty" }, "note is null"],
   [note, { is: "filled" }, "note is not null"],
   [number, { is: "one_of", values: [7], empty: false }, '"2-no" = 7'],
@@ -47,23 +63,40 @@ describe("the filter of a column", () => {
   });
 
   it("does not take for its own what it did not write", () => {
-    for (const typed of ["soil = 'clay' or depth > 1", "depth > 2", "depth < 2 + 3", "casei(note) = 'x'", "notes is null", "not soil = 'clay'"])
+    for (const typed of [
+      "soil = 'clay' or depth > 1",
+      "depth > 2",
+      "depth < 2 + 3",
+      "casei(note) = 'x'",
+      "notes is null",
+      "not soil = 'clay'",
+    ])
       expect([soil, depth, note].map((of) => chosen_in(typed, of))).toEqual([null, null, null]);
   });
 
   it("parts a text at its outer “and” alone", () => {
-    expect(conditions_of("a = 'x and y' and (b = 1 and c = 2) and d between 1 and 2 AND e is null")).toEqual(["a = 'x and y'", "(b = 1 and c = 2)", "d between 1 and 2", "e is null"]);
+    expect(
+      conditions_of("a = 'x and y' and (b = 1 and c = 2) and d between 1 and 2 AND e is null"),
+    ).toEqual(["a = 'x and y'", "(b = 1 and c = 2)", "d between 1 and 2", "e is null"]);
     expect(conditions_of('"and" = 1 and land = 2')).toEqual(['"and" = 1', "land = 2"]);
     expect(conditions_of("a = 1 or b = 2")).toEqual(["(a = 1 or b = 2)"]);
     expect(conditions_of("  ")).toEqual([]);
   });
 
   it("replaces its own condition and leaves the others", () => {
-    const by_depth = with_choice("soil = 'clay' and note like 'x%'", depth, { is: "range", from: "1", to: "" });
+    const by_depth = with_choice("soil = 'clay' and note like 'x%'", depth, {
+      is: "range",
+      from: "1",
+      to: "",
+    });
     expect(by_depth).toBe("soil = 'clay' and note like 'x%' and depth >= 1");
-    expect(with_choice(by_depth, soil, { is: "one_of", values: ["sand"], empty: false })).toBe("note like 'x%' and depth >= 1 and soil = 'sand'");
+    expect(with_choice(by_depth, soil, { is: "one_of", values: ["sand"], empty: false })).toBe(
+      "note like 'x%' and depth >= 1 and soil = 'sand'",
+    );
     expect(with_choice(by_depth, soil, null)).toBe("note like 'x%' and depth >= 1");
-    expect(with_choice("a = 1 or b = 2", soil, { is: "empty" })).toBe("(a = 1 or b = 2) and soil is null");
+    expect(with_choice("a = 1 or b = 2", soil, { is: "empty" })).toBe(
+      "(a = 1 or b = 2) and soil is null",
+    );
     expect(with_choice("(a = 1 or b = 2) and soil is null", soil, null)).toBe("a = 1 or b = 2");
   });
 
@@ -75,16 +108,23 @@ describe("the filter of a column", () => {
 });
 
 describe("the values of a column", () => {
-  const record = (key: number, value: unknown) => ({ key, version: 1, values: { a: value } }) as never;
+  const record = (key: number, value: unknown) =>
+    ({ key, version: 1, values: { a: value } }) as never;
   it("are counted over all pages, each record that a cell names by itself", async () => {
     const all = [record(1, [3, 5]), record(2, [5]), record(3, null), record(4, undefined)];
     const asked: number[] = [];
     const counts = await count_values(({ offset }) => {
       asked.push(offset);
-      return Promise.resolve({ records: all.slice(offset, offset + 3), total: all.length } as never);
+      return Promise.resolve({
+        records: all.slice(offset, offset + 3),
+        total: all.length,
+      } as never);
     }, "a");
     expect(asked).toEqual([0, 3]);
-    expect([...counts.of_value]).toEqual([[3, 1], [5, 2]]);
+    expect([...counts.of_value]).toEqual([
+      [3, 1],
+      [5, 2],
+    ]);
     expect(counts).toMatchObject({ empty: 2, least: 3, greatest: 5, counted: 4, total: 4 });
   });
 });

@@ -7,26 +7,54 @@ import { comment_of, hash_of_comment } from "../src/app/routes";
 import { Api } from "../src/core/api";
 import { OrbitCamera } from "../src/core/camera";
 import { mention_begun, people_like } from "../src/core/mentions";
-import { find_threads, is_unread, mentions, text_parts, threads_of, with_thread_read } from "../src/core/comments";
+import {
+  find_threads,
+  is_unread,
+  mentions,
+  text_parts,
+  threads_of,
+  with_thread_read,
+} from "../src/core/comments";
 import type { Point } from "../src/core/connection";
 import type { Comment } from "../src/core/protocol.gen";
 import type { Vec3 } from "../src/core/vector";
 import { CommentTool } from "../src/tools/comment";
 
 const written = (id: number, more: Partial<Comment> = {}): Comment => ({
-  id, model: 1, position: [0, -1, 0], normal: [0, -1, 0], state: "open", text: `text ${id}`, user: "ada",
-  time: "2026-05-04T12:00:00.000Z", deleted: false, version: 1, ...more,
-}); // prettier-ignore
+  id,
+  model: 1,
+  position: [0, -1, 0],
+  normal: [0, -1, 0],
+  state: "open",
+  text: `text ${id}`,
+  user: "ada",
+  time: "2026-05-04T12:00:00.000Z",
+  deleted: false,
+  version: 1,
+  ...more,
+});
 const reply = (id: number, thread: number, more: Partial<Comment> = {}): Comment => {
   const { position: _p, normal: _n, state: _s, ...rest } = written(id);
   return { ...rest, thread, ...more };
 };
 
 describe("threads", () => {
-  const comments = [reply(4, 1, { user: "bob", text: "Yes, @carl" }), written(2), written(1), reply(3, 1), written(5, { state: "resolved" })];
+  const comments = [
+    reply(4, 1, { user: "bob", text: "Yes, @carl" }),
+    written(2),
+    written(1),
+    reply(3, 1),
+    written(5, { state: "resolved" }),
+  ];
 
   it("have their replies in order, and those that were written in last come first", () => {
-    expect(threads_of(comments).map(({ first, replies, newest }) => [first.id, replies.map(({ id }) => id), newest])).toEqual([
+    expect(
+      threads_of(comments).map(({ first, replies, newest }) => [
+        first.id,
+        replies.map(({ id }) => id),
+        newest,
+      ]),
+    ).toEqual([
       [5, [], 5],
       [1, [3, 4], 4],
       [2, [], 2],
@@ -63,37 +91,59 @@ describe("threads", () => {
 
 describe("the text of a comment", () => {
   const people = new Set(["ada", "Carl.B"]);
-  const told = (text: string): string => text_parts(text, people).map(({ kind, text }) => (kind === "text" ? text : `[${kind} ${text}]`)).join("");
+  const told = (text: string): string =>
+    text_parts(text, people)
+      .map(({ kind, text }) => (kind === "text" ? text : `[${kind} ${text}]`))
+      .join("");
 
   it("has links without what belongs to the sentence", () => {
-    expect(told("See https://example.org/a_(b), or (http://x.org).")).toBe("See [link https://example.org/a_(b)], or ([link http://x.org]).");
+    expect(told("See https://example.org/a_(b), or (http://x.org).")).toBe(
+      "See [link https://example.org/a_(b)], or ([link http://x.org]).",
+    );
     expect(told("https://example.org/?q=1&r=2#s!")).toBe("[link https://example.org/?q=1&r=2#s]!");
   });
 
   it("has no links that do anything else", () => {
-    for (const text of ["javascript:alert(1)", "data:text/html,x", "https://", "http://:80", "file:///etc", "xhttps//a"]) {
+    for (const text of [
+      "javascript:alert(1)",
+      "data:text/html,x",
+      "https://",
+      "http://:80",
+      "file:///etc",
+      "xhttps//a",
+    ]) {
       expect(text_parts(text, people)).toEqual([{ kind: "text", text }]);
     }
     const parts = text_parts('https://a.org/"onclick="x <b>https://b.org</b>', people);
-    expect(parts.filter(({ kind }) => kind === "link").map(({ text }) => text)).toEqual(["https://a.org/", "https://b.org"]);
+    expect(parts.filter(({ kind }) => kind === "link").map(({ text }) => text)).toEqual([
+      "https://a.org/",
+      "https://b.org",
+    ]);
   });
 
   it("marks the names of people, in any case, and of nobody else", () => {
-    expect(told("@ada, @ADA. @carl.b! @nobody ada@ada.org @adam @ada's")).toBe("[mention @ada], [mention @ADA]. [mention @carl.b]! @nobody ada@ada.org @adam [mention @ada]'s");
+    expect(told("@ada, @ADA. @carl.b! @nobody ada@ada.org @adam @ada's")).toBe(
+      "[mention @ada], [mention @ADA]. [mention @carl.b]! @nobody ada@ada.org @adam [mention @ada]'s",
+    );
     expect(mentions("hello @Ada", "ada")).toBe(true);
     expect(mentions("hello ada", "ada")).toBe(false);
   });
 
   it("keeps every character", () => {
     const text = "a\n\n b\t@ada https://x.org. 😀 <script>";
-    expect(text_parts(text, people).map((part) => part.text).join("")).toBe(text);
+    expect(
+      text_parts(text, people)
+        .map((part) => part.text)
+        .join(""),
+    ).toBe(text);
   });
 });
 
 describe("addresses of comments", () => {
   it("are read back", () => {
     expect(comment_of(hash_of_comment(12))).toBe(12);
-    for (const hash of ["", "#comment=", "#comment=0", "#comment=x", "#comment=1e3", "#layer=1"]) expect(comment_of(hash)).toBeNull();
+    for (const hash of ["", "#comment=", "#comment=0", "#comment=x", "#comment=1e3", "#layer=1"])
+      expect(comment_of(hash)).toBeNull();
   });
 });
 
@@ -101,7 +151,11 @@ describe("the comment tool", () => {
   it("begins where one taps, turns where one drags, and by Enter in the middle", () => {
     const [tapped, turned]: [Point[], Point[]] = [[], []];
     const tool = new CommentTool(
-      { orbit: (dx, dy) => turned.push([dx, dy]), pan: () => {}, tap: ({ x, y }) => tapped.push([x, y]) },
+      {
+        orbit: (dx, dy) => turned.push([dx, dy]),
+        pan: () => {},
+        tap: ({ x, y }) => tapped.push([x, y]),
+      },
       () => ({ x: 400, y: 300 }),
     );
     tool.down({ x: 10, y: 10 });
@@ -230,7 +284,11 @@ describe("names behind an @", () => {
     expect(found("love")).toEqual(["ada"]);
     expect(found("b")).toEqual(["bob", "Adam.B"]);
     expect(found("zoe")).toEqual([]);
-    const many = Array.from({ length: 50 }, (_, n) => ({ user: `p${n}`, full_name: "", color: "#aa3333" }));
+    const many = Array.from({ length: 50 }, (_, n) => ({
+      user: `p${n}`,
+      full_name: "",
+      color: "#aa3333",
+    }));
     expect(people_like(many, "p")).toHaveLength(6);
   });
 });
@@ -241,14 +299,21 @@ describe("the comments of a model", () => {
   let comments: Comments;
   const settle = (): Promise<void> => new Promise((resolve) => setTimeout(resolve, 0));
   const list = (...all: Comment[]): void =>
-    void answers.set("GET /api/v1/models/1/comments?limit=1000", () => [200, { comments: all, total: all.length }]);
+    void answers.set("GET /api/v1/models/1/comments?limit=1000", () => [
+      200,
+      { comments: all, total: all.length },
+    ]);
 
   function open(): Comments {
     const camera = front_camera();
     const api = new Api(async (path, init) => {
       const call = `${init!.method} ${path}`;
       const headers = init!.headers as Record<string, string>;
-      calls.push({ call, body: init!.body ? JSON.parse(init!.body as string) : null, key: headers["Idempotency-Key"] ?? headers["If-Match"] ?? null });
+      calls.push({
+        call,
+        body: init!.body ? JSON.parse(init!.body as string) : null,
+        key: headers["Idempotency-Key"] ?? headers["If-Match"] ?? null,
+      });
       const [status, body] = answers.get(call)?.() ?? [503, { title: "Unavailable", status: 503 }];
       return new Response(status === 204 ? null : JSON.stringify(body), { status });
     });
@@ -268,7 +333,10 @@ describe("the comments of a model", () => {
     vi.stubGlobal("localStorage", new FakeStorage());
     answers = new Map<string, () => [number, unknown]>([
       ["POST /api/v1/models/1/profile", () => [200, { samples: [] }]],
-      ["POST /api/v1/models/1/pick", () => [200, { hit: true, position: [0, -1, 0], normal: [0, -1, 0], values: {} }]],
+      [
+        "POST /api/v1/models/1/pick",
+        () => [200, { hit: true, position: [0, -1, 0], normal: [0, -1, 0], values: {} }],
+      ],
     ]);
     calls = [];
     list(written(1), reply(2, 1, { user: "bob" }), written(3, { state: "resolved" }));
@@ -293,21 +361,43 @@ describe("the comments of a model", () => {
   it("may name the people of the project, who are asked for once, and again where that failed", async () => {
     expect(await comments.load_people()).toEqual([]);
     const dora = { user: "dora", full_name: "Dora D." };
-    answers.set("GET /api/v1/projects/7/people?limit=1000", () => [200, { people: [{ user: "ada", full_name: "", color: "#aa3333" }, dora], total: 2 }]);
+    answers.set("GET /api/v1/projects/7/people?limit=1000", () => [
+      200,
+      { people: [{ user: "ada", full_name: "", color: "#aa3333" }, dora], total: 2 },
+    ]);
     const asked = (): number => calls.filter(({ call }) => call.includes("/people")).length;
     expect(asked()).toBe(1);
-    expect(await Promise.all([comments.load_people(), comments.load_people()])).toEqual([[dora], [dora]]);
+    expect(await Promise.all([comments.load_people(), comments.load_people()])).toEqual([
+      [dora],
+      [dora],
+    ]);
     await comments.load_people();
     expect(asked()).toBe(2);
     expect(comments.people.has("dora")).toBe(true);
   });
 
   it("follow what others do", () => {
-    comments.on_event({ op: "comment", event: "created", comment_id: 4, comment: reply(4, 1, { user: "bob", text: "Look" }), user: "bob" });
+    comments.on_event({
+      op: "comment",
+      event: "created",
+      comment_id: 4,
+      comment: reply(4, 1, { user: "bob", text: "Look" }),
+      user: "bob",
+    });
     expect(comments.find(1)!.replies.map(({ id }) => id)).toEqual([2, 4]);
     expect(comments.said).toContain("Look");
-    comments.on_event({ op: "comment", event: "changed", comment_id: 1, comment: written(1, { version: 3, state: "resolved" }) });
-    comments.on_event({ op: "comment", event: "changed", comment_id: 1, comment: written(1, { version: 2 }) });
+    comments.on_event({
+      op: "comment",
+      event: "changed",
+      comment_id: 1,
+      comment: written(1, { version: 3, state: "resolved" }),
+    });
+    comments.on_event({
+      op: "comment",
+      event: "changed",
+      comment_id: 1,
+      comment: written(1, { version: 2 }),
+    });
     expect(comments.find(1)!.first.state).toBe("resolved");
     comments.show(1);
     comments.on_event({ op: "comment", event: "deleted", comment_id: 1 });
@@ -319,7 +409,13 @@ describe("the comments of a model", () => {
     let told: readonly string[] = [];
     const stop = notices.subscribe((shown) => (told = shown.map(({ detail }) => detail)));
     const reply_with = (id: number, text: string): void =>
-      comments.on_event({ op: "comment", event: "created", comment_id: id, comment: reply(id, 1, { user: "bob", text }), user: "bob" });
+      comments.on_event({
+        op: "comment",
+        event: "created",
+        comment_id: id,
+        comment: reply(id, 1, { user: "bob", text }),
+        user: "bob",
+      });
     reply_with(4, "@ada first");
     reply_with(5, "for everybody");
     comments.show(1);
@@ -330,9 +426,16 @@ describe("the comments of a model", () => {
   });
 
   it("keep what happens while they are read, and forget what happened before", async () => {
-    list(written(1), reply(2, 1, { user: "bob" })); // comment 3 was deleted while the connection was lost
+    // comment 3 was deleted while the connection was lost
+    list(written(1), reply(2, 1, { user: "bob" }));
     comments.welcome("ada");
-    comments.on_event({ op: "comment", event: "created", comment_id: 4, comment: written(4, { user: "bob" }), user: "bob" });
+    comments.on_event({
+      op: "comment",
+      event: "created",
+      comment_id: 4,
+      comment: written(4, { user: "bob" }),
+      user: "bob",
+    });
     comments.on_event({ op: "comment", event: "deleted", comment_id: 2 });
     await settle();
     expect(comments.threads.map(({ first, replies }) => [first.id, replies.length])).toEqual([
@@ -357,7 +460,13 @@ describe("the comments of a model", () => {
     expect(comments.unread_count).toBe(1);
     comments.mark_read(comments.find(1)!);
     expect(comments.unread_count).toBe(0);
-    comments.on_event({ op: "comment", event: "created", comment_id: 4, comment: reply(4, 1, { user: "bob" }), user: "bob" });
+    comments.on_event({
+      op: "comment",
+      event: "created",
+      comment_id: 4,
+      comment: reply(4, 1, { user: "bob" }),
+      user: "bob",
+    });
     expect(comments.unread_count).toBe(1);
     comments.mark_all_read();
     comments = open();
@@ -398,7 +507,9 @@ describe("the comments of a model", () => {
     comments.set_draft("reply 1", { text: "Yes!" });
     answers.set("POST /api/v1/comments/1/replies", () => [201, reply(9, 1, { text: "Yes!" })]);
     await comments.send_reply(1);
-    const keys = calls.filter(({ call }) => call === "POST /api/v1/comments/1/replies").map(({ key }) => key);
+    const keys = calls
+      .filter(({ call }) => call === "POST /api/v1/comments/1/replies")
+      .map(({ key }) => key);
     expect(keys[0]).toBe(keys[1]);
     expect(keys[2]).not.toBe(keys[1]);
     expect(comments.draft("reply 1")).toBeNull();
@@ -406,9 +517,14 @@ describe("the comments of a model", () => {
   });
 
   it("show what somebody else made of one that could not be changed", async () => {
-    answers.set("PATCH /api/v1/comments/1", () => [412, { title: "Changed meanwhile", status: 412, detail: "Read it again." }]);
+    answers.set("PATCH /api/v1/comments/1", () => [
+      412,
+      { title: "Changed meanwhile", status: 412, detail: "Read it again." },
+    ]);
     answers.set("GET /api/v1/comments/1", () => [200, written(1, { version: 2, text: "Theirs" })]);
-    await expect(comments.change(comments.find(1)!.first, { text: "Mine" })).rejects.toThrow("Read it again.");
+    await expect(comments.change(comments.find(1)!.first, { text: "Mine" })).rejects.toThrow(
+      "Read it again.",
+    );
     expect(calls.find(({ call }) => call === "PATCH /api/v1/comments/1")!.key).toBe('"v1"');
     expect(comments.find(1)!.first.text).toBe("Theirs");
   });

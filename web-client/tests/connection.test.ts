@@ -19,7 +19,9 @@ const stroke_options: StrokeOptions = {
 
 let sockets: FakeSocket[];
 let frames: (() => void)[];
-let callbacks: { [Name in keyof ConnectionCallbacks]: ReturnType<typeof vi.fn<ConnectionCallbacks[Name]>> };
+let callbacks: {
+  [Name in keyof ConnectionCallbacks]: ReturnType<typeof vi.fn<ConnectionCallbacks[Name]>>;
+};
 let connection: Connection;
 let shelved: ChangeMessage[]; // what the browser keeps beyond the page
 
@@ -92,7 +94,9 @@ describe("opening", () => {
   it("says hello with the subprotocol, and is open after the welcome", () => {
     expect(socket().protocol).toBe("strata.v1");
     socket().open();
-    expect(socket().sent).toEqual([{ op: "hello", client: "test", dpr: 2, accept: ["jpeg", "png"] }]);
+    expect(socket().sent).toEqual([
+      { op: "hello", client: "test", dpr: 2, accept: ["jpeg", "png"] },
+    ]);
     expect(connection.state).toBe("connecting");
     socket().receive(welcome());
     expect(connection.state).toBe("open");
@@ -125,7 +129,11 @@ describe("cameras", () => {
     draw();
     connection.set_camera({ ...camera, width: 4 }, false);
     draw();
-    expect(socket().of("camera").map(({ seq, width, moving }) => [seq, width, moving])).toEqual([
+    expect(
+      socket()
+        .of("camera")
+        .map(({ seq, width, moving }) => [seq, width, moving]),
+    ).toEqual([
       [1, 3, true],
       [2, 4, false],
     ]);
@@ -141,20 +149,34 @@ describe("cameras", () => {
     expect(socket().of("camera")).toEqual([]);
     socket().bufferedAmount = 0;
     draw();
-    expect(socket().of("camera").map((message) => message.width)).toEqual([2]);
+    expect(
+      socket()
+        .of("camera")
+        .map((message) => message.width),
+    ).toEqual([2]);
   });
 
   it("after a reconnect the last camera and layer settings are sent again", () => {
     connect();
     connection.set_camera(camera, true);
-    connection.set_layer_overrides([{ layer: 7, visible: false }, { layer: 8, opacity: 0.5 }]); // prettier-ignore
+    connection.set_layer_overrides([
+      { layer: 7, visible: false },
+      { layer: 8, opacity: 0.5 },
+    ]);
     draw();
     socket().lose();
     vi.advanceTimersByTime(300);
     socket().open();
-    socket().receive({ ...welcome(), layers: [{ id: 7 } as Layer] }); // 8 was deleted meanwhile: it would have all refused
-    expect(socket().of("camera").map(({ seq, moving }) => [seq, moving])).toEqual([[2, false]]);
-    expect(socket().of("layers")).toEqual([{ op: "layers", layers: [{ layer: 7, visible: false }] }]);
+    // 8 was deleted meanwhile: it would have all refused
+    socket().receive({ ...welcome(), layers: [{ id: 7 } as Layer] });
+    expect(
+      socket()
+        .of("camera")
+        .map(({ seq, moving }) => [seq, moving]),
+    ).toEqual([[2, false]]);
+    expect(socket().of("layers")).toEqual([
+      { op: "layers", layers: [{ layer: 7, visible: false }] },
+    ]);
   });
 
   it("nothing is viewed any more once nobody looks", () => {
@@ -179,11 +201,27 @@ describe("strokes", () => {
       [3, 3],
     ]);
     stroke.end();
-    expect(socket().sent_ops()).toEqual(["hello", "stroke.begin", "stroke.extend", "stroke.extend", "stroke.end"]);
-    expect(socket().of("stroke.extend").map(({ n, path }) => [n, path])).toEqual([
+    expect(socket().sent_ops()).toEqual([
+      "hello",
+      "stroke.begin",
+      "stroke.extend",
+      "stroke.extend",
+      "stroke.end",
+    ]);
+    expect(
+      socket()
+        .of("stroke.extend")
+        .map(({ n, path }) => [n, path]),
+    ).toEqual([
       [0, [[1, 1]]],
-      [1, [[2, 2], [3, 3]]],
-    ]); // prettier-ignore
+      [
+        1,
+        [
+          [2, 2],
+          [3, 3],
+        ],
+      ],
+    ]);
     const [begin] = socket().of("stroke.begin");
     expect(begin).toMatchObject({ layer: 7, value: 3, radius_px: 12, shape: "disc", camera });
     expect(begin).not.toHaveProperty("erase");
@@ -191,10 +229,14 @@ describe("strokes", () => {
 
   it("a long path is split at the server's limit of points", () => {
     connect(); // path_points: 4
-    connection.begin_stroke(stroke_options)!.extend(Array.from({ length: 9 }, (_, i): [number, number] => [i, 0]));
-    const paths = socket().of("stroke.extend").map((message) => message.path);
+    connection
+      .begin_stroke(stroke_options)!
+      .extend(Array.from({ length: 9 }, (_, i): [number, number] => [i, 0]));
+    const paths = socket()
+      .of("stroke.extend")
+      .map((message) => message.path);
     expect(paths.every((path) => path.length <= 4)).toBe(true);
-    expect(paths.map((path) => path.map(([x]) => x))).toEqual([[0, 1, 2, 3], [4, 5, 6, 7], [8]]); // prettier-ignore
+    expect(paths.map((path) => path.map(([x]) => x))).toEqual([[0, 1, 2, 3], [4, 5, 6, 7], [8]]);
   });
 
   it("an erasing stroke has no value and may have its radius in millimetres", () => {
@@ -277,7 +319,12 @@ describe("a lost connection", () => {
       (message) => message.op !== "hello" && !(message.op === "stroke.extend" && message.n <= 1),
     );
     expect(again).toEqual(wanted);
-    expect(again.map((message) => message.op)).toEqual(["stroke.begin", "stroke.extend", "stroke.extend", "stroke.end"]);
+    expect(again.map((message) => message.op)).toEqual([
+      "stroke.begin",
+      "stroke.extend",
+      "stroke.extend",
+      "stroke.end",
+    ]);
     expect(saving()).toEqual({ waiting: 2, failing: false });
   });
 
@@ -288,18 +335,44 @@ describe("a lost connection", () => {
     stroke.extend([[2, 2]]);
     stroke.end();
     connection.send_change({ op: "undo", id: "u", layer: 7 });
-    expect(shelved.map(({ op }) => op)).toEqual(["stroke.begin", "stroke.extend", "stroke.extend", "stroke.end", "undo"]);
+    expect(shelved.map(({ op }) => op)).toEqual([
+      "stroke.begin",
+      "stroke.extend",
+      "stroke.extend",
+      "stroke.end",
+      "undo",
+    ]);
     socket().receive({ op: "saved", stroke: stroke.stroke, n: 0, sequence: 1 });
-    expect(shelved.map(({ op }) => op)).toEqual(["stroke.begin", "stroke.extend", "stroke.end", "undo"]);
+    expect(shelved.map(({ op }) => op)).toEqual([
+      "stroke.begin",
+      "stroke.extend",
+      "stroke.end",
+      "undo",
+    ]);
     socket().receive({ op: "saved", stroke: stroke.stroke, n: 1, sequence: 2 });
     expect(shelved.map(({ op }) => op)).toEqual(["undo"]);
-    socket().receive({ op: "problem", ref: "u", status: 409, title: "Nothing to undo", detail: "" });
+    socket().receive({
+      op: "problem",
+      ref: "u",
+      status: 409,
+      title: "Nothing to undo",
+      detail: "",
+    });
     expect(shelved).toEqual([]);
   });
 
   it("sends what an earlier page left, before its own, and ends the stroke that was being drawn", async () => {
     shelved = [
-      { op: "stroke.begin", id: "b", stroke: "s", layer: 7, value: 3, camera, radius_px: 12, shape: "disc" },
+      {
+        op: "stroke.begin",
+        id: "b",
+        stroke: "s",
+        layer: 7,
+        value: 3,
+        camera,
+        radius_px: 12,
+        shape: "disc",
+      },
       { op: "stroke.extend", id: "e0", stroke: "s", n: 0, path: [[1, 1]] },
       { op: "stroke.extend", id: "e1", stroke: "s", n: 1, path: [[2, 2]] },
       { op: "undo", id: "u", layer: 7 },
@@ -309,8 +382,16 @@ describe("a lost connection", () => {
     await vi.advanceTimersByTimeAsync(0);
     expect(callbacks.taken_up.mock.calls).toEqual([[3]]);
     expect(saving()).toEqual({ waiting: 3, failing: false });
-    expect(socket().sent.slice(-5).map((message) => ("id" in message ? message.id : ""))).toEqual(["b", "e1", expect.any(String), "u", "mine"]);
-    expect(socket().of("stroke.end").map(({ stroke }) => stroke)).toEqual(["s"]);
+    expect(
+      socket()
+        .sent.slice(-5)
+        .map((message) => ("id" in message ? message.id : "")),
+    ).toEqual(["b", "e1", expect.any(String), "u", "mine"]);
+    expect(
+      socket()
+        .of("stroke.end")
+        .map(({ stroke }) => stroke),
+    ).toEqual(["s"]);
     socket().receive({ op: "saved", stroke: "s", n: 1, sequence: 5 });
     for (const id of ["u", "mine"]) socket().receive({ op: "saved", id, sequence: 6 });
     expect([shelved, saving()]).toEqual([[], { waiting: 0, failing: false }]);
@@ -345,8 +426,19 @@ describe("a lost connection", () => {
     connect();
     stroke.extend([[3, 3]]);
     stroke.end();
-    expect(socket().sent_ops()).toEqual(["hello", "stroke.begin", "stroke.extend", "stroke.extend", "stroke.extend", "stroke.end"]);
-    expect(socket().of("stroke.extend").map((message) => message.n)).toEqual([0, 1, 2]);
+    expect(socket().sent_ops()).toEqual([
+      "hello",
+      "stroke.begin",
+      "stroke.extend",
+      "stroke.extend",
+      "stroke.extend",
+      "stroke.end",
+    ]);
+    expect(
+      socket()
+        .of("stroke.extend")
+        .map((message) => message.n),
+    ).toEqual([0, 1, 2]);
   });
 
   it("resends no faster than the server takes, and new changes stay behind the old ones", () => {
@@ -361,26 +453,33 @@ describe("a lost connection", () => {
     vi.advanceTimersByTime(1000);
     expect(socket().of("stroke.extend").length).toBe(199);
     vi.advanceTimersByTime(1000);
-    expect(socket().of("stroke.extend").map((message) => message.n)).toEqual(Array.from({ length: 251 }, (_, n) => n));
+    expect(
+      socket()
+        .of("stroke.extend")
+        .map((message) => message.n),
+    ).toEqual(Array.from({ length: 251 }, (_, n) => n));
   });
 
   it.each([
     ["changes wait", () => connection.begin_stroke(stroke_options)!.extend([[1, 1]])],
     ["a picture is due", () => (connection.set_camera(camera, false), draw())],
-  ])("a server that stays silent while %s is asked for a sign of life, and counts as lost without one", (_, act) => {
-    connect();
-    const first = socket();
-    act();
-    vi.advanceTimersByTime(9900);
-    expect(first.of("pick")).toEqual([]);
-    vi.advanceTimersByTime(200);
-    expect(first.of("pick").length).toBe(1);
-    vi.advanceTimersByTime(9500);
-    expect(connection.state).toBe("open");
-    vi.advanceTimersByTime(500);
-    expect(first.closed).toBe(true);
-    expect(connection.state).not.toBe("open");
-  });
+  ])(
+    "a server that stays silent while %s is asked for a sign of life, and counts as lost without one",
+    (_, act) => {
+      connect();
+      const first = socket();
+      act();
+      vi.advanceTimersByTime(9900);
+      expect(first.of("pick")).toEqual([]);
+      vi.advanceTimersByTime(200);
+      expect(first.of("pick").length).toBe(1);
+      vi.advanceTimersByTime(9500);
+      expect(connection.state).toBe("open");
+      vi.advanceTimersByTime(500);
+      expect(first.closed).toBe(true);
+      expect(connection.state).not.toBe("open");
+    },
+  );
 
   it("a sign of life is enough, and nobody hears of it", () => {
     connect();
@@ -389,7 +488,13 @@ describe("a lost connection", () => {
     vi.advanceTimersByTime(10_100);
     socket().receive({ op: "picked", id: socket().of("pick")[0]!.id!, hit: false });
     connection.check();
-    socket().receive({ op: "problem", ref: socket().of("pick")[1]!.id!, status: 409, title: "No camera", detail: "" });
+    socket().receive({
+      op: "problem",
+      ref: socket().of("pick")[1]!.id!,
+      status: 409,
+      title: "No camera",
+      detail: "",
+    });
     vi.advanceTimersByTime(600_000);
     expect(connection.state).toBe("open");
     expect(socket().of("pick").length).toBe(2); // what is idle is left alone
@@ -406,7 +511,10 @@ describe("a lost connection", () => {
     expect(connection.state).toBe("lost");
   });
 
-  it.each([["no handshake", () => {}], ["no welcome", () => socket().open()]])("%s within 30 s counts as lost", (_, act) => {
+  it.each([
+    ["no handshake", () => {}],
+    ["no welcome", () => socket().open()],
+  ])("%s within 30 s counts as lost", (_, act) => {
     act();
     const first = socket();
     vi.advanceTimersByTime(29_900);
@@ -445,10 +553,20 @@ describe("refusals", () => {
 
   it("a passing refusal is tried again with growing pauses and told once", () => {
     connect();
-    const id = connection.send_change({ op: "undo", id: "11111111-1111-4111-8111-111111111111", layer: 7 })!;
+    const id = connection.send_change({
+      op: "undo",
+      id: "11111111-1111-4111-8111-111111111111",
+      layer: 7,
+    })!;
     for (const pause_ms of [250, 500, 1000]) {
       socket().sent = [];
-      socket().receive({ op: "problem", ref: id, status: 503, title: "Database gone", detail: "Wait." });
+      socket().receive({
+        op: "problem",
+        ref: id,
+        status: 503,
+        title: "Database gone",
+        detail: "Wait.",
+      });
       vi.advanceTimersByTime(pause_ms - 10);
       expect(socket().sent).toEqual([]);
       vi.advanceTimersByTime(20);
@@ -465,8 +583,20 @@ describe("refusals", () => {
     stroke.extend([[2, 2]]);
     const [first, second] = socket().of("stroke.extend");
     socket().sent = [];
-    socket().receive({ op: "problem", ref: first!.id, status: 429, title: "Too many messages", detail: "Later." });
-    socket().receive({ op: "problem", ref: second!.id, status: 409, title: "Batch out of order", detail: "0 is next." });
+    socket().receive({
+      op: "problem",
+      ref: first!.id,
+      status: 429,
+      title: "Too many messages",
+      detail: "Later.",
+    });
+    socket().receive({
+      op: "problem",
+      ref: second!.id,
+      status: 409,
+      title: "Batch out of order",
+      detail: "0 is next.",
+    });
     vi.advanceTimersByTime(300);
     expect(socket().of("stroke.extend")).toEqual([first, second]);
     expect(saving()).toEqual({ waiting: 2, failing: true });
@@ -478,8 +608,20 @@ describe("refusals", () => {
     stroke.extend([[1, 1]]);
     const begin = socket().of("stroke.begin")[0]!;
     const extend = socket().of("stroke.extend")[0]!;
-    socket().receive({ op: "problem", ref: begin.id, status: 404, title: "No layer", detail: "It was deleted." });
-    socket().receive({ op: "problem", ref: extend.id, status: 404, title: "No stroke", detail: "Unknown." });
+    socket().receive({
+      op: "problem",
+      ref: begin.id,
+      status: 404,
+      title: "No layer",
+      detail: "It was deleted.",
+    });
+    socket().receive({
+      op: "problem",
+      ref: extend.id,
+      status: 404,
+      title: "No stroke",
+      detail: "Unknown.",
+    });
     stroke.extend([[2, 2]]);
     stroke.end();
     expect(socket().of("stroke.extend").length).toBe(1);
@@ -491,7 +633,13 @@ describe("refusals", () => {
 
   it("a problem of something that changed nothing is only told", () => {
     connect();
-    socket().receive({ op: "problem", status: 422, title: "Bad camera", detail: "Singular.", field: "view" });
+    socket().receive({
+      op: "problem",
+      status: 422,
+      title: "Bad camera",
+      detail: "Singular.",
+      field: "view",
+    });
     expect(callbacks.problem).toHaveBeenCalledTimes(1);
     expect(connection.state).toBe("open");
   });
@@ -501,7 +649,9 @@ describe("messages", () => {
   it("frames are decoded, and acks name view and frame", () => {
     connect();
     const { hex } = golden.valid.find((vector) => vector.name === "keyframe")!;
-    socket().receive_raw(new Uint8Array(hex.match(/../g)!.map((byte) => parseInt(byte, 16))).buffer);
+    socket().receive_raw(
+      new Uint8Array(hex.match(/../g)!.map((byte) => parseInt(byte, 16))).buffer,
+    );
     expect(callbacks.frame.mock.lastCall?.[0].header).toMatchObject({ frame: 1, full_width: 1280 });
     connection.ack(0, 1);
     expect(socket().of("ack")).toEqual([{ op: "ack", view_id: 0, frame: 1 }]);
@@ -521,10 +671,20 @@ describe("messages", () => {
     connection.set_appearance(null, { mode: "museum" });
     expect(socket().of("layers")).toHaveLength(0);
     connection.set_layer_overrides([{ layer: 3, visible: false }]);
-    connection.set_appearance([{ look: 4, opacity: 0.5 }], { mode: "raking", direction: [1, 0, 1] });
+    connection.set_appearance([{ look: 4, opacity: 0.5 }], {
+      mode: "raking",
+      direction: [1, 0, 1],
+    });
     const said = socket().of("layers").at(-1)!;
-    expect(said).toMatchObject({ layers: [{ layer: 3 }], looks: [{ look: 4 }], light: { mode: "raking" } });
+    expect(said).toMatchObject({
+      layers: [{ layer: 3 }],
+      looks: [{ look: 4 }],
+      light: { mode: "raking" },
+    });
     connection.set_appearance(null, { mode: "museum" });
-    expect(socket().of("layers").at(-1)).toEqual({ op: "layers", layers: [{ layer: 3, visible: false }] });
+    expect(socket().of("layers").at(-1)).toEqual({
+      op: "layers",
+      layers: [{ layer: 3, visible: false }],
+    });
   });
 });

@@ -44,7 +44,9 @@ export class FakeSocket implements SocketLike {
     return this.sent.map((message) => message.op);
   }
   of<Op extends ClientMessage["op"]>(op: Op): Extract<ClientMessage, { op: Op }>[] {
-    return this.sent.filter((message): message is Extract<ClientMessage, { op: Op }> => message.op === op);
+    return this.sent.filter(
+      (message): message is Extract<ClientMessage, { op: Op }> => message.op === op,
+    );
   }
 }
 

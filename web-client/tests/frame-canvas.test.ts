@@ -5,19 +5,40 @@ import type { FrameHeader, FrameMessage } from "../src/core/frame-header";
 
 const part = (header: Partial<FrameHeader>): FrameMessage => ({
   header: {
-    codec: "jpeg", keyframe: true, still: false, last: true, view_id: 0, frame: 1, camera_seq: 1, scene_sequence: 0,
-    x: 0, y: 0, width: 8, height: 8, full_width: 64, full_height: 48, render_us: 0, encode_us: 0, payload_bytes: 1, ...header,
+    codec: "jpeg",
+    keyframe: true,
+    still: false,
+    last: true,
+    view_id: 0,
+    frame: 1,
+    camera_seq: 1,
+    scene_sequence: 0,
+    x: 0,
+    y: 0,
+    width: 8,
+    height: 8,
+    full_width: 64,
+    full_height: 48,
+    render_us: 0,
+    encode_us: 0,
+    payload_bytes: 1,
+    ...header,
   },
   payload: new Uint8Array([1]),
-}); // prettier-ignore
+});
 
 function setup() {
   const drawn: string[] = [];
-  const waiting = new Map<FrameMessage, { resolve: (bitmap: BitmapLike) => void; reject: (error: Error) => void }>();
+  const waiting = new Map<
+    FrameMessage,
+    { resolve: (bitmap: BitmapLike) => void; reject: (error: Error) => void }
+  >();
   const canvas = {
     width: 2,
     height: 2,
-    getContext: () => ({ drawImage: (_: never, x: number, y: number) => void drawn.push(`draw ${x},${y}`) }),
+    getContext: () => ({
+      drawImage: (_: never, x: number, y: number) => void drawn.push(`draw ${x},${y}`),
+    }),
   };
   const callbacks = {
     drawn: (message: FrameMessage) => void drawn.push(`frame ${message.header.frame}`),

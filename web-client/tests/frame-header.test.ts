@@ -1,4 +1,5 @@
-// The golden vectors are read by the server's tests, too (tests/unit/protocol_frame_header_test.cpp).
+// The golden vectors are read by the server's tests, too
+// (tests/unit/protocol_frame_header_test.cpp).
 import { describe, expect, it } from "vitest";
 
 import golden from "../../protocol/golden/frame_headers.json";
@@ -25,7 +26,9 @@ describe("frame header", () => {
 
   for (const { name, hex, field } of golden.invalid) {
     it(`the broken header "${name}" is refused by its ${field}`, () => {
-      expect(() => decode_frame(from_hex(hex))).toThrow(expect.objectContaining({ name: "FrameError", field }));
+      expect(() => decode_frame(from_hex(hex))).toThrow(
+        expect.objectContaining({ name: "FrameError", field }),
+      );
     });
   }
 });

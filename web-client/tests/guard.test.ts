@@ -2,13 +2,20 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { fill_screen, keep_on_page, stay_awake } from "../src/kiosk/guard";
 
-/** As browsers have it: on the document, who listens to wheels and fingers can refuse them only after having said so. */
+/**
+ * As browsers have it: on the document, who listens to wheels and fingers can refuse them only
+ * after having said so.
+ */
 class FakeDocument extends EventTarget {
   visibilityState = "visible";
   fullscreenEnabled = true;
   fullscreenElement: object | null = null;
   documentElement = { requestFullscreen: vi.fn(() => Promise.reject(new Error("not granted"))) };
-  override addEventListener(name: string, listener: (event: Event) => void, { passive }: { passive?: boolean } = {}): void {
+  override addEventListener(
+    name: string,
+    listener: (event: Event) => void,
+    { passive }: { passive?: boolean } = {},
+  ): void {
     if (["wheel", "touchmove"].includes(name) && passive !== false) return;
     super.addEventListener(name, listener);
   }
@@ -38,7 +45,10 @@ describe("what keeps visitors on the page", () => {
     keep_on_page();
   });
 
-  it.each(["contextmenu", "selectstart", "dragstart", "gesturestart", "gesturechange"])("refuses %s", (name) => expect(refuses(name)).toBe(true));
+  it.each(["contextmenu", "selectstart", "dragstart", "gesturestart", "gesturechange"])(
+    "refuses %s",
+    (name) => expect(refuses(name)).toBe(true),
+  );
 
   it("refuses the wheel that zooms, not the one that scrolls", () => {
     expect(refuses("wheel", { ctrlKey: true })).toBe(true);
@@ -47,22 +57,31 @@ describe("what keeps visitors on the page", () => {
 
   it("refuses two fingers that zoom, where they can be refused, and lets one scroll", () => {
     expect(refuses("touchmove", { touches: [1, 2] })).toBe(true);
-    expect(refuses("touchmove", { touches: [1, 2] }, false)).toBe(false); // of which browsers complain
+    // of which browsers complain
+    expect(refuses("touchmove", { touches: [1, 2] }, false)).toBe(false);
     expect(refuses("touchmove", { touches: [1] })).toBe(false);
   });
 
-  it.each(["+", "-", "=", "0", "p"])("refuses Ctrl and Cmd with %s, and leaves the key alone to the object", (key) => {
-    expect(refuses("keydown", { key, ctrlKey: true })).toBe(true);
-    expect(refuses("keydown", { key, metaKey: true })).toBe(true);
-    expect(refuses("keydown", { key })).toBe(false);
-  });
+  it.each(["+", "-", "=", "0", "p"])(
+    "refuses Ctrl and Cmd with %s, and leaves the key alone to the object",
+    (key) => {
+      expect(refuses("keydown", { key, ctrlKey: true })).toBe(true);
+      expect(refuses("keydown", { key, metaKey: true })).toBe(true);
+      expect(refuses("keydown", { key })).toBe(false);
+    },
+  );
 
-  it.each(["ArrowLeft", "ArrowRight"])("refuses Alt with %s, and leaves the key alone to the object", (key) => {
-    expect(refuses("keydown", { key, altKey: true })).toBe(true);
-    expect(refuses("keydown", { key })).toBe(false);
-  });
+  it.each(["ArrowLeft", "ArrowRight"])(
+    "refuses Alt with %s, and leaves the key alone to the object",
+    (key) => {
+      expect(refuses("keydown", { key, altKey: true })).toBe(true);
+      expect(refuses("keydown", { key })).toBe(false);
+    },
+  );
 
-  it.each(["Tab", "Enter", " ", "c"])("leaves %j alone, whatever is held with it", (key) => expect(refuses("keydown", { key, ctrlKey: true, altKey: true })).toBe(false));
+  it.each(["Tab", "Enter", " ", "c"])("leaves %j alone, whatever is held with it", (key) =>
+    expect(refuses("keydown", { key, ctrlKey: true, altKey: true })).toBe(false),
+  );
 
   it("is where it was after each way back", () => {
     const here = [null, "", "https://strata.example/kiosk/secret"];
@@ -89,7 +108,9 @@ describe("a screen that stays on", () => {
   });
 
   it("is done without where it is refused or not known", async () => {
-    vi.stubGlobal("navigator", { wakeLock: { request: () => Promise.reject(new Error("low battery")) } });
+    vi.stubGlobal("navigator", {
+      wakeLock: { request: () => Promise.reject(new Error("low battery")) },
+    });
     await expect(stay_awake()).resolves.toBeUndefined();
     vi.stubGlobal("navigator", {});
     await expect(stay_awake()).resolves.toBeUndefined();
@@ -105,7 +126,8 @@ describe("the whole screen", () => {
     return page.documentElement.requestFullscreen.mock.calls.length > 0;
   };
   it("is asked for where bars of the browser are left", () => expect(fills(1080, 1800)).toBe(true));
-  it("is not where the browser's kiosk mode has given it", () => expect(fills(1080, 1920)).toBe(false));
+  it("is not where the browser's kiosk mode has given it", () =>
+    expect(fills(1080, 1920)).toBe(false));
   it("is not where a browser has no such thing", () => {
     page.fullscreenEnabled = false;
     expect(fills(1080, 1800)).toBe(false);

@@ -3,9 +3,17 @@ import { ApiError, type Api } from "../src/core/api";
 import type { Job } from "../src/core/types";
 import { Imports, type Scan } from "../src/app/imports";
 
-const scan: Scan = { files: [{ file: new File(["ply"], "mesh.ply"), path: "mesh.ply" }], name: "a/mesh" };
-const job = (state: Job["state"], more: Partial<Job> = {}): Job => ({ id: 7, state, progress: 0, message: "", ...more }) as Job;
-const problem = (status: number): NonNullable<Job["problem"]> => ({ status, title: "Server was restarted", detail: "Start it again." });
+const scan: Scan = {
+  files: [{ file: new File(["ply"], "mesh.ply"), path: "mesh.ply" }],
+  name: "a/mesh",
+};
+const job = (state: Job["state"], more: Partial<Job> = {}): Job =>
+  ({ id: 7, state, progress: 0, message: "", ...more }) as Job;
+const problem = (status: number): NonNullable<Job["problem"]> => ({
+  status,
+  title: "Server was restarted",
+  detail: "Start it again.",
+});
 
 /** Answers of GET /jobs/7, one after the other: a job, or the status of a refusal. */
 function importing(...answers: (Job | number)[]): { imports: Imports; sent: string[] } {
@@ -28,11 +36,20 @@ describe("an import", () => {
   it("waits for a server that is away, and offers to begin again what a restart ended", async () => {
     vi.useFakeTimers();
     try {
-      const { imports, sent } = importing(job("running"), 0, 503, 0, job("failed", { problem: problem(503) }), job("done", { model: 3 }));
+      const { imports, sent } = importing(
+        job("running"),
+        0,
+        503,
+        0,
+        job("failed", { problem: problem(503) }),
+        job("done", { model: 3 }),
+      );
       const first = imports.start(scan, "default");
       await vi.runAllTimersAsync();
       expect(await first).toEqual({ model: null, problem: problem(503) });
-      expect(imports.entries).toMatchObject([{ name: "a/mesh", state: "failed", may_repeat: true }]);
+      expect(imports.entries).toMatchObject([
+        { name: "a/mesh", state: "failed", may_repeat: true },
+      ]);
       const second = imports.repeat(imports.entries[0]!.key);
       await vi.runAllTimersAsync();
       expect(await second).toEqual({ model: 3, problem: null });

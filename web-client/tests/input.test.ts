@@ -5,7 +5,8 @@ import { StageInput, type GestureHandler } from "../src/core/input";
 // An element without a page: remembers listeners, and gives them events.
 class FakeElement {
   listeners = new Map<string, (event: unknown) => void>();
-  addEventListener = (name: string, listener: (event: unknown) => void): void => void this.listeners.set(name, listener);
+  addEventListener = (name: string, listener: (event: unknown) => void): void =>
+    void this.listeners.set(name, listener);
   removeEventListener = (name: string): void => void this.listeners.delete(name);
   getBoundingClientRect = (): { left: number; top: number } => ({ left: 100, top: 50 });
   setPointerCapture = (): void => {};
@@ -20,14 +21,30 @@ let input: StageInput;
 let handler: { [Name in keyof GestureHandler]: ReturnType<typeof vi.fn<GestureHandler[Name]>> };
 
 const mouse = (button: number, x: number, y: number, more = {}): Record<string, unknown> => ({
-  pointerId: 1, pointerType: "mouse", button, clientX: 100 + x, clientY: 50 + y, shiftKey: false, ...more,
-}); // prettier-ignore
+  pointerId: 1,
+  pointerType: "mouse",
+  button,
+  clientX: 100 + x,
+  clientY: 50 + y,
+  shiftKey: false,
+  ...more,
+});
 const touch = (pointerId: number, x: number, y: number): Record<string, unknown> => ({
-  pointerId, pointerType: "touch", button: 0, clientX: 100 + x, clientY: 50 + y,
-}); // prettier-ignore
+  pointerId,
+  pointerType: "touch",
+  button: 0,
+  clientX: 100 + x,
+  clientY: 50 + y,
+});
 const pen = (x: number, y: number, more = {}): Record<string, unknown> => ({
-  pointerId: 90, pointerType: "pen", button: 0, buttons: 1, clientX: 100 + x, clientY: 50 + y, ...more,
-}); // prettier-ignore
+  pointerId: 90,
+  pointerType: "pen",
+  button: 0,
+  buttons: 1,
+  clientX: 100 + x,
+  clientY: 50 + y,
+  ...more,
+});
 const hovering = { button: -1, buttons: 0 };
 
 beforeEach(() => {
@@ -89,15 +106,24 @@ describe("mouse", () => {
     drag(2, { shiftKey: true });
     input.orbit_held = true;
     drag(0);
-    expect(handler.orbit.mock.calls).toEqual([[6, 2], [6, 2]]); // prettier-ignore
-    expect(handler.pan.mock.calls).toEqual([[6, 2], [6, 2]]); // prettier-ignore
+    expect(handler.orbit.mock.calls).toEqual([
+      [6, 2],
+      [6, 2],
+    ]);
+    expect(handler.pan.mock.calls).toEqual([
+      [6, 2],
+      [6, 2],
+    ]);
     expect(handler.tool_down).not.toHaveBeenCalled();
   });
 
   it("the wheel zooms where the pointer is: up comes nearer", () => {
     element.fire("wheel", { clientX: 130, clientY: 60, deltaY: -100, deltaMode: 0 });
     element.fire("wheel", { clientX: 130, clientY: 60, deltaY: 3, deltaMode: 1 });
-    const [[nearer, x, y], [farther]] = handler.zoom.mock.calls as [[number, number, number], [number]];
+    const [[nearer, x, y], [farther]] = handler.zoom.mock.calls as [
+      [number, number, number],
+      [number],
+    ];
     expect(nearer).toBeLessThan(1);
     expect(farther).toBeGreaterThan(1);
     expect([x, y]).toEqual([60, 20]);
@@ -181,7 +207,8 @@ describe("pen", () => {
     element.fire("pointerup", touch(1, 100, 100));
   };
   const nothing_moved = (): void => {
-    for (const name of ["orbit", "pan", "zoom", "twist"] as const) expect(handler[name], name).not.toHaveBeenCalled();
+    for (const name of ["orbit", "pan", "zoom", "twist"] as const)
+      expect(handler[name], name).not.toHaveBeenCalled();
   };
 
   it("paints, and the hand that rests beside it does nothing", () => {

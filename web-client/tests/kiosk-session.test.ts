@@ -1,4 +1,5 @@
-// The kiosk's whole life without a browser: a server of answers, sockets without a network, and a clock that jumps.
+// The kiosk's whole life without a browser: a server of answers, sockets without a network, and a
+// clock that jumps.
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { Api, ApiError } from "../src/core/api";
@@ -10,9 +11,49 @@ import { FakeSocket, welcome } from "./fake-socket";
 
 const kIdentity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -5, 1];
 const kProjection = [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.2, -1, 0, 0, -2, 0];
-const view = (id: number, slug: string): View => ({ id, name: slug, slug, text: "", camera: { view: kIdentity, projection: kProjection, width: 800, height: 600 }, layers: [], light: { mode: "museum" }, user: "", time: "2026-01-01T00:00:00Z", version: 1 });
-const stop = (slug: string, more = {}) => ({ view: slug, title: { en: slug }, text: {}, attract_s: 10, transition: "move" as const, transition_s: 2, layers: [], records: [], ...more });
-const told = (change: Partial<KioskSelf["tour"]> = {}): KioskSelf => ({ id: 1, name: "Foyer", project: "p", model: "pot", wants_reload: false, tour: { id: 1, slug: "t", name: "T", text: "", languages: ["en", "de"], idle_s: 60, stops: [stop("a"), stop("b")], user: "", time: "2026-01-01T00:00:00Z", version: 1, ...change } });
+const view = (id: number, slug: string): View => ({
+  id,
+  name: slug,
+  slug,
+  text: "",
+  camera: { view: kIdentity, projection: kProjection, width: 800, height: 600 },
+  layers: [],
+  light: { mode: "museum" },
+  user: "",
+  time: "2026-01-01T00:00:00Z",
+  version: 1,
+});
+const stop = (slug: string, more = {}) => ({
+  view: slug,
+  title: { en: slug },
+  text: {},
+  attract_s: 10,
+  transition: "move" as const,
+  transition_s: 2,
+  layers: [],
+  records: [],
+  ...more,
+});
+const told = (change: Partial<KioskSelf["tour"]> = {}): KioskSelf => ({
+  id: 1,
+  name: "Foyer",
+  project: "p",
+  model: "pot",
+  wants_reload: false,
+  tour: {
+    id: 1,
+    slug: "t",
+    name: "T",
+    text: "",
+    languages: ["en", "de"],
+    idle_s: 60,
+    stops: [stop("a"), stop("b")],
+    user: "",
+    time: "2026-01-01T00:00:00Z",
+    version: 1,
+    ...change,
+  },
+});
 
 class Site {
   self: KioskSelf = told();
@@ -26,14 +67,18 @@ class Site {
     const path = address.replace(/^\/api\/v1/, "").replace(/[?&]as=kiosk$/, "");
     this.asked.push(`${init?.method ?? "GET"} ${path}`);
     if (this.away) throw new TypeError("Failed to fetch");
-    const json = (value: unknown, status = 200): Response => new Response(JSON.stringify(value), { status });
+    const json = (value: unknown, status = 200): Response =>
+      new Response(JSON.stringify(value), { status });
     if (path === "/auth/kiosk") {
       if (this.revoked) return json({ title: "Link not valid", status: 401 }, 401);
       this.cookie = true;
       this.self = { ...this.self, wants_reload: false };
       return json(this.self);
     }
-    if (path === "/kiosk") return this.cookie && !this.revoked ? json(this.self) : json({ title: "Not signed in", status: 401 }, 401);
+    if (path === "/kiosk")
+      return this.cookie && !this.revoked
+        ? json(this.self)
+        : json({ title: "Not signed in", status: 401 }, 401);
     const slug = /^\/models\/pot\/views\/([a-z]+)$/.exec(path)?.[1];
     if (slug && slug !== "gone") return json(view(slug.charCodeAt(0), slug));
     if (path.endsWith("/picture")) return new Response("JPEG");
@@ -42,11 +87,15 @@ class Site {
 }
 
 const settle = async (): Promise<void> => void (await vi.advanceTimersByTimeAsync(1));
-const count = (site: Site, path: string): number => site.asked.filter((asked) => asked === path).length;
+const count = (site: Site, path: string): number =>
+  site.asked.filter((asked) => asked === path).length;
 
 beforeEach(() => {
   vi.useFakeTimers();
-  vi.stubGlobal("window", { location: { protocol: "https:", host: "strata.example" }, devicePixelRatio: 1 });
+  vi.stubGlobal("window", {
+    location: { protocol: "https:", host: "strata.example" },
+    devicePixelRatio: 1,
+  });
   vi.stubGlobal("location", { origin: "https://strata.example", pathname: "/kiosk/SECRET" });
   vi.stubGlobal("matchMedia", () => ({ matches: true }));
   vi.stubGlobal("requestAnimationFrame", (callback: () => void) => setTimeout(callback, 16));
@@ -120,16 +169,25 @@ describe("the link of a kiosk", () => {
     expect([host.told.mock.calls.length, host.reload.mock.calls.length]).toEqual([1, 0]);
     site.revoked = false;
     await vi.advanceTimersByTimeAsync(300_000);
-    expect([host.told.mock.calls.length, host.reload.mock.calls.length, vi.getTimerCount()]).toEqual([1, 1, 0]);
+    expect([
+      host.told.mock.calls.length,
+      host.reload.mock.calls.length,
+      vi.getTimerCount(),
+    ]).toEqual([1, 1, 0]);
   });
 
   it("takes too many tries for no verdict", async () => {
     const site = new Site();
     const host = { told: vi.fn(), missed: vi.fn(), worthless: vi.fn(), reload: vi.fn() };
-    const refuse = vi.spyOn(site.api, "sign_in_kiosk").mockRejectedValue(new ApiError({ status: 429, title: "Too many tries" }));
+    const refuse = vi
+      .spyOn(site.api, "sign_in_kiosk")
+      .mockRejectedValue(new ApiError({ status: 429, title: "Too many tries" }));
     new KioskLink(site.api, "SECRET", host).ask();
     await vi.advanceTimersByTimeAsync(10_000);
-    expect([host.missed.mock.calls.length > 2, host.worthless.mock.calls.length]).toEqual([true, 0]);
+    expect([host.missed.mock.calls.length > 2, host.worthless.mock.calls.length]).toEqual([
+      true,
+      0,
+    ]);
     refuse.mockRestore();
     await vi.advanceTimersByTimeAsync(30_000);
     expect(host.told).toHaveBeenCalled();
@@ -160,7 +218,8 @@ describe("what a kiosk keeps", () => {
       open_shelf: async () => shelf,
       secret,
       files: () => ["/assets/main-1.js"],
-      fetch: async (address, init) => (address.startsWith("/api") ? site.answer(address, init) : new Response(`file ${address}`)),
+      fetch: async (address, init) =>
+        address.startsWith("/api") ? site.answer(address, init) : new Response(`file ${address}`),
     });
     return { site, shelf, store };
   };
@@ -170,7 +229,13 @@ describe("what a kiosk keeps", () => {
     await store.keep(site.self, "1");
     expect(await store.last_told()).toEqual(site.self);
     const keys = await shelf.keys();
-    for (const key of ["/kiosk/", "/assets/main-1.js", "/api/v1/models/pot/views/a?as=kiosk", "/api/v1/models/pot/views/b/picture?as=kiosk"]) expect(keys).toContain(key);
+    for (const key of [
+      "/kiosk/",
+      "/assets/main-1.js",
+      "/api/v1/models/pot/views/a?as=kiosk",
+      "/api/v1/models/pot/views/b/picture?as=kiosk",
+    ])
+      expect(keys).toContain(key);
     expect(JSON.stringify([...shelf.things])).not.toContain("SECRET");
     expect(await make("OTHER", shelf).store.last_told()).toBeNull();
   });
@@ -211,7 +276,11 @@ describe("what a kiosk keeps", () => {
 
   it("is nothing where the browser has no store", async () => {
     const { site } = make();
-    const store = new KioskStore({ open_shelf: async () => null, secret: "SECRET", fetch: async (address) => site.answer(address) });
+    const store = new KioskStore({
+      open_shelf: async () => null,
+      secret: "SECRET",
+      fetch: async (address) => site.answer(address),
+    });
     await store.keep(site.self, "1");
     expect(await store.last_told()).toBeNull();
     await store.forget();
@@ -221,7 +290,11 @@ describe("what a kiosk keeps", () => {
 describe("the kiosk", () => {
   const make = (site = new Site(), last: KioskSelf | null = null) => {
     const sockets: FakeSocket[] = [];
-    const store = { last_told: vi.fn(async () => last), keep: vi.fn(async () => {}), forget: vi.fn(async () => {}) };
+    const store = {
+      last_told: vi.fn(async () => last),
+      keep: vi.fn(async () => {}),
+      forget: vi.fn(async () => {}),
+    };
     const reload = vi.fn();
     const session = new KioskSession({
       api: site.api,
@@ -239,7 +312,10 @@ describe("the kiosk", () => {
   };
   const connect = (socket: FakeSocket): void => {
     socket.open();
-    socket.receive({ ...welcome(), model: { bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, up: "z" } as never });
+    socket.receive({
+      ...welcome(),
+      model: { bounds: { min: [-1, -1, -1], max: [1, 1, 1] }, up: "z" } as never,
+    });
   };
 
   it("plays by itself, begins at the first stop for who touches it, and rests again when they are gone", async () => {
@@ -285,7 +361,8 @@ describe("the kiosk", () => {
     site.away = true;
     const { session } = make(site, told());
     await settle();
-    expect([session.tour?.name, session.ready]).toEqual(["T", false]); // no worker here that has the views
+    // no worker here that has the views
+    expect([session.tour?.name, session.ready]).toEqual(["T", false]);
     site.away = false;
     await vi.advanceTimersByTimeAsync(31_000);
     expect([session.ready, session.stops.length]).toEqual([true, 2]);
@@ -305,7 +382,9 @@ describe("the kiosk", () => {
     const { session, sockets } = make();
     await settle();
     sockets[0]!.open();
-    const layers = ["sherds", "cracks"].map((slug, place) => ({ id: place + 1, slug }) as NonNullable<(typeof session.choices)[number]>);
+    const layers = ["sherds", "cracks"].map(
+      (slug, place) => ({ id: place + 1, slug }) as NonNullable<(typeof session.choices)[number]>,
+    );
     session.choices = layers;
     session.choice = layers[0]!;
     session.card = {} as NonNullable<typeof session.card>;
@@ -322,7 +401,11 @@ describe("the kiosk", () => {
     site.revoked = true;
     sockets[0]!.lose();
     await settle();
-    expect([session.worthless, session.show, store.forget.mock.calls.length]).toEqual([true, null, 1]);
+    expect([session.worthless, session.show, store.forget.mock.calls.length]).toEqual([
+      true,
+      null,
+      1,
+    ]);
     await vi.advanceTimersByTimeAsync(600_000);
     expect([sockets.length, store.forget.mock.calls.length]).toEqual([1, 1]);
   });

@@ -58,14 +58,27 @@ describe("a place for files", () => {
   }
   const event = (type: string, files: string[]): Event => {
     const items = files.map(() => ({ webkitGetAsEntry: () => null }));
-    const dataTransfer = { types: files.length > 0 ? ["Files"] : ["text/plain"], files: files.map((name) => new File([""], name)), items };
+    const dataTransfer = {
+      types: files.length > 0 ? ["Files"] : ["text/plain"],
+      files: files.map((name) => new File([""], name)),
+      items,
+    };
     return Object.assign(new Event(type, { cancelable: true }), { dataTransfer });
   };
   /** What it does, and what became of the event. */
-  function place(may = true): { host: Place; drop: FileDrop; taken: string[][]; send(type: string, files: string[]): Event } {
+  function place(may = true): {
+    host: Place;
+    drop: FileDrop;
+    taken: string[][];
+    send(type: string, files: string[]): Event;
+  } {
     const host = new Place();
     const taken: string[][] = [];
-    const drop = new FileDrop(host, (files) => taken.push(files.map(({ name }) => name)), () => may);
+    const drop = new FileDrop(
+      host,
+      (files) => taken.push(files.map(({ name }) => name)),
+      () => may,
+    );
     const send = (type: string, files: string[]): Event => {
       const sent = event(type, files);
       host.dispatchEvent(sent);
@@ -92,7 +105,10 @@ describe("a place for files", () => {
     expect(drop.over).toBe(false);
   });
   it("leaves text, and all that it may not take, to what is around it", async () => {
-    for (const { drop, taken, sent } of [place(), place(false)].map((each, index) => ({ ...each, sent: ["dragover", "drop"].map((type) => each.send(type, index === 0 ? [] : ["a.csv"])) }))) {
+    for (const { drop, taken, sent } of [place(), place(false)].map((each, index) => ({
+      ...each,
+      sent: ["dragover", "drop"].map((type) => each.send(type, index === 0 ? [] : ["a.csv"])),
+    }))) {
       await Promise.resolve();
       expect(sent.map(({ defaultPrevented }) => defaultPrevented)).toEqual([false, false]);
       expect([drop.over, taken]).toEqual([false, []]);

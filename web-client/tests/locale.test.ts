@@ -3,7 +3,18 @@ import { afterEach, describe, expect, it } from "vitest";
 import { told_date, told_time } from "../src/app/times";
 import { load_texts, texts, type Texts } from "../src/app/texts";
 import { cell_text, label_of, parse_cell } from "../src/core/cells";
-import { format_count, format_list, format_place, kPageLanguages, page_language, page_locale, person_languages, read_number, set_locale, typed_number } from "../src/core/locale"; // prettier-ignore
+import {
+  format_count,
+  format_list,
+  format_place,
+  kPageLanguages,
+  page_language,
+  page_locale,
+  person_languages,
+  read_number,
+  set_locale,
+  typed_number,
+} from "../src/core/locale";
 import { format_area, format_length, format_number } from "../src/core/measure";
 
 afterEach(() => load_texts("en", true, []));
@@ -31,7 +42,14 @@ describe("the language of the page", () => {
 
 describe("numbers", () => {
   it("are written as in the language", () => {
-    const written = (): string[] => [format_count(1234567), format_number(0.125), format_length(1.24), format_area(2.5e9), typed_number(-1.5), format_place(["1", "2"])];
+    const written = (): string[] => [
+      format_count(1234567),
+      format_number(0.125),
+      format_length(1.24),
+      format_area(2.5e9),
+      typed_number(-1.5),
+      format_place(["1", "2"]),
+    ];
     set_locale("en", false, ["en-GB"]);
     expect(written()).toEqual(["1,234,567", "0.125", "1.24 m", "2.50e+9 m²", "-1.5", "1, 2"]);
     set_locale("de", false, ["de-DE"]);
@@ -42,8 +60,22 @@ describe("numbers", () => {
 
   it("are read with the language's decimal sign or a point, and never guessed", () => {
     set_locale("de", false, []);
-    expect(["1,5", " -0,25 ", "1.5", "0.125", "1e-3", ",5", "1500"].map(read_number)).toEqual([1.5, -0.25, 1.5, 0.125, 0.001, 0.5, 1500]);
-    for (const wrong of ["1.500", "12.345.678", "1,500.5", "1.500,5", "1,5,5", "", "eins", "1 500", "NaN", "Infinity"]) expect(read_number(wrong), wrong).toBeNaN();
+    expect(["1,5", " -0,25 ", "1.5", "0.125", "1e-3", ",5", "1500"].map(read_number)).toEqual([
+      1.5, -0.25, 1.5, 0.125, 0.001, 0.5, 1500,
+    ]);
+    for (const wrong of [
+      "1.500",
+      "12.345.678",
+      "1,500.5",
+      "1.500,5",
+      "1,5,5",
+      "",
+      "eins",
+      "1 500",
+      "NaN",
+      "Infinity",
+    ])
+      expect(read_number(wrong), wrong).toBeNaN();
     set_locale("en", false, []);
     expect(["1.5", "1.500"].map(read_number)).toEqual([1.5, 1.5]);
     for (const wrong of ["1,5", "1,500"]) expect(read_number(wrong), wrong).toBeNaN();
@@ -52,7 +84,8 @@ describe("numbers", () => {
   it("are in fields of records as they may be typed again", () => {
     for (const language of kPageLanguages) {
       set_locale(language, true, []);
-      for (const value of [0, 1.5, -1234.5678, 1e21, 1e-7, 1500, 0.001]) expect(parse_cell({ kind: "numeric" }, cell_text(value))).toEqual({ value });
+      for (const value of [0, 1.5, -1234.5678, 1e21, 1e-7, 1500, 0.001])
+        expect(parse_cell({ kind: "numeric" }, cell_text(value))).toEqual({ value });
     }
   });
 });
@@ -61,7 +94,12 @@ describe("moments and lists", () => {
   it("are told as in the language", () => {
     const now = new Date(2026, 10, 21, 15, 0);
     const at = (days: number): string => new Date(2026, 10, 21 - days, 14, 5).toISOString();
-    const told = (): string[] => [told_time(at(0), now), told_time(at(1), now), told_date(at(2)), format_list(["a", "b", "c"])];
+    const told = (): string[] => [
+      told_time(at(0), now),
+      told_time(at(1), now),
+      told_date(at(2)),
+      format_list(["a", "b", "c"]),
+    ];
     set_locale("en", false, ["en-GB"]);
     expect(told()).toEqual(["today, 14:05", "yesterday, 14:05", "19 Nov 2026", "a, b, c"]);
     set_locale("de", false, ["de-DE"]);
@@ -76,14 +114,33 @@ function leaves(from: unknown, path = ""): [string, string][] {
   if (typeof from === "string") return [[path, from]];
   if (typeof from === "function") {
     const makes = from as (...args: unknown[]) => string;
-    return [1, 7].map((n) => [`${path}(${n})`, makes(...Array.from({ length: makes.length }, () => n).map((each, i) => (takes_words.has(path) ? `word${i}` : each)))]);
+    return [1, 7].map((n) => [
+      `${path}(${n})`,
+      makes(
+        ...Array.from({ length: makes.length }, () => n).map((each, i) =>
+          takes_words.has(path) ? `word${i}` : each,
+        ),
+      ),
+    ]);
   }
   if (typeof from !== "object" || from === null) return [];
-  return Object.entries(from).flatMap(([key, value]) => leaves(value, path ? `${path}.${key}` : key));
+  return Object.entries(from).flatMap(([key, value]) =>
+    leaves(value, path ? `${path}.${key}` : key),
+  );
 }
-const takes_words = new Set(["account.token_line", "join.lead", "people.role_now", "project_roles.by_groups", "project_roles.by_groups_also", "project_roles.lead", "site_people.role_changed"]);
+const takes_words = new Set([
+  "account.token_line",
+  "join.lead",
+  "people.role_now",
+  "project_roles.by_groups",
+  "project_roles.by_groups_also",
+  "project_roles.lead",
+  "site_people.role_changed",
+]);
 
-async function in_language(language: (typeof kPageLanguages)[number]): Promise<Map<string, string>> {
+async function in_language(
+  language: (typeof kPageLanguages)[number],
+): Promise<Map<string, string>> {
   await load_texts(language, true, []);
   return new Map(leaves(texts satisfies Texts));
 }
@@ -93,13 +150,15 @@ describe("the texts", () => {
     const english = await in_language("en");
     expect(english.size).toBeGreaterThan(900);
     // Written alike in two languages: names, signs, examples of what is typed.
-    const alike = /^(product|brush\.width_|account\.token_line|expressions\.functions|areas\.grammar|tables\.examples|view\.sections|labels\.language_example|help\.\w+\.\d+\.0)/;
+    const alike =
+      /^(product|brush\.width_|account\.token_line|expressions\.functions|areas\.grammar|tables\.examples|view\.sections|labels\.language_example|help\.\w+\.\d+\.0)/;
     for (const language of ["de", "es"] as const) {
       const translated = await in_language(language);
       expect([...translated.keys()]).toEqual([...english.keys()]);
       for (const [path, text] of translated) {
         expect(text, `${language} ${path}`).not.toBe("");
-        if (english.get(path)!.length > 14 && !alike.test(path)) expect(text, `${language} ${path}`).not.toBe(english.get(path));
+        if (english.get(path)!.length > 14 && !alike.test(path))
+          expect(text, `${language} ${path}`).not.toBe(english.get(path));
         expect(text.includes("undefined"), `${language} ${path}: ${text}`).toBe(false);
       }
     }
@@ -120,8 +179,16 @@ describe("the texts", () => {
     await load_texts("en", true, []);
     expect([0, 1, 2].map(texts.home.count)).toEqual(["0 models", "1 model", "2 models"]);
     await load_texts("de", true, []);
-    expect([0, 1, 1200].map(texts.tables.records)).toEqual(["0 Datensätze", "1 Datensatz", "1.200 Datensätze"]);
+    expect([0, 1, 1200].map(texts.tables.records)).toEqual([
+      "0 Datensätze",
+      "1 Datensatz",
+      "1.200 Datensätze",
+    ]);
     await load_texts("es", true, []);
-    expect([1, 2, 1000000].map(texts.home.triangles)).toEqual(["1 triángulo", "2 triángulos", "1.000.000 de triángulos"]);
+    expect([1, 2, 1000000].map(texts.home.triangles)).toEqual([
+      "1 triángulo",
+      "2 triángulos",
+      "1.000.000 de triángulos",
+    ]);
   });
 });

@@ -17,9 +17,18 @@ function camera_on(up: UpAxis, width: number, height: number): OrbitCamera {
 
 /** What lies in the corners of a camera's window, somewhere before the eye. */
 const corners = (camera: OrbitCamera): Vec3[] =>
-  [[0, 0], [camera.width, 0], [0, camera.height], [camera.width, camera.height]].map(([x, y]) => camera.point_on_focus_plane(x!, y!)); // prettier-ignore
+  [
+    [0, 0],
+    [camera.width, 0],
+    [0, camera.height],
+    [camera.width, camera.height],
+  ].map(([x, y]) => camera.point_on_focus_plane(x!, y!));
 
-const windows: Record<string, [number, number]> = { wide: [1600, 700], tall: [390, 760], square: [500, 500] };
+const windows: Record<string, [number, number]> = {
+  wide: [1600, 700],
+  tall: [390, 760],
+  square: [500, 500],
+};
 
 describe("looking with somebody", () => {
   for (const up of ["x", "y", "z"] as const)
@@ -35,7 +44,8 @@ describe("looking with somebody", () => {
             const place = place_like(them.message(), me);
             Object.assign(me, place);
             const seen = corners(them).map((corner) => me.project(corner)!);
-            const beyond = ({ x, y }: { x: number; y: number }): number => Math.max(-x, -y, x - me.width, y - me.height);
+            const beyond = ({ x, y }: { x: number; y: number }): number =>
+              Math.max(-x, -y, x - me.width, y - me.height);
             expect(Math.max(...seen.map(beyond))).toBeLessThan(1e-3);
             expect(Math.max(...seen.map(beyond))).toBeGreaterThan(-1e-3);
             expect(length(subtract(me.axes().back, them.axes().back))).toBeLessThan(1e-9);

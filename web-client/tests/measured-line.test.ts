@@ -17,12 +17,24 @@ function frame_of(seed: Vec3): [Vec3, Vec3] {
 
 /** The shoelace formula in a plane, as another way to the area. */
 const shoelace = (points: readonly (readonly [number, number])[]): number =>
-  Math.abs(points.reduce((total, [x, y], at) => total + x * points[(at + 1) % points.length]![1] - points[(at + 1) % points.length]![0] * y, 0)) / 2;
+  Math.abs(
+    points.reduce(
+      (total, [x, y], at) =>
+        total + x * points[(at + 1) % points.length]![1] - points[(at + 1) % points.length]![0] * y,
+      0,
+    ),
+  ) / 2;
 
 describe("places that are measured between", () => {
   it("are as far from each other as Pythagoras says", () => {
-    expect(legs_of([[0, 0, 0], [3, 4, 0], [3, 4, 12]])).toEqual([5, 12]); // prettier-ignore
-    expect(legs_of([[1, 2, 3]])).toEqual([]); // prettier-ignore
+    expect(
+      legs_of([
+        [0, 0, 0],
+        [3, 4, 0],
+        [3, 4, 12],
+      ]),
+    ).toEqual([5, 12]);
+    expect(legs_of([[1, 2, 3]])).toEqual([]);
     expect(sum([5, 12])).toBe(17);
   });
 
@@ -34,23 +46,54 @@ describe("places that are measured between", () => {
 describe("the flat polygon through places", () => {
   it("has the area and perimeter that are calculated by hand", () => {
     // 60 wide, and 40 up a roof that rises 3 in 4: 50 deep.
-    const roof = flat_polygon([[0, 0, 0], [60, 0, 0], [60, 40, 30], [0, 40, 30]])!; // prettier-ignore
+    const roof = flat_polygon([
+      [0, 0, 0],
+      [60, 0, 0],
+      [60, 40, 30],
+      [0, 40, 30],
+    ])!;
     expect(roof.area).toBeCloseTo(3000, 9);
     expect(roof.perimeter).toBeCloseTo(220, 9);
     expect(roof.off_plane).toBeCloseTo(0, 9);
-    const triangle = flat_polygon([[0, 0, 0], [3, 0, 0], [0, 4, 0]])!; // prettier-ignore
+    const triangle = flat_polygon([
+      [0, 0, 0],
+      [3, 0, 0],
+      [0, 4, 0],
+    ])!;
     expect([triangle.area, triangle.perimeter]).toEqual([6, 12]);
-    const with_a_bay = flat_polygon([[0, 0, 5], [4, 0, 5], [4, 4, 5], [2, 1, 5], [0, 4, 5]])!; // prettier-ignore
+    const with_a_bay = flat_polygon([
+      [0, 0, 5],
+      [4, 0, 5],
+      [4, 4, 5],
+      [2, 1, 5],
+      [0, 4, 5],
+    ])!;
     expect(with_a_bay.area).toBeCloseTo(16 - 6, 9);
   });
 
   it("is none of fewer than three places, and has no area on a line", () => {
-    expect(flat_polygon([[0, 0, 0], [1, 0, 0]])).toBeNull(); // prettier-ignore
-    expect(flat_polygon([[0, 0, 0], [1, 1, 1], [2, 2, 2]])).toEqual({ area: 0, perimeter: 4 * Math.sqrt(3), off_plane: 0 }); // prettier-ignore
+    expect(
+      flat_polygon([
+        [0, 0, 0],
+        [1, 0, 0],
+      ]),
+    ).toBeNull();
+    expect(
+      flat_polygon([
+        [0, 0, 0],
+        [1, 1, 1],
+        [2, 2, 2],
+      ]),
+    ).toEqual({ area: 0, perimeter: 4 * Math.sqrt(3), off_plane: 0 });
   });
 
   it("says how far its corners lie off its plane", () => {
-    const bent = flat_polygon([[0, 0, 1], [10, 0, -1], [10, 10, 1], [0, 10, -1]])!; // prettier-ignore
+    const bent = flat_polygon([
+      [0, 0, 1],
+      [10, 0, -1],
+      [10, 10, 1],
+      [0, 10, -1],
+    ])!;
     expect(bent.area).toBeCloseTo(100, 9);
     expect(bent.off_plane).toBeCloseTo(1, 9);
   });
@@ -58,13 +101,21 @@ describe("the flat polygon through places", () => {
   it("has in any plane the area that the shoelace formula gives in it, wherever it lies", () => {
     const corners = fc.array(fc.tuple(number, number), { minLength: 3, maxLength: 12 });
     fc.assert(
-      fc.property(corners, place.filter((seed) => length(seed) > 1), place, (points, seed, origin) => {
-        const [first, second] = frame_of(seed);
-        const far: Vec3 = add(scale(origin, 1000), [400_000, 4_600_000, 0]); // as in a country's grid
-        const polygon = flat_polygon(points.map(([x, y]) => add(far, add(scale(first, x), scale(second, y)))))!;
-        expect(Math.abs(polygon.area - shoelace(points))).toBeLessThan(1e-4);
-        if (polygon.area > 1) expect(polygon.off_plane).toBeLessThan(1e-6);
-      }),
+      fc.property(
+        corners,
+        place.filter((seed) => length(seed) > 1),
+        place,
+        (points, seed, origin) => {
+          const [first, second] = frame_of(seed);
+          // as in a country's grid
+          const far: Vec3 = add(scale(origin, 1000), [400_000, 4_600_000, 0]);
+          const polygon = flat_polygon(
+            points.map(([x, y]) => add(far, add(scale(first, x), scale(second, y)))),
+          )!;
+          expect(Math.abs(polygon.area - shoelace(points))).toBeLessThan(1e-4);
+          if (polygon.area > 1) expect(polygon.off_plane).toBeLessThan(1e-6);
+        },
+      ),
     );
   });
 
@@ -72,7 +123,12 @@ describe("the flat polygon through places", () => {
     fc.assert(
       fc.property(fc.array(place, { minLength: 3, maxLength: 8 }), (places) => {
         const { area, perimeter } = flat_polygon(places)!;
-        const triangles = places.slice(2).map((each, at) => length(cross(subtract(places[at + 1]!, places[0]!), subtract(each, places[0]!))) / 2);
+        const triangles = places
+          .slice(2)
+          .map(
+            (each, at) =>
+              length(cross(subtract(places[at + 1]!, places[0]!), subtract(each, places[0]!))) / 2,
+          );
         expect(area).toBeLessThanOrEqual(sum(triangles) + 1e-6);
         const turned = flat_polygon([...places].reverse())!;
         expect(turned.area).toBeCloseTo(area, 6);

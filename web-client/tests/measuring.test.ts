@@ -7,7 +7,8 @@ import { Api } from "../src/core/api";
 import { OrbitCamera } from "../src/core/camera";
 import { MeasureTool, type MeasureHost } from "../src/tools/measure";
 
-// A wall in the plane y = 0, 100 mm wide and high, seen from the front in parallel: a pixel is a millimetre.
+// A wall in the plane y = 0, 100 mm wide and high, seen from the front in parallel: a pixel is a
+// millimetre.
 const comes = (check: () => void): Promise<void> => vi.waitFor(check, { timeout: 20_000 });
 const at_mm = (x: number, z: number): { x: number; y: number } => ({ x: 200 + x, y: 200 - z });
 
@@ -19,14 +20,40 @@ let measuring: Measuring;
 
 function answer(path: string, body: Record<string, unknown>): object {
   const place = ([x, z]: readonly [number, number]): object =>
-    Math.abs(x) <= 50 && Math.abs(z) <= 50 && sees(x, z) ? { hit: true, position: [x, 0, z], normal: [0, -1, 0], values: { wet: { valid: x < 0, value: 7 } } } : { hit: false };
+    Math.abs(x) <= 50 && Math.abs(z) <= 50 && sees(x, z)
+      ? {
+          hit: true,
+          position: [x, 0, z],
+          normal: [0, -1, 0],
+          values: { wet: { valid: x < 0, value: 7 } },
+        }
+      : { hit: false };
   if (path.endsWith("/pick")) return place([Number(body["x"]) - 200, 200 - Number(body["y"])]);
-  const corners = (body["path"] as [number, number][] | undefined)?.map(([x, y]): [number, number] => [x - 200, 200 - y]);
-  const places = (body["places"] as [number, number, number][] | undefined)?.map(([x, , z]): [number, number] => [x, z]);
+  const corners = (body["path"] as [number, number][] | undefined)?.map(
+    ([x, y]): [number, number] => [x - 200, 200 - y],
+  );
+  const places = (body["places"] as [number, number, number][] | undefined)?.map(
+    ([x, , z]): [number, number] => [x, z],
+  );
   const line = corners ?? places!;
-  const points = line.slice(1).flatMap(([x, z], at) => Array.from({ length: 101 }, (_, n): [number, number] => [line[at]![0] + ((x - line[at]![0]) * n) / 100, line[at]![1] + ((z - line[at]![1]) * n) / 100])); // prettier-ignore
-  const all = (point: [number, number]): object => ({ hit: true, position: [point[0], 0, point[1]], normal: [0, -1, 0], values: { wet: { valid: point[0] < 0, value: 7 } } });
-  return { length_mm: 0, samples: points.map((point) => ({ along_mm: 0, point: places ? all(point) : place(point) })) };
+  const points = line
+    .slice(1)
+    .flatMap(([x, z], at) =>
+      Array.from({ length: 101 }, (_, n): [number, number] => [
+        line[at]![0] + ((x - line[at]![0]) * n) / 100,
+        line[at]![1] + ((z - line[at]![1]) * n) / 100,
+      ]),
+    );
+  const all = (point: [number, number]): object => ({
+    hit: true,
+    position: [point[0], 0, point[1]],
+    normal: [0, -1, 0],
+    values: { wet: { valid: point[0] < 0, value: 7 } },
+  });
+  return {
+    length_mm: 0,
+    samples: points.map((point) => ({ along_mm: 0, point: places ? all(point) : place(point) })),
+  };
 }
 
 beforeEach(() => {
@@ -41,9 +68,14 @@ beforeEach(() => {
     asked.push({ path, body });
     const told = JSON.stringify(answer(path, body));
     await hold;
-    return new Response((init!.headers as Record<string, string>)["Accept"] === "text/csv" ? "along_mm,x" : told);
+    return new Response(
+      (init!.headers as Record<string, string>)["Accept"] === "text/csv" ? "along_mm,x" : told,
+    );
   });
-  const layers = [{ id: 4, slug: "wet", kind: "numeric", palette: { mode: "linear" } }, { id: 5, slug: "units", kind: "database", palette: { mode: "categorical" } }]; // prettier-ignore
+  const layers = [
+    { id: 4, slug: "wet", kind: "numeric", palette: { mode: "linear" } },
+    { id: 5, slug: "units", kind: "database", palette: { mode: "categorical" } },
+  ];
   measuring = new Measuring(api, {
     view: { camera, scale: 1 },
     layers: { all: layers },
@@ -58,7 +90,11 @@ describe("measuring", () => {
     measuring.set_at(at_mm(30, 0));
     measuring.set_at(at_mm(30, 40));
     await comes(() => expect(measuring.along).toBeCloseTo(100, 6));
-    expect(measuring.positions.map((place) => place.map(Math.round))).toEqual([[-30, 0, 0], [30, 0, 0], [30, 0, 40]]); // prettier-ignore
+    expect(measuring.positions.map((place) => place.map(Math.round))).toEqual([
+      [-30, 0, 0],
+      [30, 0, 0],
+      [30, 0, 40],
+    ]);
     expect(measuring.profile!.way).toBe("seen");
     expect(measuring.ended).toBe(false);
   });
@@ -70,12 +106,20 @@ describe("measuring", () => {
     await comes(() => expect(measuring.ended).toBe(true));
     expect(measuring.places).toHaveLength(2);
     measuring.set_at(at_mm(0, 10));
-    await comes(() => expect(measuring.positions.map((place) => place.map(Math.round))).toEqual([[0, 0, 10]])); // prettier-ignore
+    await comes(() =>
+      expect(measuring.positions.map((place) => place.map(Math.round))).toEqual([[0, 0, 10]]),
+    );
     expect([measuring.ended, measuring.profile]).toEqual([false, null]);
   });
 
   it("ends with a tap on the first of three, but not on a place that is seen from behind", async () => {
-    for (const [x, z] of [[-30, 0], [30, 0], [0, 30], [-30, 0]] as const) measuring.set_at(at_mm(x, z)); // prettier-ignore
+    for (const [x, z] of [
+      [-30, 0],
+      [30, 0],
+      [0, 30],
+      [-30, 0],
+    ] as const)
+      measuring.set_at(at_mm(x, z));
     await comes(() => expect(measuring.ended).toBe(true));
     expect(measuring.places).toHaveLength(3);
     measuring.clear();
@@ -105,7 +149,9 @@ describe("measuring", () => {
     go();
     hold = null;
     measuring.set_at(at_mm(20, 0));
-    await comes(() => expect(measuring.positions.map((place) => place.map(Math.round))).toEqual([[20, 0, 0]])); // prettier-ignore
+    await comes(() =>
+      expect(measuring.positions.map((place) => place.map(Math.round))).toEqual([[20, 0, 0]]),
+    );
   });
 
   it("has not begun where its only place is taken back, or was missed", async () => {
@@ -133,7 +179,10 @@ describe("measuring", () => {
     measuring.set_at(at_mm(30, 0));
     await comes(() => expect(measuring.profile?.way).toBe("nearest"));
     expect(measuring.along).toBeCloseTo(60, 6);
-    expect(asked.at(-1)!.body).toMatchObject({ step_mm: expect.closeTo(0.06, 6) as number, layers: [] });
+    expect(asked.at(-1)!.body).toMatchObject({
+      step_mm: expect.closeTo(0.06, 6) as number,
+      layers: [],
+    });
     sees = () => true;
     measuring.choose_way("seen");
     await comes(() => expect(measuring.profile?.way).toBe("seen"));
@@ -171,7 +220,8 @@ describe("measuring", () => {
 describe("the tool for measuring", () => {
   const done: string[] = [];
   const host = new Proxy({} as MeasureHost, {
-    get: (_, name) => (name === "begun" ? () => begun : (..._args: unknown[]) => void done.push(String(name))),
+    get: (_, name) =>
+      name === "begun" ? () => begun : (..._args: unknown[]) => void done.push(String(name)),
   });
   let begun = false;
   const tool = new MeasureTool(host);
@@ -193,9 +243,20 @@ describe("the tool for measuring", () => {
   });
 
   it("has keys of its own while something is measured, and leaves them to the page otherwise", () => {
-    expect(["Enter", "Backspace", "Escape", "b"].map((key) => tool.key(key))).toEqual([false, false, false, false]);
+    expect(["Enter", "Backspace", "Escape", "b"].map((key) => tool.key(key))).toEqual([
+      false,
+      false,
+      false,
+      false,
+    ]);
     begun = true;
-    expect(["Enter", "Backspace", "Delete", "Escape", "b"].map((key) => tool.key(key))).toEqual([true, true, true, true, false]);
+    expect(["Enter", "Backspace", "Delete", "Escape", "b"].map((key) => tool.key(key))).toEqual([
+      true,
+      true,
+      true,
+      true,
+      false,
+    ]);
     expect(tool.key("m")).toBe(true);
     tool.deactivate();
     expect(done).toEqual(["end", "take_back", "take_back", "clear", "set_in_middle", "clear"]);

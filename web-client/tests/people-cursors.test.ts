@@ -12,10 +12,18 @@ let calm: boolean;
 let ready: boolean;
 
 const bea = (position: Vec3, radius?: number, session = "b"): PresenceUser => ({
-  session, name: session, color: "#0072b2", pointer: { position: [...position], ...(radius === undefined ? {} : { radius }) },
-}); // prettier-ignore
+  session,
+  name: session,
+  color: "#0072b2",
+  pointer: { position: [...position], ...(radius === undefined ? {} : { radius }) },
+});
 const answer = (position: Vec3 | null): boolean =>
-  cursors.answer({ op: "picked", id: asked.at(-1)!.id, hit: position !== null, ...(position ? { position: [...position] } : {}) });
+  cursors.answer({
+    op: "picked",
+    id: asked.at(-1)!.id,
+    hit: position !== null,
+    ...(position ? { position: [...position] } : {}),
+  });
 const only = () => {
   const [cursor, ...rest] = cursors.now();
   expect(rest).toEqual([]);
@@ -58,7 +66,11 @@ describe("where others point", () => {
   });
 
   it("is not drawn beside the window or behind the eye, nor when they point nowhere or leave", () => {
-    for (const place of [[1000, 0, 0], [0, 0, 900], [0, -1e4, 0]] as Vec3[]) { // prettier-ignore
+    for (const place of [
+      [1000, 0, 0],
+      [0, 0, 900],
+      [0, -1e4, 0],
+    ] as Vec3[]) {
       cursors.receive([bea(place)]);
       vi.advanceTimersByTime(1000);
       expect(cursors.now()).toEqual([]);
@@ -104,7 +116,11 @@ describe("a place behind the surface", () => {
   it("is asked for at its pixel with the camera that sees it there, and hidden when something is nearer", () => {
     cursors.receive([bea([2, 5, 3])]);
     const seen = camera.project([2, 5, 3])!;
-    expect([asked[0]!.x, asked[0]!.y, asked[0]!.camera]).toEqual([seen.x, seen.y, camera.message()]);
+    expect([asked[0]!.x, asked[0]!.y, asked[0]!.camera]).toEqual([
+      seen.x,
+      seen.y,
+      camera.message(),
+    ]);
     expect(only().hidden).toBe(false);
     expect(answer([2, -5, 3])).toBe(true);
     expect(only().hidden).toBe(true);
@@ -117,7 +133,7 @@ describe("a place behind the surface", () => {
 
   it("is shown where the ray meets it to some pixels, something behind it, or nothing", () => {
     const slack = camera.unit_per_pixel(camera.depth_of([0, 0, 0])) * 3;
-    for (const met of [[0, -slack, 0], [0, 4, 0], null] as (Vec3 | null)[]) { // prettier-ignore
+    for (const met of [[0, -slack, 0], [0, 4, 0], null] as (Vec3 | null)[]) {
       cursors.receive([bea([0, 0, 0])]);
       cursors.look_again();
       vi.advanceTimersByTime(200);

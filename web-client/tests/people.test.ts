@@ -1,26 +1,60 @@
 import { describe, expect, it } from "vitest";
 
-import { invitation_of, is_useless_link, login_path_of, password_words, sign_in_problem } from "../src/app/entry";
+import {
+  invitation_of,
+  is_useless_link,
+  login_path_of,
+  password_words,
+  sign_in_problem,
+} from "../src/app/entry";
 import { route_of } from "../src/app/routes";
 import { texts } from "../src/app/texts";
 import { told_date, told_time } from "../src/app/times";
 import { Api, ApiError, next_page } from "../src/core/api";
-import { browser_of, called, find_people, initials, is_user_name, may_change, password_mistake, role_by_groups, roles_of_tokens, roles_of_tokens_in, roles_to_give } from "../src/core/people";
+import {
+  browser_of,
+  called,
+  find_people,
+  initials,
+  is_user_name,
+  may_change,
+  password_mistake,
+  role_by_groups,
+  roles_of_tokens,
+  roles_of_tokens_in,
+  roles_to_give,
+} from "../src/core/people";
 import type { Person } from "../src/core/protocol.gen";
 import { may_administer } from "../src/core/types";
 
 const person = (user: string, full_name = "", more: Partial<Person> = {}): Person => ({
-  id: 2, user, full_name, role: "annotator", state: "active", created: "2026-05-04T12:00:00.000Z", groups: [], color: "#aa3333", ...more,
-}); // prettier-ignore
-const refusal = (status: number, more: { field?: string; detail?: string } = {}): ApiError => new ApiError({ status, title: "Refused", ...more });
+  id: 2,
+  user,
+  full_name,
+  role: "annotator",
+  state: "active",
+  created: "2026-05-04T12:00:00.000Z",
+  groups: [],
+  color: "#aa3333",
+  ...more,
+});
+const refusal = (status: number, more: { field?: string; detail?: string } = {}): ApiError =>
+  new ApiError({ status, title: "Refused", ...more });
 
 /** An interface whose server gives these answers in turn, and what it was asked. */
-function api_of(...answers: [status: number, body: unknown, headers?: Record<string, string>][]): { api: Api; asked: { what: string; body: unknown; headers: Record<string, string> }[] } {
+function api_of(...answers: [status: number, body: unknown, headers?: Record<string, string>][]): {
+  api: Api;
+  asked: { what: string; body: unknown; headers: Record<string, string> }[];
+} {
   const asked: { what: string; body: unknown; headers: Record<string, string> }[] = [];
   const api = new Api(async (path, init) => {
     const [status, body, told = {}] = answers[asked.length] ?? [500, {}];
     const sent = typeof init!.body === "string" ? (JSON.parse(init!.body) as unknown) : null;
-    asked.push({ what: `${init!.method} ${path}`, body: sent, headers: init!.headers as Record<string, string> });
+    asked.push({
+      what: `${init!.method} ${path}`,
+      body: sent,
+      headers: init!.headers as Record<string, string>,
+    });
     return new Response(status === 204 ? null : JSON.stringify(body), { status, headers: told });
   });
   return { api, asked };
@@ -35,9 +69,15 @@ describe("roles by groups", () => {
   ] as const;
 
   it("the highest of those that a person is in counts, and all that give it are told", () => {
-    expect(role_by_groups(given, ["Guests", "Students", "Diggers"])).toEqual({ role: "annotator", groups: ["Diggers", "Students"] });
+    expect(role_by_groups(given, ["Guests", "Students", "Diggers"])).toEqual({
+      role: "annotator",
+      groups: ["Diggers", "Students"],
+    });
     expect(role_by_groups(given, ["Guests"])).toEqual({ role: "viewer", groups: ["Guests"] });
-    expect(role_by_groups(given, ["Heads", "Guests"])).toEqual({ role: "curator", groups: ["Heads"] });
+    expect(role_by_groups(given, ["Heads", "Guests"])).toEqual({
+      role: "curator",
+      groups: ["Heads"],
+    });
   });
 
   it("groups that have no role there, and none at all, give nothing", () => {
@@ -62,16 +102,29 @@ describe("what people are called", () => {
     expect(called(person("ada", "  "))).toBe("ada");
   });
   it("names for signing in are the server's", () => {
-    expect(["a", "Ada", "ada.l@x-y_z", "4da", "a".repeat(64)].filter((name) => !is_user_name(name))).toEqual([]);
-    expect(["", ".ada", "-a", "ada l", "ädä", "a/b", "a".repeat(65)].filter(is_user_name)).toEqual([]);
+    expect(
+      ["a", "Ada", "ada.l@x-y_z", "4da", "a".repeat(64)].filter((name) => !is_user_name(name)),
+    ).toEqual([]);
+    expect(["", ".ada", "-a", "ada l", "ädä", "a/b", "a".repeat(65)].filter(is_user_name)).toEqual(
+      [],
+    );
   });
 });
 
 describe("passwords", () => {
   it("are told what is wrong with them before they are sent", () => {
-    expect(password_mistake("ada", "123456789", "123456789")).toEqual({ field: "password", kind: "too_short" });
-    expect(password_mistake("Ada.Lovelace", "ada.lovelace", "ada.lovelace")).toEqual({ field: "password", kind: "is_the_name" });
-    expect(password_mistake("ada", "1234567890", "123456789O")).toEqual({ field: "repeat", kind: "differs" });
+    expect(password_mistake("ada", "123456789", "123456789")).toEqual({
+      field: "password",
+      kind: "too_short",
+    });
+    expect(password_mistake("Ada.Lovelace", "ada.lovelace", "ada.lovelace")).toEqual({
+      field: "password",
+      kind: "is_the_name",
+    });
+    expect(password_mistake("ada", "1234567890", "123456789O")).toEqual({
+      field: "repeat",
+      kind: "differs",
+    });
     expect(password_mistake("ada", "1234567890", "1234567890")).toBeNull();
   });
   it("a character is one, however many bytes it takes", () => {
@@ -86,8 +139,20 @@ describe("passwords", () => {
 
 describe("roles", () => {
   it("nobody makes another owner, nor gives more than they have", () => {
-    expect(roles_to_give("owner")).toEqual(["guest", "viewer", "annotator", "curator", "administrator"]);
-    expect(roles_to_give("administrator")).toEqual(["guest", "viewer", "annotator", "curator", "administrator"]);
+    expect(roles_to_give("owner")).toEqual([
+      "guest",
+      "viewer",
+      "annotator",
+      "curator",
+      "administrator",
+    ]);
+    expect(roles_to_give("administrator")).toEqual([
+      "guest",
+      "viewer",
+      "annotator",
+      "curator",
+      "administrator",
+    ]);
     expect(roles_to_give("curator")).toEqual(["guest", "viewer", "annotator", "curator"]);
   });
   it("a token may have what its person has", () => {
@@ -97,22 +162,33 @@ describe("roles", () => {
     expect(roles_of_tokens_in("annotator")).toEqual(["viewer", "annotator"]);
   });
   it("administrators and the owner look after people", () => {
-    expect((["viewer", "annotator", "curator", "administrator", "owner"] as const).filter(may_administer)).toEqual(["administrator", "owner"]);
+    expect(
+      (["viewer", "annotator", "curator", "administrator", "owner"] as const).filter(
+        may_administer,
+      ),
+    ).toEqual(["administrator", "owner"]);
   });
   it("nobody changes themselves, the owner, or whoever may do as much", () => {
     const administrator = { user: "bea", role: "administrator" } as const;
     expect(may_change(administrator, person("ada"))).toBe(true);
     expect(may_change(administrator, person("bea", "", { role: "administrator" }))).toBe(false);
     expect(may_change(administrator, person("carl", "", { role: "administrator" }))).toBe(false);
-    expect(may_change({ user: "owner", role: "owner" }, person("carl", "", { role: "administrator" }))).toBe(true);
+    expect(
+      may_change({ user: "owner", role: "owner" }, person("carl", "", { role: "administrator" })),
+    ).toBe(true);
     expect(may_change(administrator, person("owner", "", { role: "owner" }))).toBe(false);
     expect(may_change({ user: "carl", role: "curator" }, administrator)).toBe(false);
   });
 });
 
 describe("finding people", () => {
-  const people = [person("ada", "Ada Lovelace"), person("grace.h", "Grace Hopper", { role: "curator" }), person("o.a@dig", "Olga Adler", { state: "disabled" })];
-  const found = (text: string): string[] => find_people(people, text, ({ role, state }) => `${role} ${state}`).map(({ user }) => user);
+  const people = [
+    person("ada", "Ada Lovelace"),
+    person("grace.h", "Grace Hopper", { role: "curator" }),
+    person("o.a@dig", "Olga Adler", { state: "disabled" }),
+  ];
+  const found = (text: string): string[] =>
+    find_people(people, text, ({ role, state }) => `${role} ${state}`).map(({ user }) => user);
   it("by the beginnings of their names, in any case, and by what they may do", () => {
     expect(found("")).toEqual(["ada", "grace.h", "o.a@dig"]);
     expect(found("AD")).toEqual(["ada", "o.a@dig"]);
@@ -131,14 +207,38 @@ describe("browsers", () => {
   };
   it.each([
     ["Mozilla/5.0 (X11; Linux x86_64; rv:128.0) Gecko/20100101 Firefox/128.0", "Firefox on Linux"],
-    ["Mozilla/5.0 (Windows NT 10.0; Win64; x64) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36", "Chrome on Windows"],
-    ["Mozilla/5.0 (Windows NT 10.0; Win64; x64) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36 Edg/126.0.0.0", "Edge on Windows"],
-    ["Mozilla/5.0 (Windows NT 10.0) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36 OPR/112.0.0.0", "Opera on Windows"],
-    ["Mozilla/5.0 (Macintosh; Intel Mac OS X 10_15_7) AppleWebKit/605.1.15 (KHTML, like Gecko) Version/17.5 Safari/605.1.15", "Safari on macOS"],
-    ["Mozilla/5.0 (iPhone; CPU iPhone OS 17_5 like Mac OS X) AppleWebKit/605.1.15 (KHTML, like Gecko) Version/17.5 Mobile/15E148 Safari/604.1", "Safari on iPhone"],
-    ["Mozilla/5.0 (iPad; CPU OS 17_5 like Mac OS X) AppleWebKit/605.1.15 (KHTML, like Gecko) CriOS/126.0 Mobile/15E148 Safari/604.1", "Chrome on iPad"],
-    ["Mozilla/5.0 (Linux; Android 14; SM-S921B) AppleWebKit/537.36 (KHTML, like Gecko) SamsungBrowser/25.0 Chrome/121.0.0.0 Mobile Safari/537.36", "Samsung Internet on Android"],
-    ["Mozilla/5.0 (X11; CrOS x86_64 14541.0.0) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36", "Chrome on ChromeOS"],
+    [
+      "Mozilla/5.0 (Windows NT 10.0; Win64; x64) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36",
+      "Chrome on Windows",
+    ],
+    [
+      "Mozilla/5.0 (Windows NT 10.0; Win64; x64) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36 Edg/126.0.0.0",
+      "Edge on Windows",
+    ],
+    [
+      "Mozilla/5.0 (Windows NT 10.0) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36 OPR/112.0.0.0",
+      "Opera on Windows",
+    ],
+    [
+      "Mozilla/5.0 (Macintosh; Intel Mac OS X 10_15_7) AppleWebKit/605.1.15 (KHTML, like Gecko) Version/17.5 Safari/605.1.15",
+      "Safari on macOS",
+    ],
+    [
+      "Mozilla/5.0 (iPhone; CPU iPhone OS 17_5 like Mac OS X) AppleWebKit/605.1.15 (KHTML, like Gecko) Version/17.5 Mobile/15E148 Safari/604.1",
+      "Safari on iPhone",
+    ],
+    [
+      "Mozilla/5.0 (iPad; CPU OS 17_5 like Mac OS X) AppleWebKit/605.1.15 (KHTML, like Gecko) CriOS/126.0 Mobile/15E148 Safari/604.1",
+      "Chrome on iPad",
+    ],
+    [
+      "Mozilla/5.0 (Linux; Android 14; SM-S921B) AppleWebKit/537.36 (KHTML, like Gecko) SamsungBrowser/25.0 Chrome/121.0.0.0 Mobile Safari/537.36",
+      "Samsung Internet on Android",
+    ],
+    [
+      "Mozilla/5.0 (X11; CrOS x86_64 14541.0.0) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/126.0.0.0 Safari/537.36",
+      "Chrome on ChromeOS",
+    ],
     ["curl/7.88.1", "curl"],
     ["Mozilla/5.0", texts.account.browser("", "")],
     ["", texts.account.browser("", "")],
@@ -147,7 +247,8 @@ describe("browsers", () => {
 
 describe("moments", () => {
   const now = new Date(2026, 4, 4, 12, 0);
-  const at = (...parts: [number, number, number, number, number]): string => told_time(new Date(...parts).toISOString(), now);
+  const at = (...parts: [number, number, number, number, number]): string =>
+    told_time(new Date(...parts).toISOString(), now);
   it("are told by their day, those of late by its name", () => {
     expect(at(2026, 4, 4, 9, 5)).toBe("today, 09:05");
     expect(at(2026, 4, 3, 23, 59)).toBe("yesterday, 23:59");
@@ -165,21 +266,33 @@ describe("coming in", () => {
     expect(["", "#", "#a b", "#<x>"].map(invitation_of)).toEqual(["", "", "", ""]);
   });
   it("a pasted link of the server is opened, whatever stands around it", () => {
-    expect(login_path_of("see http://127.0.0.1:8080/login?link=3q2-7wAA, please")).toBe("/login?link=3q2-7wAA");
+    expect(login_path_of("see http://127.0.0.1:8080/login?link=3q2-7wAA, please")).toBe(
+      "/login?link=3q2-7wAA",
+    );
     expect(login_path_of("3q2-7wAAqrs")).toBeNull();
   });
   it("a refused sign-in says what does not fit, and when to go on", () => {
     expect(sign_in_problem(refusal(401), "password")).toBe(texts.sign_in.wrong);
     expect(sign_in_problem(refusal(401), "token")).toBe(texts.sign_in.token_wrong);
     expect(sign_in_problem(refusal(403, { detail: "For scripts." }), "token")).toBe("For scripts.");
-    expect(sign_in_problem(refusal(429, { detail: "Wait ten seconds." }), "password")).toBe("Wait ten seconds.");
-    expect(sign_in_problem(refusal(429, { detail: "Wait ten seconds." }), "token")).toBe("Wait ten seconds.");
+    expect(sign_in_problem(refusal(429, { detail: "Wait ten seconds." }), "password")).toBe(
+      "Wait ten seconds.",
+    );
+    expect(sign_in_problem(refusal(429, { detail: "Wait ten seconds." }), "token")).toBe(
+      "Wait ten seconds.",
+    );
     expect(sign_in_problem(refusal(0, { detail: "Away." }), "password")).toBe("Away.");
     expect(sign_in_problem(refusal(503, { detail: "It starts." }), "token")).toBe("It starts.");
   });
   it("a link is useless when the server does not know it, but not when the password is bad", () => {
-    expect([refusal(401), refusal(404), refusal(422, { field: "invitation" })].every(is_useless_link)).toBe(true);
-    expect([refusal(422, { field: "password" }), refusal(429), refusal(0), refusal(503)].some(is_useless_link)).toBe(false);
+    expect(
+      [refusal(401), refusal(404), refusal(422, { field: "invitation" })].every(is_useless_link),
+    ).toBe(true);
+    expect(
+      [refusal(422, { field: "password" }), refusal(429), refusal(0), refusal(503)].some(
+        is_useless_link,
+      ),
+    ).toBe(false);
   });
 });
 
@@ -204,21 +317,46 @@ describe("the interface", () => {
     ]);
   });
   it("brings all people, page by page", async () => {
-    const page = (from: number, to: number): Person[] => Array.from({ length: to - from }, (_, n) => person(`p${from + n}`));
+    const page = (from: number, to: number): Person[] =>
+      Array.from({ length: to - from }, (_, n) => person(`p${from + n}`));
     const next = { Link: '</api/v1/users?limit=1000&after=WyJh>; rel="next"' };
-    const { api, asked } = api_of([200, { users: page(0, 1000), total: 1200 }, next], [200, { users: page(1000, 1200), total: 1200 }]);
+    const { api, asked } = api_of(
+      [200, { users: page(0, 1000), total: 1200 }, next],
+      [200, { users: page(1000, 1200), total: 1200 }],
+    );
     expect((await api.people()).length).toBe(1200);
-    expect(asked.map(({ what }) => what)).toEqual(["GET /api/v1/users?limit=1000", "GET /api/v1/users?limit=1000&after=WyJh"]);
+    expect(asked.map(({ what }) => what)).toEqual([
+      "GET /api/v1/users?limit=1000",
+      "GET /api/v1/users?limit=1000&after=WyJh",
+    ]);
   });
   it("ends although people went away between two pages", async () => {
-    const { api } = api_of([200, { users: [person("a")], total: 3 }, { Link: '</api/v1/users?after=x>; rel="next", </api/v1/users?offset=0>; rel="prev"' }], [200, { users: [], total: 1 }]);
+    const { api } = api_of(
+      [
+        200,
+        { users: [person("a")], total: 3 },
+        { Link: '</api/v1/users?after=x>; rel="next", </api/v1/users?offset=0>; rel="prev"' },
+      ],
+      [200, { users: [], total: 1 }],
+    );
     expect((await api.people()).map(({ user }) => user)).toEqual(["a"]);
   });
   it("follows no link that leads elsewhere", () => {
-    for (const link of [null, "", '<https://else.example/api/v1/users>; rel="next"', '</users>; rel="next"', '</api/v1/users>; rel="prev"']) expect(next_page(link)).toBeNull();
+    for (const link of [
+      null,
+      "",
+      '<https://else.example/api/v1/users>; rel="next"',
+      '</users>; rel="next"',
+      '</api/v1/users>; rel="prev"',
+    ])
+      expect(next_page(link)).toBeNull();
   });
   it("names the version in every change of what has one", async () => {
-    const seen: [number, unknown, Record<string, string>] = [200, { palette: {} }, { ETag: '"v7"' }];
+    const seen: [number, unknown, Record<string, string>] = [
+      200,
+      { palette: {} },
+      { ETag: '"v7"' },
+    ];
     const of_whatever_is_there: ((api: Api) => Promise<unknown>)[] = [
       (api) => api.set_title_column("units", 3),
       (api) => api.change_column("units", "depth", { name: "Depth" }),

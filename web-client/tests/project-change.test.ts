@@ -17,8 +17,13 @@ class FakeServer {
     this.meanwhile = null;
     return answer;
   };
-  change_project = async (_: number | string, change: Partial<Project>, etag: string): Promise<Project> => {
-    if (etag !== `"${this.version}"`) throw new ApiError({ status: 412, title: "Changed meanwhile" });
+  change_project = async (
+    _: number | string,
+    change: Partial<Project>,
+    etag: string,
+  ): Promise<Project> => {
+    if (etag !== `"${this.version}"`)
+      throw new ApiError({ status: 412, title: "Changed meanwhile" });
     return this.put(change);
   };
   put(change: Partial<Project>): Project {
@@ -33,19 +38,29 @@ describe("a change of a project", () => {
   it("is made of the project that this person sees", async () => {
     const server = new FakeServer();
     const seen = { ...server.now, role: "administrator" } as Project; // as lists have it
-    expect(await new ProjectChange(server, seen).save(wanted, false)).toMatchObject({ name: "Villa Giulia" });
+    expect(await new ProjectChange(server, seen).save(wanted, false)).toMatchObject({
+      name: "Villa Giulia",
+    });
     expect(server.version).toBe(2);
   });
 
   it("is not put over another's that this person has not seen, until they say so once more", async () => {
-    for (const other of [{ name: "Villa Julia" }, { description: "Mosaics" }, { require_if_match: true }]) {
+    for (const other of [
+      { name: "Villa Julia" },
+      { description: "Mosaics" },
+      { require_if_match: true },
+    ]) {
       const server = new FakeServer();
       const change = new ProjectChange(server, { ...server.now });
       server.put(other);
       expect(await change.save(wanted, false)).toBeNull();
       expect(server.now).toMatchObject(other);
       expect(change.name).toBe(server.now.name);
-      expect(await change.save(wanted, false)).toMatchObject({ name: "Villa Giulia", description: "Frescoes", require_if_match: false });
+      expect(await change.save(wanted, false)).toMatchObject({
+        name: "Villa Giulia",
+        description: "Frescoes",
+        require_if_match: false,
+      });
     }
   });
 
@@ -61,7 +76,10 @@ describe("a change of a project", () => {
 
   it("says what else goes wrong", async () => {
     const server = new FakeServer();
-    server.change_project = () => Promise.reject(new ApiError({ status: 403, title: "Not allowed" }));
-    await expect(new ProjectChange(server, server.now).save(wanted, false)).rejects.toMatchObject({ status: 403 });
+    server.change_project = () =>
+      Promise.reject(new ApiError({ status: 403, title: "Not allowed" }));
+    await expect(new ProjectChange(server, server.now).save(wanted, false)).rejects.toMatchObject({
+      status: 403,
+    });
   });
 });

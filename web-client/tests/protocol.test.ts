@@ -1,4 +1,5 @@
-// The fixtures are read by the server's tests, too (tests/unit/protocol_messages_test.cpp): both must agree.
+// The fixtures are read by the server's tests, too (tests/unit/protocol_messages_test.cpp): both
+// must agree.
 import Ajv from "ajv";
 import { readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -39,12 +40,22 @@ describe("messages", () => {
       expect(passes(schema, json)).toBe(true);
     });
 
-  for (const { name, schema, json, schema_passes } of fixtures("invalid").filter((f) => f.schema !== "ClientMessage"))
+  for (const { name, schema, json, schema_passes } of fixtures("invalid").filter(
+    (f) => f.schema !== "ClientMessage",
+  ))
     it(`the invalid fixture "${name}" is ${schema_passes ? "left to the server" : "refused"}`, () => {
       expect(passes(schema, json)).toBe(schema_passes ?? false);
     });
 
-  const from_server = ["Welcome", "Applied", "Saved", "Unsaved", "LayerEvent", "ModelEvent", "RecordEvent"];
+  const from_server = [
+    "Welcome",
+    "Applied",
+    "Saved",
+    "Unsaved",
+    "LayerEvent",
+    "ModelEvent",
+    "RecordEvent",
+  ];
   for (const { name, json } of fixtures("valid").filter((f) => from_server.includes(f.schema)))
     it(`the server's message "${name}" is read`, () => {
       expect(parse_server_message(JSON.stringify(json))).toEqual(json);

@@ -6,11 +6,25 @@ type Said = { table: number; key: number; editing: boolean; take_over?: boolean 
 let said: Said[];
 let editors: RecordEditors;
 const there = (key: number, session?: string, user?: string): void =>
-  editors.on_message({ op: "record.editors", records: [{ table: 4, key, ...(session === undefined ? {} : { session }), ...(user === undefined ? {} : { user }) }] });
+  editors.on_message({
+    op: "record.editors",
+    records: [
+      {
+        table: 4,
+        key,
+        ...(session === undefined ? {} : { session }),
+        ...(user === undefined ? {} : { user }),
+      },
+    ],
+  });
 
 beforeEach(() => {
   said = [];
-  editors = new RecordEditors({ say: (what) => said.push(what), name_of: (user) => (user === "bea" ? "Bea Ost" : user), changed: () => {} });
+  editors = new RecordEditors({
+    say: (what) => said.push(what),
+    name_of: (user) => (user === "bea" ? "Bea Ost" : user),
+    changed: () => {},
+  });
   editors.joined("me", "ada");
 });
 
@@ -31,7 +45,12 @@ describe("who writes into a record", () => {
     there(7, "other", "bea");
     there(8, "window", "ada");
     there(9, "me", "ada");
-    expect([7, 8, 9, 10].map((key) => editors.other(4, key))).toEqual([{ user: "Bea Ost", is_me: false }, { user: "ada", is_me: true }, null, null]);
+    expect([7, 8, 9, 10].map((key) => editors.other(4, key))).toEqual([
+      { user: "Bea Ost", is_me: false },
+      { user: "ada", is_me: true },
+      null,
+      null,
+    ]);
     expect(editors.other(5, 7)).toBe(null);
     there(7);
     expect(editors.other(4, 7)).toBe(null);
@@ -42,7 +61,10 @@ describe("who writes into a record", () => {
     const claim = editors.claim(4, 7);
     expect([claim.other?.user, claim.lost]).toEqual(["Bea Ost", false]);
     there(7);
-    expect(said).toEqual([{ table: 4, key: 7, editing: true }, { table: 4, key: 7, editing: true }]); // prettier-ignore
+    expect(said).toEqual([
+      { table: 4, key: 7, editing: true },
+      { table: 4, key: 7, editing: true },
+    ]);
     there(7, "me", "ada");
     expect([claim.other, claim.had]).toEqual([null, true]);
   });

@@ -25,7 +25,11 @@ describe("the record that the mouse rests on", () => {
   beforeEach(() => {
     vi.useFakeTimers();
     [here, settled, changes] = [record(7), true, 0];
-    hover = new RecordHover({ here: () => here, settled: () => settled, changed: () => (changes += 1) });
+    hover = new RecordHover({
+      here: () => here,
+      settled: () => settled,
+      changed: () => (changes += 1),
+    });
   });
   afterEach(() => {
     vi.useRealTimers();
@@ -125,7 +129,18 @@ describe("records that were looked at", () => {
       asked.push(path.replace("/api/v1", ""));
       const key = Number(path.split("/").at(-1));
       const version = asked.length;
-      return new Promise((resolve) => answers.push((status = 200) => resolve(new Response(JSON.stringify(status === 200 ? { key, version, values: {} } : { status, title: "No" }), { status }))));
+      return new Promise((resolve) =>
+        answers.push((status = 200) =>
+          resolve(
+            new Response(
+              JSON.stringify(
+                status === 200 ? { key, version, values: {} } : { status, title: "No" },
+              ),
+              { status },
+            ),
+          ),
+        ),
+      );
     });
     shelf = new RecordShelf(api, () => {});
   });
@@ -167,11 +182,27 @@ describe("records that were looked at", () => {
 
 describe("what a card tells of a record", () => {
   const column = (id: number, slug: string, kind: ColumnKind = "text"): Column => ({
-    id, name: slug, slug, labels: {}, kind, required: false, unique: false, comment: "", order: id, visibility: "public",
-  }); // prettier-ignore
+    id,
+    name: slug,
+    slug,
+    labels: {},
+    kind,
+    required: false,
+    unique: false,
+    comment: "",
+    order: id,
+    visibility: "public",
+  });
   const table = {
     kind: "records" as const,
-    columns: [column(1, "name"), column(2, "photo", "picture"), column(3, "views", "picture"), column(4, "depth", "numeric"), column(5, "above", "relation"), column(6, "note")],
+    columns: [
+      column(1, "name"),
+      column(2, "photo", "picture"),
+      column(3, "views", "picture"),
+      column(4, "depth", "numeric"),
+      column(5, "above", "relation"),
+      column(6, "note"),
+    ],
   };
 
   it("is its first picture, and the columns that say something beside its name", () => {

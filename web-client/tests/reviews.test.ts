@@ -21,7 +21,10 @@ const stroke = (sequence: number, user: string): WaitingStroke => ({
 const queue_of = (strokes: WaitingStroke[]): ReviewQueue => ({
   strokes,
   total: strokes.length,
-  people: [...new Set(strokes.map(({ user }) => user))].map((user) => ({ user, strokes: strokes.filter((each) => each.user === user).length })),
+  people: [...new Set(strokes.map(({ user }) => user))].map((user) => ({
+    user,
+    strokes: strokes.filter((each) => each.user === user).length,
+  })),
 });
 
 function make(role: "annotator" | "curator") {
@@ -40,18 +43,33 @@ function make(role: "annotator" | "curator") {
   const api = {
     review_queue: async (_: string, layer: number, __: number, user: string | null) => {
       asked.push(layer);
-      const queue = queue_of(queues.get(layer)!.strokes.filter((each) => user === null || each.user === user));
+      const queue = queue_of(
+        queues.get(layer)!.strokes.filter((each) => user === null || each.user === user),
+      );
       await delays.shift();
       return queue;
     },
     review: (_: string, layer: number, decision: Review) => {
       if (refusal) return Promise.reject(refusal);
       sent.push(decision);
-      queues.set(layer, queue_of(queues.get(layer)!.strokes.filter(({ sequence, user }) => !(decision.all ?? (decision.user === user || decision.edits?.includes(sequence))))));
+      queues.set(
+        layer,
+        queue_of(
+          queues
+            .get(layer)!
+            .strokes.filter(
+              ({ sequence, user }) =>
+                !(decision.all ?? (decision.user === user || decision.edits?.includes(sequence))),
+            ),
+        ),
+      );
       return Promise.resolve({ sequence: 9, texels_changed: 0, area_m2: 0 });
     },
   } as unknown as Api;
-  const list = { all: layers, find: (id: number) => layers.find((layer) => layer.id === id) ?? null };
+  const list = {
+    all: layers,
+    find: (id: number) => layers.find((layer) => layer.id === id) ?? null,
+  };
   const reviews = new Reviews(api, "m", {
     view: {} as never,
     layers: list as never,
@@ -61,7 +79,15 @@ function make(role: "annotator" | "curator") {
     can_curate: () => role === "curator",
     changed: () => {},
   });
-  return { reviews, asked, delays, sent, queues, layers, refuse: (problem: ApiError) => (refusal = problem) };
+  return {
+    reviews,
+    asked,
+    delays,
+    sent,
+    queues,
+    layers,
+    refuse: (problem: ApiError) => (refusal = problem),
+  };
 }
 
 let told: readonly Notice[] = [];
@@ -86,7 +112,15 @@ describe("what waits for review", () => {
   it("is read once for what happens in one go, and once more when that is saved", async () => {
     vi.useFakeTimers();
     const { reviews, asked } = make("annotator");
-    for (let i = 0; i < 20; ++i) reviews.on_event({ op: "layer", event: "edited", layer_id: 1, sequence: 10 + i, user: "ben", provisional: true });
+    for (let i = 0; i < 20; ++i)
+      reviews.on_event({
+        op: "layer",
+        event: "edited",
+        layer_id: 1,
+        sequence: 10 + i,
+        user: "ben",
+        provisional: true,
+      });
     reviews.on_event({ op: "layer", event: "edited", layer_id: 2, sequence: 40, user: "ben" });
     await vi.runAllTimersAsync();
     vi.useRealTimers();
@@ -107,12 +141,21 @@ describe("what waits for review", () => {
 
   it("tells its authors what became of it, and nobody else", () => {
     const { reviews } = make("annotator");
-    const event = (user: string, authors: string[]) => ({ op: "layer" as const, event: "edited" as const, layer_id: 1, sequence: 9, user, review: { decision: "reject" as const, authors, reason: "Too wide" } });
+    const event = (user: string, authors: string[]) => ({
+      op: "layer" as const,
+      event: "edited" as const,
+      layer_id: 1,
+      sequence: 9,
+      user,
+      review: { decision: "reject" as const, authors, reason: "Too wide" },
+    });
     reviews.on_event(event("cleo", ["ben"]));
     reviews.on_event(event("ada", ["ada"]));
     expect(told).toEqual([]);
     reviews.on_event(event("cleo", ["ada", "ben"]));
-    expect(told).toMatchObject([{ kind: "problem", title: "cleo rejected what you painted on Cracks", detail: "Too wide" }]);
+    expect(told).toMatchObject([
+      { kind: "problem", title: "cleo rejected what you painted on Cracks", detail: "Too wide" },
+    ]);
     reviews.close();
   });
 
@@ -121,7 +164,9 @@ describe("what waits for review", () => {
     await reviews.load_all();
     expect(await reviews.decide(layers[0]!, { decision: "accept", user: "ben" })).toBe(true);
     expect(reviews.count).toBe(1);
-    expect(told).toMatchObject([{ kind: "success", title: "1 edit accepted", link: { label: "Take back" } }]);
+    expect(told).toMatchObject([
+      { kind: "success", title: "1 edit accepted", link: { label: "Take back" } },
+    ]);
     const { link } = told[0]!;
     if (link && "act" in link) link.act();
     expect(sent).toEqual([

@@ -26,10 +26,16 @@ class FakeHistory {
     return new URL(this.entries[this.at]!, "http://here");
   }
   readonly location = ((self: FakeHistory) => ({
-    get pathname() { return self.url.pathname; },
-    get search() { return self.url.search; },
-    get hash() { return self.url.hash; },
-  }))(this); // prettier-ignore
+    get pathname() {
+      return self.url.pathname;
+    },
+    get search() {
+      return self.url.search;
+    },
+    get hash() {
+      return self.url.hash;
+    },
+  }))(this);
 }
 
 let tab: FakeHistory;

@@ -3,7 +3,12 @@ import { describe, expect, it, vi } from "vitest";
 import { Sending } from "../src/app/sending";
 import { ApiError, type Upload } from "../src/core/api";
 
-const host = () => ({ addController: vi.fn(), removeController: vi.fn(), requestUpdate: vi.fn(), updateComplete: Promise.resolve(true) });
+const host = () => ({
+  addController: vi.fn(),
+  removeController: vi.fn(),
+  requestUpdate: vi.fn(),
+  updateComplete: Promise.resolve(true),
+});
 
 describe("what a dialog sends", () => {
   it("tells how far it is, and gives the answer", async () => {
@@ -25,7 +30,9 @@ describe("what a dialog sends", () => {
   it("keeps why it was refused, until the next", async () => {
     const sending = new Sending(host());
     const refused = new ApiError({ status: 422, title: "No", detail: "It is cut off." });
-    expect(await sending.run(() => ({ done: Promise.reject(refused), cancel: () => {} }))).toBeNull();
+    expect(
+      await sending.run(() => ({ done: Promise.reject(refused), cancel: () => {} })),
+    ).toBeNull();
     expect(sending.problem).toBe("It is cut off.");
     await sending.run(() => ({ done: Promise.resolve(1), cancel: () => {} }));
     expect(sending.problem).toBe("");
@@ -50,7 +57,9 @@ describe("what a dialog sends", () => {
   it("a request that was cancelled is no problem to tell", async () => {
     const sending = new Sending(host());
     const cancelled = new ApiError({ status: 499, title: "Cancelled" });
-    expect(await sending.run(() => ({ done: Promise.reject(cancelled), cancel: () => {} }))).toBeNull();
+    expect(
+      await sending.run(() => ({ done: Promise.reject(cancelled), cancel: () => {} })),
+    ).toBeNull();
     expect(sending.problem).toBe("");
   });
 });

@@ -11,12 +11,34 @@ import type { Layer } from "../src/core/types";
 import { FakeSocket, welcome } from "./fake-socket";
 
 const model = {
-  id: 1, name: "Pot", unit: "mm", up: "z", scale_verified: true, bounds: { min: [0, 0, 0], max: [100, 100, 100] },
-} as unknown as Welcome["model"]; // prettier-ignore
+  id: 1,
+  name: "Pot",
+  unit: "mm",
+  up: "z",
+  scale_verified: true,
+  bounds: { min: [0, 0, 0], max: [100, 100, 100] },
+} as unknown as Welcome["model"];
 const layer = (id: number, order: number): Layer => ({
-  id, model: 1, name: `L${id}`, slug: `l${id}`, kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "", labels: {}, descriptions: {},
-  palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, review: false, visibility: "public", order, sequence: 0,
-}); // prettier-ignore
+  id,
+  model: 1,
+  name: `L${id}`,
+  slug: `l${id}`,
+  kind: "numeric",
+  type: "u8",
+  resolution: 2048,
+  unit: "",
+  description: "",
+  labels: {},
+  descriptions: {},
+  palette: presence_palette("x", "#ff0000ff"),
+  opacity: 1,
+  visible: true,
+  locked: false,
+  review: false,
+  visibility: "public",
+  order,
+  sequence: 0,
+});
 
 let sockets: FakeSocket[];
 let answers: Map<string, [status: number, body: unknown]>; // by method and path
@@ -54,8 +76,12 @@ beforeEach(() => {
   kept = [];
   answers = new Map([["GET /api/v1/models/1", [200, model]]]);
   const api = new Api(async (path, init) => {
-    if (path.startsWith("/api/v1/me/") && answers.has(`${init!.method} ${path}`)) kept.push(JSON.parse(init!.body as string));
-    const [status, body] = answers.get(`${init!.method} ${path}`) ?? [500, { title: `no answer for ${init!.method} ${path}` }];
+    if (path.startsWith("/api/v1/me/") && answers.has(`${init!.method} ${path}`))
+      kept.push(JSON.parse(init!.body as string));
+    const [status, body] = answers.get(`${init!.method} ${path}`) ?? [
+      500,
+      { title: `no answer for ${init!.method} ${path}` },
+    ];
     return new Response(JSON.stringify(body), { status, headers: { ETag: '"1"' } });
   });
   session = new ModelSession(api, "1", (url, protocol) => {
@@ -106,7 +132,11 @@ describe("leaving a model", () => {
     session.gestures.tool_down({ x: 5, y: 5 });
     session.gestures.tool_move([{ x: 90, y: 5 }]);
     session.close();
-    expect(socket().of("stroke.extend").map((message) => message.path)).toEqual([[[5, 5]], [[90, 5]]]); // prettier-ignore
+    expect(
+      socket()
+        .of("stroke.extend")
+        .map((message) => message.path),
+    ).toEqual([[[5, 5]], [[90, 5]]]);
     expect(socket().of("stroke.end").length).toBe(1);
   });
 
@@ -167,26 +197,49 @@ describe("the camera in mid-stroke", () => {
     session.view.set_viewport(400, 300, 1);
     expect(session.view.camera.message()).toEqual(before);
     session.gestures.tool_up();
-    expect([session.view.camera.width, session.view.camera.height, session.view.camera.perspective]).toEqual([400, 300, true]);
+    expect([
+      session.view.camera.width,
+      session.view.camera.height,
+      session.view.camera.perspective,
+    ]).toEqual([400, 300, true]);
     session.view.standard_view("top");
     expect(session.view.camera.elevation).toBeCloseTo(Math.PI / 2);
   });
 });
 
 describe("edits of whole areas", () => {
-  const edits = () => socket().of("edit").map(({ edit }) => edit); // prettier-ignore
+  const edits = () =>
+    socket()
+      .of("edit")
+      .map(({ edit }) => edit);
 
   it("a polygon is sent with the camera that it was drawn in, which stays meanwhile", async () => {
     await open();
     session.choose_tool("polygon");
     const camera = session.view.camera.message();
-    for (const [x, y] of [[5, 5], [200, 5], [200, 200]] as const) { // prettier-ignore
+    for (const [x, y] of [
+      [5, 5],
+      [200, 5],
+      [200, 200],
+    ] as const) {
       session.gestures.tool_down({ x, y });
       session.gestures.tool_up();
       session.gestures.zoom(0.5, 9, 9);
     }
     session.tools.key("Enter");
-    expect(edits()).toEqual([{ op: "polygon", value: 1, camera, path: [[5, 5], [200, 5], [200, 200]], through: false }]); // prettier-ignore
+    expect(edits()).toEqual([
+      {
+        op: "polygon",
+        value: 1,
+        camera,
+        path: [
+          [5, 5],
+          [200, 5],
+          [200, 200],
+        ],
+        through: false,
+      },
+    ]);
     session.gestures.zoom(0.5, 9, 9);
     expect(session.view.camera.message()).not.toEqual(camera);
   });
@@ -216,11 +269,30 @@ describe("edits of whole areas", () => {
       paint();
       return socket().of("stroke.begin").at(-1)!;
     })();
-    socket().receive({ op: "applied", stroke, n: 0, sequence: 1, texels_changed: 5, area_m2: 1 } as never);
+    socket().receive({
+      op: "applied",
+      stroke,
+      n: 0,
+      sequence: 1,
+      texels_changed: 5,
+      area_m2: 1,
+    } as never);
     expect(told).toEqual([]);
-    socket().receive({ op: "applied", id, sequence: 2, texels_changed: 500, area_m2: 0.00023 } as never);
+    socket().receive({
+      op: "applied",
+      id,
+      sequence: 2,
+      texels_changed: 500,
+      area_m2: 0.00023,
+    } as never);
     expect(told).toEqual([texts.areas.changed("2.3 cm²")]);
-    socket().receive({ op: "applied", id, sequence: 2, texels_changed: 500, area_m2: 0.00023 } as never);
+    socket().receive({
+      op: "applied",
+      id,
+      sequence: 2,
+      texels_changed: 500,
+      area_m2: 0.00023,
+    } as never);
     expect(told.length).toBe(1);
   });
 
@@ -267,7 +339,12 @@ describe("roles", () => {
 
   it("who paints on a layer that is locked sends nothing more, is told once, and goes on when it is unlocked", async () => {
     const lock = (id: number, locked: boolean): void =>
-      socket().receive({ op: "layer", event: "changed", layer_id: id, layer: { ...layer(id, id - 7), locked } });
+      socket().receive({
+        op: "layer",
+        event: "changed",
+        layer_id: id,
+        layer: { ...layer(id, id - 7), locked },
+      });
     await open("annotator");
     session.choose_tool("brush");
     session.gestures.tool_down({ x: 5, y: 5 });
@@ -276,7 +353,10 @@ describe("roles", () => {
     expect(told).toEqual([texts.layers.locked]);
     expect(session.locked_target?.id).toBe(8);
     expect(session.painting.stroking).toBe(false);
-    const changes = (): string[] => socket().sent_ops().filter((op) => /^(stroke|edit|undo|redo)/.test(op));
+    const changes = (): string[] =>
+      socket()
+        .sent_ops()
+        .filter((op) => /^(stroke|edit|undo|redo)/.test(op));
     const until_now = changes();
     session.gestures.tool_move([{ x: 90, y: 5 }]);
     session.gestures.tool_up();
@@ -293,7 +373,13 @@ describe("roles", () => {
     expect(until_now.at(-1)).toBe("stroke.end");
     expect(told).toEqual([texts.layers.locked]);
     // What was on its way is refused in the server's words: they say nothing new.
-    socket().receive({ op: "problem", title: "Locked, says the server", status: 403, detail: "in its language", field: "layer" });
+    socket().receive({
+      op: "problem",
+      title: "Locked, says the server",
+      status: 403,
+      detail: "in its language",
+      field: "layer",
+    });
     expect(told).toEqual([texts.layers.locked]);
 
     session.layers.select(session.layers.find(7)!);
@@ -317,11 +403,16 @@ describe("roles", () => {
 
   it("who may only look chooses no tool that changes anything, takes nothing back, and is told why", async () => {
     await open("viewer");
-    for (const name of ["brush", "eraser", "polygon", "lasso", "bucket", "line", "point"] as const) session.choose_tool(name);
+    for (const name of ["brush", "eraser", "polygon", "lasso", "bucket", "line", "point"] as const)
+      session.choose_tool(name);
     expect(session.tools.active).toBe("orbit");
     session.undo();
     session.redo();
-    expect(socket().sent_ops().filter((op) => op === "undo" || op === "redo")).toEqual([]);
+    expect(
+      socket()
+        .sent_ops()
+        .filter((op) => op === "undo" || op === "redo"),
+    ).toEqual([]);
     expect(told).toEqual([texts.brush.viewer_only]);
     session.choose_tool("pick");
     expect(session.tools.active).toBe("pick");
@@ -351,7 +442,12 @@ describe("roles", () => {
 
 describe("how a person shows the layers", () => {
   const kKeep = "PUT /api/v1/me/models/1/view";
-  const shown = (): unknown[] => session.layers.all.map((layer) => [layer.id, session.layers.visible(layer), session.layers.opacity(layer)]);
+  const shown = (): unknown[] =>
+    session.layers.all.map((layer) => [
+      layer.id,
+      session.layers.visible(layer),
+      session.layers.opacity(layer),
+    ]);
   const told_server = (): unknown => socket().of("layers").at(-1)?.layers;
 
   it("is kept for them alone, and what is as everybody has it is not kept", async () => {
@@ -361,7 +457,14 @@ describe("how a person shows the layers", () => {
     session.layers.set_opacity(session.layers.all[1]!, 0.4);
     expect(kept).toEqual([]);
     await vi.advanceTimersByTimeAsync(1000);
-    expect(kept).toEqual([{ layers: [{ layer: 7, visible: false }, { layer: 8, opacity: 0.4 }] }]); // prettier-ignore
+    expect(kept).toEqual([
+      {
+        layers: [
+          { layer: 7, visible: false },
+          { layer: 8, opacity: 0.4 },
+        ],
+      },
+    ]);
     session.layers.set_visible(session.layers.all[0]!, true);
     session.layers.flush();
     await settle();
@@ -377,10 +480,19 @@ describe("how a person shows the layers", () => {
     session.view.set_viewport(800, 600, 1);
     const again = (): void => {
       socket().open();
-      socket().receive({ ...welcome(), role: "viewer", model, layers: [layer(7, 0), layer(8, 1)], personal_view: { layers: [{ layer: 7, visible: false, order: 4 }, { layer: 99 }] } }); // prettier-ignore
+      socket().receive({
+        ...welcome(),
+        role: "viewer",
+        model,
+        layers: [layer(7, 0), layer(8, 1)],
+        personal_view: { layers: [{ layer: 7, visible: false, order: 4 }, { layer: 99 }] },
+      });
     };
     again();
-    expect(shown()).toEqual([[8, true, 1], [7, false, 1]]); // prettier-ignore
+    expect(shown()).toEqual([
+      [8, true, 1],
+      [7, false, 1],
+    ]);
     expect(told_server()).toEqual([{ layer: 7, visible: false, order: 4 }]);
     session.layers.set_visible(session.layers.find(7)!, true);
     await vi.advanceTimersByTimeAsync(1000); // refused: the server is away
@@ -397,22 +509,40 @@ describe("how a person shows the layers", () => {
     await open("viewer");
     answers.set(kKeep, [200, { layers: [] }]);
     session.layers.move(session.layers.all[0]!, 1);
-    expect(session.layers.all.map(({ id, order }) => [id, order])).toEqual([[8, 1], [7, 0]]); // prettier-ignore
+    expect(session.layers.all.map(({ id, order }) => [id, order])).toEqual([
+      [8, 1],
+      [7, 0],
+    ]);
     await vi.advanceTimersByTimeAsync(1000);
-    expect(kept).toEqual([{ layers: [{ layer: 8, order: 0 }, { layer: 7, order: 1 }] }]); // prettier-ignore
+    expect(kept).toEqual([
+      {
+        layers: [
+          { layer: 8, order: 0 },
+          { layer: 7, order: 1 },
+        ],
+      },
+    ]);
     expect(session.layers.has_overrides).toBe(true);
   });
 
   it("is not what a named view shows, but for what they change there", async () => {
     await open();
     answers.set(kKeep, [200, { layers: [] }]);
-    const back = session.layers.show_view({ layers: [{ layer: 7, visible: false }, { layer: 8, opacity: 0.2 }] });
+    const back = session.layers.show_view({
+      layers: [
+        { layer: 7, visible: false },
+        { layer: 8, opacity: 0.2 },
+      ],
+    });
     await vi.advanceTimersByTimeAsync(1000);
     expect(kept).toEqual([]);
     session.layers.set_visible(session.layers.find(8)!, false);
     await vi.advanceTimersByTimeAsync(1000);
     expect(kept).toEqual([{ layers: [{ layer: 8, visible: false }] }]);
     back();
-    expect(shown()).toEqual([[7, true, 1], [8, false, 1]]); // prettier-ignore
+    expect(shown()).toEqual([
+      [7, true, 1],
+      [8, false, 1],
+    ]);
   });
 });

@@ -7,31 +7,61 @@ import { likely_tolerance_mm, share_text } from "../src/app/transfer-dialog";
 import { Api } from "../src/core/api";
 import type { Job, Model } from "../src/core/types";
 
-const input: ShapeInput = { kind: "roughness", radius: "", distance: "", rays: "", absolute: false, model: "", property: "" };
+const input: ShapeInput = {
+  kind: "roughness",
+  radius: "",
+  distance: "",
+  rays: "",
+  absolute: false,
+  model: "",
+  property: "",
+};
 
 describe("a recipe from what was filled in", () => {
   it("leaves out what is empty or not of its kind", () => {
-    expect(recipe_of({ ...input, distance: "5", absolute: true, model: "7" })).toEqual({ kind: "roughness" });
+    expect(recipe_of({ ...input, distance: "5", absolute: true, model: "7" })).toEqual({
+      kind: "roughness",
+    });
     expect(recipe_of({ ...input, radius: " 2.5 " })).toEqual({ kind: "roughness", radius_mm: 2.5 });
-    expect(recipe_of({ ...input, kind: "height", absolute: true })).toEqual({ kind: "height", absolute: true });
-    expect(recipe_of({ ...input, kind: "model_distance", model: "7", distance: "30" })).toEqual({ kind: "model_distance", model: "7", distance_mm: 30 });
-    expect(recipe_of({ ...input, kind: "vertex_property", property: "pot.ply/a/b" })).toEqual({ kind: "vertex_property", source: "pot.ply", property: "a/b" });
+    expect(recipe_of({ ...input, kind: "height", absolute: true })).toEqual({
+      kind: "height",
+      absolute: true,
+    });
+    expect(recipe_of({ ...input, kind: "model_distance", model: "7", distance: "30" })).toEqual({
+      kind: "model_distance",
+      model: "7",
+      distance_mm: 30,
+    });
+    expect(recipe_of({ ...input, kind: "vertex_property", property: "pot.ply/a/b" })).toEqual({
+      kind: "vertex_property",
+      source: "pot.ply",
+      property: "a/b",
+    });
   });
   it("takes a number of rays for openness alone, within the server's bounds", () => {
     const openness = { ...input, kind: "ambient_occlusion" as const };
-    expect(recipe_of({ ...openness, rays: "256" })).toEqual({ kind: "ambient_occlusion", rays: 256 });
+    expect(recipe_of({ ...openness, rays: "256" })).toEqual({
+      kind: "ambient_occlusion",
+      rays: 256,
+    });
     expect(recipe_of({ ...input, rays: "256" })).toEqual({ kind: "roughness" });
-    for (const rays of ["15", "1025", "20.5", "many"]) expect(recipe_of({ ...openness, rays })).toMatchObject({ field: "rays" });
+    for (const rays of ["15", "1025", "20.5", "many"])
+      expect(recipe_of({ ...openness, rays })).toMatchObject({ field: "rays" });
   });
   it("names the field that is wrong", () => {
-    for (const radius of ["0", "-3", "wide"]) expect(recipe_of({ ...input, radius })).toEqual({ problem: texts.shape.bad_length, field: "radius" });
+    for (const radius of ["0", "-3", "wide"])
+      expect(recipe_of({ ...input, radius })).toEqual({
+        problem: texts.shape.bad_length,
+        field: "radius",
+      });
     expect(recipe_of({ ...input, kind: "model_distance" })).toMatchObject({ field: "model" });
     expect(recipe_of({ ...input, kind: "vertex_property" })).toMatchObject({ field: "property" });
   });
   it("has words for every kind that the server knows", () => {
     const kinds = kShapeGroups.flatMap((group) => group.kinds.map(({ kind }) => kind));
     expect(new Set(kinds).size).toBe(12);
-    for (const group of kShapeGroups) for (const { title, lead } of group.kinds) expect(title && lead).toBeTruthy();
+    for (const group of kShapeGroups)
+      for (const { title, lead } of group.kinds) expect(title && lead).toBeTruthy();
   });
 });
 
@@ -56,7 +86,13 @@ describe("work that makes layers", () => {
   let answers: Job[];
   let asked: [method: string, path: string][];
   let jobs: LayerJobs;
-  const job = (state: Job["state"], more: Partial<Job> = {}): Job => ({ id: 5, state, progress: 0.5, message: "Painting", ...more });
+  const job = (state: Job["state"], more: Partial<Job> = {}): Job => ({
+    id: 5,
+    state,
+    progress: 0.5,
+    message: "Painting",
+    ...more,
+  });
 
   beforeEach(() => {
     vi.useFakeTimers();
@@ -82,7 +118,10 @@ describe("work that makes layers", () => {
     expect(jobs.entries).toEqual([]);
   });
   it("stays with the reason when it fails, until it is dismissed", async () => {
-    answers = [job("queued"), job("failed", { problem: { title: "No boundary", status: 422, detail: "It is closed." } })];
+    answers = [
+      job("queued"),
+      job("failed", { problem: { title: "No boundary", status: 422, detail: "It is closed." } }),
+    ];
     const { done } = await jobs.compute({ name: "Rim" });
     await vi.advanceTimersByTimeAsync(400);
     expect(await done).toEqual([]);

@@ -7,29 +7,67 @@ import { kPageRows, RecordRows } from "../src/app/record-rows";
 import { Tables } from "../src/app/tables";
 import { Api, ApiError, type RecordQuery } from "../src/core/api";
 import { label_column, label_of, label_of_record, named_keys, parse_cell } from "../src/core/cells";
-import type { CellValue, Column, ColumnKind, Mark, Picked, Table, TableRecord } from "../src/core/protocol.gen";
+import type {
+  CellValue,
+  Column,
+  ColumnKind,
+  Mark,
+  Picked,
+  Table,
+  TableRecord,
+} from "../src/core/protocol.gen";
 import type { Layer } from "../src/core/types";
 
-const column = (id: number, slug: string, kind: ColumnKind = "text", more: Partial<Column> = {}): Column => ({
-  id, name: slug, slug, labels: {}, kind, required: false, unique: false, comment: "", order: id, visibility: "public", ...more,
-}); // prettier-ignore
+const column = (
+  id: number,
+  slug: string,
+  kind: ColumnKind = "text",
+  more: Partial<Column> = {},
+): Column => ({
+  id,
+  name: slug,
+  slug,
+  labels: {},
+  kind,
+  required: false,
+  unique: false,
+  comment: "",
+  order: id,
+  visibility: "public",
+  ...more,
+});
 const table = (...columns: Column[]): Table => ({
-  id: 3, project: 1, name: "Units", slug: "units", kind: "records", labels: {}, description: "", columns, records: 0, sequence: 0,
-}); // prettier-ignore
-const record = (key: number, values: Record<string, CellValue> = {}, version = 1): TableRecord => ({ key, version, values });
+  id: 3,
+  project: 1,
+  name: "Units",
+  slug: "units",
+  kind: "records",
+  labels: {},
+  description: "",
+  columns,
+  records: 0,
+  sequence: 0,
+});
+const record = (key: number, values: Record<string, CellValue> = {}, version = 1): TableRecord => ({
+  key,
+  version,
+  values,
+});
 const settle = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
 
 describe("cells", () => {
   it("hold what was typed, and nothing is guessed", () => {
     expect(parse_cell({ kind: "numeric" }, " 1.50 ")).toEqual({ value: 1.5 });
     expect(parse_cell({ kind: "numeric" }, "-2e3")).toEqual({ value: -2000 });
-    for (const text of ["1,5", "1 000", "0x10", "Infinity", "deep", ".", "1e999"]) expect(parse_cell({ kind: "numeric" }, text)).toEqual({ wrong: "number" });
+    for (const text of ["1,5", "1 000", "0x10", "Infinity", "deep", ".", "1e999"])
+      expect(parse_cell({ kind: "numeric" }, text)).toEqual({ wrong: "number" });
     expect(parse_cell({ kind: "integer" }, "7")).toEqual({ value: 7 });
     expect(parse_cell({ kind: "integer" }, "7.5")).toEqual({ wrong: "whole" });
     expect(parse_cell({ kind: "period" }, " 1560~ ")).toEqual({ value: "1560~" });
     expect(parse_cell({ kind: "text" }, " as it is ")).toEqual({ value: " as it is " });
     expect(parse_cell({ kind: "boolean" }, "false")).toEqual({ value: false });
-    for (const kind of ["text", "numeric", "date", "enumeration", "boolean"] as const) expect(parse_cell({ kind }, "")).toEqual({ value: null });
+    for (const kind of ["text", "numeric", "date", "enumeration", "boolean"] as const)
+      expect(parse_cell({ kind }, "")).toEqual({ value: null });
   });
 
   it("name the records of a relation and of a term", () => {
@@ -49,20 +87,45 @@ describe("cells", () => {
   it("of the column that tells records apart are what the record is called", () => {
     const code = column(2, "code", "text", { required: true, unique: true });
     expect(label_column(table(column(1, "note"), code))).toBe(code);
-    expect(label_column(table(column(1, "note"), column(2, "depth", "numeric")))?.slug).toBe("note");
-    expect(label_column(table(column(1, "number", "integer", { unique: true })))?.slug).toBe("number");
+    expect(label_column(table(column(1, "note"), column(2, "depth", "numeric")))?.slug).toBe(
+      "note",
+    );
+    expect(label_column(table(column(1, "number", "integer", { unique: true })))?.slug).toBe(
+      "number",
+    );
     expect(label_column(table(column(1, "above", "relation", { unique: true })))).toBeNull();
     expect(label_of_record(table(code), record(1, { code: "SU 1" }))).toBe("SU 1");
-    const titled = { ...table(code, column(1, "note"), column(3, "damage", "term", { target: 9 })), title_column: 1 };
+    const titled = {
+      ...table(code, column(1, "note"), column(3, "damage", "term", { target: 9 })),
+      title_column: 1,
+    };
     expect(label_column(titled)?.slug).toBe("note");
-    expect(label_of_record(titled, record(1, { code: "SU 1", note: null }))).toBe("SU 1"); // what has no title is called as before
-    expect(label_column({ ...titled, title_column: 77 })).toBe(code); // one that was dropped, or is not seen
+    // what has no title is called as before
+    expect(label_of_record(titled, record(1, { code: "SU 1", note: null }))).toBe("SU 1");
+    // one that was dropped, or is not seen
+    expect(label_column({ ...titled, title_column: 77 })).toBe(code);
     const by_term = { ...titled, title_column: 3 };
-    expect(label_of_record(by_term, record(1, { code: "SU 1", damage: 4 }), ["en"], (of, key) => `${of}/${key}`)).toBe("9/4");
+    expect(
+      label_of_record(
+        by_term,
+        record(1, { code: "SU 1", damage: 4 }),
+        ["en"],
+        (of, key) => `${of}/${key}`,
+      ),
+    ).toBe("9/4");
     expect(label_of_record(by_term, record(1, { code: "SU 1", damage: 4 }))).toBe("SU 1");
     const observed = table(column(1, "damage", "term", { target: 9 }), column(2, "observer"));
-    expect(label_of_record(observed, record(1, { damage: 4, observer: "Ida" }), ["en"], (of, key) => `${of}/${key}`)).toBe("9/4");
-    expect(label_column(table(column(2, "observer"), column(1, "damage", "term", { target: 9 })))?.slug).toBe("observer");
+    expect(
+      label_of_record(
+        observed,
+        record(1, { damage: 4, observer: "Ida" }),
+        ["en"],
+        (of, key) => `${of}/${key}`,
+      ),
+    ).toBe("9/4");
+    expect(
+      label_column(table(column(2, "observer"), column(1, "damage", "term", { target: 9 })))?.slug,
+    ).toBe("observer");
     expect(label_of_record(table(), record(1))).toBe("");
   });
 });
@@ -73,7 +136,8 @@ describe("the rows of a table", () => {
   let rows: RecordRows;
   let outdated: number;
 
-  const all = (total: number): TableRecord[] => Array.from({ length: total }, (_, key) => record(key, { n: key }));
+  const all = (total: number): TableRecord[] =>
+    Array.from({ length: total }, (_, key) => record(key, { n: key }));
 
   beforeEach(() => {
     asked = [];
@@ -85,7 +149,11 @@ describe("the rows of a table", () => {
           asked.push(query);
           answers.push((total, refuse) => {
             if (refuse) reject(refuse);
-            else resolve({ records: all(total).slice(query.offset, query.offset + query.limit), total });
+            else
+              resolve({
+                records: all(total).slice(query.offset, query.offset + query.limit),
+                total,
+              });
             return settle();
           });
         }),
@@ -131,7 +199,10 @@ describe("the rows of a table", () => {
     rows.want(0, 10);
     await answers[0]!(300);
     rows.set_query({ filter: "n >" });
-    await answers[1]!(0, new ApiError({ status: 422, title: "x", detail: "y", field: "filter", offset: 3 }));
+    await answers[1]!(
+      0,
+      new ApiError({ status: 422, title: "x", detail: "y", field: "filter", offset: 3 }),
+    );
     expect(rows.problem?.offset).toBe(3);
     expect(rows.row(5)?.key).toBe(5);
     rows.want(0, 10);
@@ -155,7 +226,15 @@ describe("the rows of a table", () => {
   });
 
   it("are measured anew when their lines or points change, and keep what they measured until then", async () => {
-    const cracks = [{ model: 1, coordinates: [[0, 0, 0], [1, 0, 0]] }] as Mark[]; // prettier-ignore
+    const cracks = [
+      {
+        model: 1,
+        coordinates: [
+          [0, 0, 0],
+          [1, 0, 0],
+        ],
+      },
+    ] as Mark[];
     rows.want(0, 10);
     await answers[0]!(3);
     rows.put({ ...record(1, { cracks }, 5), area_m2: 2, length_m: 1 });
@@ -177,7 +256,11 @@ describe("the rows of a table", () => {
       await answers[at]!(2500);
     }
     expect(await found).toBe(2222);
-    expect(asked.slice(1).map(({ limit, offset }) => [limit, offset])).toEqual([[1000, 0], [1000, 1000], [1000, 2000]]); // prettier-ignore
+    expect(asked.slice(1).map(({ limit, offset }) => [limit, offset])).toEqual([
+      [1000, 0],
+      [1000, 1000],
+      [1000, 2000],
+    ]);
     expect(rows.row(2222)?.key).toBe(2222);
     const missing = rows.locate(9999);
     for (let at = 4; at <= 6; ++at) {
@@ -198,14 +281,20 @@ class FakeTable {
 
   readonly api = new Api(async (path, init) => {
     this.told.push(`${init!.method} ${path.replace("/api/v1/tables/3", "")}`);
-    const answer = (status: number, body: unknown): Response => new Response(JSON.stringify(body), { status });
-    if (path.includes("/edits")) return answer(200, { edits: [{ user: "anna", time: "2024-05-02T12:00:00Z" }], total: 1 });
+    const answer = (status: number, body: unknown): Response =>
+      new Response(JSON.stringify(body), { status });
+    if (path.includes("/edits"))
+      return answer(200, { edits: [{ user: "anna", time: "2024-05-02T12:00:00Z" }], total: 1 });
     if (init!.method === "GET") return answer(200, this.stored);
     this.before_change();
     this.before_change = () => {};
     if (this.refuse) return answer(this.refuse.status, this.refuse);
-    const change = JSON.parse(init!.body as string) as { version: number; values: Record<string, CellValue> };
-    if (change.version !== this.stored.version) return answer(412, { status: 412, title: "Changed", detail: "d" });
+    const change = JSON.parse(init!.body as string) as {
+      version: number;
+      values: Record<string, CellValue>;
+    };
+    if (change.version !== this.stored.version)
+      return answer(412, { status: 412, title: "Changed", detail: "d" });
     this.write(change.values);
     return answer(200, this.stored);
   });
@@ -222,7 +311,12 @@ describe("what is written into cells", () => {
   beforeEach(() => {
     server = new FakeTable();
     row = server.stored;
-    edits = new CellEdits(server.api, { table: 3, row: () => row, put: (newest) => (row = newest), changed: () => {} });
+    edits = new CellEdits(server.api, {
+      table: 3,
+      row: () => row,
+      put: (newest) => (row = newest),
+      changed: () => {},
+    });
   });
 
   it("is shown at once, and is the table's when the server has it", async () => {
@@ -239,7 +333,11 @@ describe("what is written into cells", () => {
   });
 
   it("goes one after the other, each onto the version that the one before made", async () => {
-    const done = [edits.write(7, "depth", 2, 1), edits.write(7, "code", "SU 8", "SU 7"), edits.write(7, "depth", 3, 2)];
+    const done = [
+      edits.write(7, "depth", 2, 1),
+      edits.write(7, "code", "SU 8", "SU 7"),
+      edits.write(7, "depth", 3, 2),
+    ];
     await Promise.all(done);
     expect(server.stored.values).toEqual({ depth: 3, code: "SU 8" });
     expect(edits.open).toEqual([]);
@@ -274,7 +372,11 @@ describe("what is written into cells", () => {
   it("stays with what is wrong where the server refuses it, until it is corrected", async () => {
     server.refuse = { status: 422, title: "Bad value", detail: "Depth begins at 0." };
     await edits.write(7, "depth", -1, 1);
-    expect(edits.of(7, "depth")).toMatchObject({ state: "refused", value: -1, problem: "Depth begins at 0." });
+    expect(edits.of(7, "depth")).toMatchObject({
+      state: "refused",
+      value: -1,
+      problem: "Depth begins at 0.",
+    });
     server.refuse = null;
     await edits.write(7, "depth", 4, 1);
     expect(edits.open).toEqual([]);
@@ -295,10 +397,16 @@ describe("the names of records", () => {
       const query = new URL(path, "http://x").searchParams;
       offsets.push(query.get("offset"));
       const [limit, offset] = [Number(query.get("limit")), Number(query.get("offset"))];
-      const records = Array.from({ length: Math.min(limit, count - offset) }, (_, at) => record(offset + at, { code: at === 2 ? null : `SU ${offset + at}` }));
+      const records = Array.from({ length: Math.min(limit, count - offset) }, (_, at) =>
+        record(offset + at, { code: at === 2 ? null : `SU ${offset + at}` }),
+      );
       return new Response(JSON.stringify({ records, total: count }));
     });
-    names = new RecordNames(api, () => units, () => {}); // prettier-ignore
+    names = new RecordNames(
+      api,
+      () => units,
+      () => {},
+    );
   });
 
   it("are asked for once somebody needs one, and follow the table", async () => {
@@ -326,20 +434,47 @@ describe("the names of records", () => {
   it("stand in the alphabet, or as the terms that they are called by stand in their list", async () => {
     const called = ["Zinc", "äther", "Apple 10", "Apple 9", ""];
     const many = new Api(async () => {
-      const records = called.map((code, key) => record(key, { code: code || null, damage: [5, 7, 7, 6, null][key]! }));
+      const records = called.map((code, key) =>
+        record(key, { code: code || null, damage: [5, 7, 7, 6, null][key]! }),
+      );
       return new Response(JSON.stringify({ records, total: records.length }));
     });
     const damage = column(2, "damage", "term", { target: 9 });
     const with_terms = { ...table(units.columns[0]!, damage), id: 3 };
     let now: Table = with_terms;
-    const others = { name_of: (_: number, key: number) => ({ 5: "Salts", 6: "Cracks", 7: "Loss" })[key] ?? null, places: () => new Map([[7, 0], [5, 1], [6, 2]]) }; // prettier-ignore
-    const list = new RecordNames(many, () => now, () => {}, others);
+    const others = {
+      name_of: (_: number, key: number) => ({ 5: "Salts", 6: "Cracks", 7: "Loss" })[key] ?? null,
+      places: () =>
+        new Map([
+          [7, 0],
+          [5, 1],
+          [6, 2],
+        ]),
+    };
+    const list = new RecordNames(
+      many,
+      () => now,
+      () => {},
+      others,
+    );
     list.search("");
     await settle();
-    expect(list.search("").map(({ label }) => label)).toEqual(["Apple 9", "Apple 10", "äther", "Zinc", ""]);
+    expect(list.search("").map(({ label }) => label)).toEqual([
+      "Apple 9",
+      "Apple 10",
+      "äther",
+      "Zinc",
+      "",
+    ]);
     now = { ...with_terms, title_column: 2 };
     list.reorder();
-    expect(list.search("").map(({ key, label }) => [key, label])).toEqual([[1, "Loss"], [2, "Loss"], [0, "Salts"], [3, "Cracks"], [4, ""]]); // prettier-ignore
+    expect(list.search("").map(({ key, label }) => [key, label])).toEqual([
+      [1, "Loss"],
+      [2, "Loss"],
+      [0, "Salts"],
+      [3, "Cracks"],
+      [4, ""],
+    ]);
     expect(list.label(3)).toBe("Cracks");
   });
 
@@ -348,7 +483,9 @@ describe("the names of records", () => {
     names.search("");
     await settle();
     names.put(record(50, { code: "Below SU 1" }));
-    expect(names.search("su 1").map(({ key }) => key)).toEqual([1, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 50]);
+    expect(names.search("su 1").map(({ key }) => key)).toEqual([
+      1, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 50,
+    ]);
     expect(names.search("50").map(({ key }) => key)).toEqual([50]);
     expect(names.search("nothing of it")).toEqual([]);
   });
@@ -356,7 +493,13 @@ describe("the names of records", () => {
 
 describe("the card of a record", () => {
   const layer = { id: 8, table: 3, slug: "finds" } as Layer;
-  const picked = (value: number): Picked => ({ op: "picked", id: "x", hit: true, values: { finds: { valid: true, value } } }) as unknown as Picked;
+  const picked = (value: number): Picked =>
+    ({
+      op: "picked",
+      id: "x",
+      hit: true,
+      values: { finds: { valid: true, value } },
+    }) as unknown as Picked;
   let asked: string[];
   let area_m2: number;
   let tables: Tables;
@@ -367,9 +510,17 @@ describe("the card of a record", () => {
     const api = new Api(async (path) => {
       asked.push(path.replace("/api/v1/models/1/layers/8/records/", ""));
       const key = Number(path.split("/").at(-1));
-      return key < 9 ? new Response(JSON.stringify({ ...record(key), area_m2 })) : new Response("{}", { status: 404 });
+      return key < 9
+        ? new Response(JSON.stringify({ ...record(key), area_m2 }))
+        : new Response("{}", { status: 404 });
     });
-    tables = new Tables(api, { model_id: "1", project: () => null, highlight: () => {}, fly_to: () => {}, changed: () => {} });
+    tables = new Tables(api, {
+      model_id: "1",
+      project: () => null,
+      highlight: () => {},
+      fly_to: () => {},
+      changed: () => {},
+    });
   });
 
   it("shows what was taken from the surface, and follows its record and its area", async () => {
@@ -397,7 +548,12 @@ describe("the card of a record", () => {
     await settle();
     expect(tables.card).toBeNull();
     tables.show_card(layer, picked(3));
-    tables.show_card(layer, { op: "picked", id: "x", hit: true, values: { finds: { valid: false } } } as unknown as Picked);
+    tables.show_card(layer, {
+      op: "picked",
+      id: "x",
+      hit: true,
+      values: { finds: { valid: false } },
+    } as unknown as Picked);
     expect(tables.card).toBeNull();
     tables.show_card({ ...layer, table: undefined } as unknown as Layer, picked(3));
     expect(tables.card).toBeNull();
@@ -406,23 +562,58 @@ describe("the card of a record", () => {
 
 describe("the dialog of a column", () => {
   const wanted = (more: Partial<ColumnWanted> = {}): ColumnWanted => ({
-    name: "Depth", labels: {}, kind: "numeric", unit: "m", required: false, unique: false, comment: "", choices: ["a"], target: 4, minimum: 0, maximum: null, ...more,
-  }); // prettier-ignore
+    name: "Depth",
+    labels: {},
+    kind: "numeric",
+    unit: "m",
+    required: false,
+    unique: false,
+    comment: "",
+    choices: ["a"],
+    target: 4,
+    minimum: 0,
+    maximum: null,
+    ...more,
+  });
 
   it("sends what suits the kind", () => {
-    expect(of_kind(wanted())).toEqual({ name: "Depth", labels: {}, kind: "numeric", required: false, unique: false, comment: "", unit: "m", minimum: 0, maximum: null });
+    expect(of_kind(wanted())).toEqual({
+      name: "Depth",
+      labels: {},
+      kind: "numeric",
+      required: false,
+      unique: false,
+      comment: "",
+      unit: "m",
+      minimum: 0,
+      maximum: null,
+    });
     expect(of_kind(wanted({ kind: "enumeration" }))).toMatchObject({ choices: ["a"] });
     expect(of_kind(wanted({ kind: "relation" }))).toMatchObject({ target: 4 });
-    expect(of_kind(wanted({ kind: "text" }))).toEqual({ name: "Depth", labels: {}, kind: "text", required: false, unique: false, comment: "" });
+    expect(of_kind(wanted({ kind: "text" }))).toEqual({
+      name: "Depth",
+      labels: {},
+      kind: "text",
+      required: false,
+      unique: false,
+      comment: "",
+    });
   });
 
   it("sends of a column that is there only what differs", () => {
     const depth = column(1, "depth", "numeric", { name: "Depth", unit: "m", minimum: 0 });
     expect(column_changes(depth, wanted())).toEqual({});
-    expect(column_changes(depth, wanted({ name: "Depth below surface", minimum: null }))).toEqual({ name: "Depth below surface", minimum: null });
+    expect(column_changes(depth, wanted({ name: "Depth below surface", minimum: null }))).toEqual({
+      name: "Depth below surface",
+      minimum: null,
+    });
     expect(column_changes(depth, wanted({ kind: "text" }))).toEqual({ kind: "text" });
     const labelled = { ...depth, labels: { es: "Profundidad", de: "Tiefe" } };
-    expect(column_changes(labelled, wanted({ labels: { de: "Tiefe", es: "Profundidad" } }))).toEqual({});
-    expect(column_changes(labelled, wanted({ labels: { de: "Tiefe" } }))).toEqual({ labels: { de: "Tiefe" } });
+    expect(
+      column_changes(labelled, wanted({ labels: { de: "Tiefe", es: "Profundidad" } })),
+    ).toEqual({});
+    expect(column_changes(labelled, wanted({ labels: { de: "Tiefe" } }))).toEqual({
+      labels: { de: "Tiefe" },
+    });
   });
 });

@@ -1,7 +1,14 @@
 import { beforeEach, describe, expect, it } from "vitest";
 
 import { describe_value } from "../src/app/brush-settings";
-import { folded_at_first, path_to, rows_of, terms_with, tree_step, type TermRow } from "../src/app/term-rows";
+import {
+  folded_at_first,
+  path_to,
+  rows_of,
+  terms_with,
+  tree_step,
+  type TermRow,
+} from "../src/app/term-rows";
 import { kTermsEndings, terms_type } from "../src/app/terms-files";
 import { kMostTerms, TermTree } from "../src/app/term-tree";
 import { Api } from "../src/core/api";
@@ -11,8 +18,19 @@ import type { Column, ListedTerm } from "../src/core/protocol.gen";
 import type { Layer } from "../src/core/types";
 
 const term = (key: number, depth = 0): ListedTerm => ({
-  key, depth, code: `t${key}`, name: `Term ${key}`, label: "", labels: {}, below: 0, match: true, definition: "", uri: "", color: "#000000", pattern: "",
-}); // prettier-ignore
+  key,
+  depth,
+  code: `t${key}`,
+  name: `Term ${key}`,
+  label: "",
+  labels: {},
+  below: 0,
+  match: true,
+  definition: "",
+  uri: "",
+  color: "#000000",
+  pattern: "",
+});
 
 // 1 ─ 2 ─ 3
 //   └ 4
@@ -37,8 +55,21 @@ describe("the rows of a tree of terms", () => {
   });
 
   it("know their places among those of the same parent", () => {
-    expect(rows_of(tree, new Set()).map(({ place, of }) => [place, of])).toEqual([[1, 3], [1, 2], [1, 1], [2, 2], [2, 3], [3, 3], [1, 1]]); // prettier-ignore
-    expect(rows_of(tree, new Set([1])).map(({ place, of }) => [place, of])).toEqual([[1, 3], [2, 3], [3, 3], [1, 1]]); // prettier-ignore
+    expect(rows_of(tree, new Set()).map(({ place, of }) => [place, of])).toEqual([
+      [1, 3],
+      [1, 2],
+      [1, 1],
+      [2, 2],
+      [2, 3],
+      [3, 3],
+      [1, 1],
+    ]);
+    expect(rows_of(tree, new Set([1])).map(({ place, of }) => [place, of])).toEqual([
+      [1, 3],
+      [2, 3],
+      [3, 3],
+      [1, 1],
+    ]);
   });
 
   it("are all shown of a short list; a long one is folded, but for what leads to the chosen term", () => {
@@ -59,7 +90,8 @@ describe("the rows of a tree of terms", () => {
 describe("the keys in a tree of terms", () => {
   const folded = new Set([6]);
   const rows = rows_of(tree, folded); // 1 2 3 4 5 6
-  const step = (key: string, from: number): unknown => tree_step(key, rows, keys(rows).indexOf(from), 3);
+  const step = (key: string, from: number): unknown =>
+    tree_step(key, rows, keys(rows).indexOf(from), 3);
 
   it("go up and down, as far as there are rows", () => {
     expect(step("ArrowDown", 1)).toEqual({ at: 1 });
@@ -113,8 +145,23 @@ describe("the terms of a list", () => {
       const [limit, offset] = [Number(query.get("limit")), Number(query.get("offset"))];
       const now = count;
       await new Promise<void>((resolve) => release.push(resolve));
-      if (now < 0) return new Response(JSON.stringify({ status: 409, title: "No list of terms", detail: "It is a table of records." }), { status: 409 });
-      return new Response(JSON.stringify({ terms: Array.from({ length: Math.min(limit, now - offset) }, (_, at) => term(offset + at)), total: now }));
+      if (now < 0)
+        return new Response(
+          JSON.stringify({
+            status: 409,
+            title: "No list of terms",
+            detail: "It is a table of records.",
+          }),
+          { status: 409 },
+        );
+      return new Response(
+        JSON.stringify({
+          terms: Array.from({ length: Math.min(limit, now - offset) }, (_, at) =>
+            term(offset + at),
+          ),
+          total: now,
+        }),
+      );
     });
     terms = new TermTree(api, 3, () => {}, "es-MX");
   });
@@ -171,14 +218,35 @@ describe("the terms of a list", () => {
 });
 
 describe("a tree that is looked through", () => {
-  const term = (key: number, depth: number, name: string): ListedTerm => ({ key, depth, name }) as ListedTerm;
-  const all = [term(1, 0, "Verlust"), term(2, 1, "Abrieb"), term(3, 2, "Ölfleck"), term(4, 1, "Riss"), term(5, 0, "Auflage"), term(6, 1, "Salz")];
-  const found = (words: string): unknown[] => terms_with(all, words).map(({ key, match }) => [key, match]);
+  const term = (key: number, depth: number, name: string): ListedTerm =>
+    ({ key, depth, name }) as ListedTerm;
+  const all = [
+    term(1, 0, "Verlust"),
+    term(2, 1, "Abrieb"),
+    term(3, 2, "Ölfleck"),
+    term(4, 1, "Riss"),
+    term(5, 0, "Auflage"),
+    term(6, 1, "Salz"),
+  ];
+  const found = (words: string): unknown[] =>
+    terms_with(all, words).map(({ key, match }) => [key, match]);
 
   it("has what holds all words, whatever the accents, with what is above it", () => {
-    expect(found("olf")).toEqual([[1, false], [2, false], [3, true]]); // prettier-ignore
-    expect(found("A")).toEqual([[1, false], [2, true], [5, true], [6, true]]); // prettier-ignore
-    expect(found("ris s")).toEqual([[1, false], [4, true]]); // prettier-ignore
+    expect(found("olf")).toEqual([
+      [1, false],
+      [2, false],
+      [3, true],
+    ]);
+    expect(found("A")).toEqual([
+      [1, false],
+      [2, true],
+      [5, true],
+      [6, true],
+    ]);
+    expect(found("ris s")).toEqual([
+      [1, false],
+      [4, true],
+    ]);
     expect(found("")).toHaveLength(6);
     expect(found("nothing")).toEqual([]);
   });
@@ -186,10 +254,26 @@ describe("a tree that is looked through", () => {
 
 describe("terms", () => {
   const text = (id: number, slug: string, more: Partial<Column> = {}): Column => ({
-    id, name: slug, slug, labels: {}, kind: "text", required: false, unique: false, comment: "", order: id, visibility: "public", ...more,
-  }); // prettier-ignore
-  const columns = [text(1, "code", { required: true, unique: true }), text(2, "label"), text(3, "label-es"), text(4, "label-pt-br")];
-  const name = (values: Record<string, string>, languages: string[]): string => label_of_record({ kind: "terms", columns }, { values }, languages);
+    id,
+    name: slug,
+    slug,
+    labels: {},
+    kind: "text",
+    required: false,
+    unique: false,
+    comment: "",
+    order: id,
+    visibility: "public",
+    ...more,
+  });
+  const columns = [
+    text(1, "code", { required: true, unique: true }),
+    text(2, "label"),
+    text(3, "label-es"),
+    text(4, "label-pt-br"),
+  ];
+  const name = (values: Record<string, string>, languages: string[]): string =>
+    label_of_record({ kind: "terms", columns }, { values }, languages);
 
   it("are called by their label in the person's language, in none, or by their code", () => {
     const salt = { code: "salt", label: "Salts", "label-es": "Sales" };
@@ -200,8 +284,18 @@ describe("terms", () => {
   });
 
   it("are told by that name, whatever the layer's legend calls them", () => {
-    const palette = { ...record_palette(), points: [{ at: 1, color: "#000000ff", label: "Salts" }] };
-    const layer = { id: 7, kind: "database", type: "u16", unit: "", palette, table: 3 } as unknown as Layer;
+    const palette = {
+      ...record_palette(),
+      points: [{ at: 1, color: "#000000ff", label: "Salts" }],
+    };
+    const layer = {
+      id: 7,
+      kind: "database",
+      type: "u16",
+      unit: "",
+      palette,
+      table: 3,
+    } as unknown as Layer;
     expect(describe_value(layer, 1, { label: () => "Sales", term: () => "Sales" })).toBe("Sales");
     expect(describe_value(layer, 1, { label: () => "salt", term: () => null })).toBe("Salts");
   });
@@ -209,7 +303,8 @@ describe("terms", () => {
 
 describe("files of terms", () => {
   it("are known by their names", () => {
-    for (const name of ["stone.csv", "Stone.TSV", "a.b.txt"]) expect(terms_type(name)).toBe("text/csv");
+    for (const name of ["stone.csv", "Stone.TSV", "a.b.txt"])
+      expect(terms_type(name)).toBe("text/csv");
     for (const name of ["aat.ttl", "aat.nt"]) expect(terms_type(name)).toBe("text/turtle");
     for (const name of ["aat.rdf", "aat.xml"]) expect(terms_type(name)).toBe("application/rdf+xml");
     for (const name of ["aat.json", "csv", "terms.pdf", ""]) expect(terms_type(name)).toBeNull();

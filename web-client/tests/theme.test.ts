@@ -12,9 +12,14 @@ function colors_of(theme: "light" | "dark" | "contrast"): Map<string, string> {
   const block = (head: string): [string, string][] => {
     const start = css.indexOf(head);
     expect(start, head).toBeGreaterThanOrEqual(0);
-    return [...css.slice(start, css.indexOf("\n}", start)).matchAll(/(--[\w-]+): (#[0-9a-f]{6});/g)].map(([, name, value]) => [name!, value!]);
+    return [
+      ...css.slice(start, css.indexOf("\n}", start)).matchAll(/(--[\w-]+): (#[0-9a-f]{6});/g),
+    ].map(([, name, value]) => [name!, value!]);
   };
-  return new Map([...block("\n:root {"), ...(theme === "light" ? [] : block(`:root[data-theme="${theme}"] {`))]);
+  return new Map([
+    ...block("\n:root {"),
+    ...(theme === "light" ? [] : block(`:root[data-theme="${theme}"] {`)),
+  ]);
 }
 
 /** WCAG 2.2, contrast ratio. */
@@ -42,34 +47,63 @@ describe("themes", () => {
     ["light", 4.5, 3],
     ["dark", 4.5, 3],
     ["contrast", 7, 7],
-  ] as const)("%s: words and the lines of fields stand out from what is below them", (theme, words, lines) => {
-    const colors = colors_of(theme);
-    const ratio = (a: string, b: string): number => contrast(colors.get(a)!, colors.get(b)!);
-    for (const ground of ["--paper", "--surface", "--raised"]) {
-      for (const ink of ["--ink", "--ink-soft", "--accent", "--danger"]) expect(ratio(ink, ground), `${ink} on ${ground}`).toBeGreaterThanOrEqual(words);
-      for (const line of ["--line-strong", "--news"]) expect(ratio(line, ground), `${line} on ${ground}`).toBeGreaterThanOrEqual(lines);
-    }
-    for (const hue of ["--accent", "--calm", "--danger"]) expect(ratio(`${hue}-ink`, hue), `${hue}-ink`).toBeGreaterThanOrEqual(words);
-    for (const hue of ["--accent", "--calm", "--danger", "--warn", "--ink"])
-      expect(ratio(hue === "--ink" ? "--ink" : hue, hue === "--ink" ? "--accent-soft" : `${hue}-soft`), `${hue} on its soft ground`).toBeGreaterThanOrEqual(words);
-    expect(ratio("--surface", "--ink-soft"), "on what is as dark as soft ink").toBeGreaterThanOrEqual(words);
-    expect(ratio("--mark-light", "--mark-settled"), "on the pin of a resolved comment").toBeGreaterThanOrEqual(words);
-    expect(ratio("--on-stage", "--stage"), "on the stage").toBeGreaterThanOrEqual(words);
-  });
+  ] as const)(
+    "%s: words and the lines of fields stand out from what is below them",
+    (theme, words, lines) => {
+      const colors = colors_of(theme);
+      const ratio = (a: string, b: string): number => contrast(colors.get(a)!, colors.get(b)!);
+      for (const ground of ["--paper", "--surface", "--raised"]) {
+        for (const ink of ["--ink", "--ink-soft", "--accent", "--danger"])
+          expect(ratio(ink, ground), `${ink} on ${ground}`).toBeGreaterThanOrEqual(words);
+        for (const line of ["--line-strong", "--news"])
+          expect(ratio(line, ground), `${line} on ${ground}`).toBeGreaterThanOrEqual(lines);
+      }
+      for (const hue of ["--accent", "--calm", "--danger"])
+        expect(ratio(`${hue}-ink`, hue), `${hue}-ink`).toBeGreaterThanOrEqual(words);
+      for (const hue of ["--accent", "--calm", "--danger", "--warn", "--ink"])
+        expect(
+          ratio(hue === "--ink" ? "--ink" : hue, hue === "--ink" ? "--accent-soft" : `${hue}-soft`),
+          `${hue} on its soft ground`,
+        ).toBeGreaterThanOrEqual(words);
+      expect(
+        ratio("--surface", "--ink-soft"),
+        "on what is as dark as soft ink",
+      ).toBeGreaterThanOrEqual(words);
+      expect(
+        ratio("--mark-light", "--mark-settled"),
+        "on the pin of a resolved comment",
+      ).toBeGreaterThanOrEqual(words);
+      expect(ratio("--on-stage", "--stage"), "on the stage").toBeGreaterThanOrEqual(words);
+    },
+  );
 
   it("are the only place of colours, beside those of data", () => {
-    const kOfData = ["layer-dialog.ts: #d55e00ff", "legend.ts: #e69f00", "legend.ts: #56b4e9", "legend.ts: #009e73", "legend.ts: #cc79a7"];
-    const files = readdirSync(kApp).filter((name) => /\.(ts|css)$/.test(name) && name !== "theme.css");
+    const kOfData = [
+      "layer-dialog.ts: #d55e00ff",
+      "legend.ts: #e69f00",
+      "legend.ts: #56b4e9",
+      "legend.ts: #009e73",
+      "legend.ts: #cc79a7",
+    ];
+    const files = readdirSync(kApp).filter(
+      (name) => /\.(ts|css)$/.test(name) && name !== "theme.css",
+    );
     const found = files.flatMap((name) => {
-      const code = readFileSync(join(kApp, name), "utf8").replace(/\/\*[^]*?\*\//g, "").replace(/\/\/.*/g, "");
-      return [...code.matchAll(/#[0-9a-f]{3,8}\b|\b(?:rgb|hsl)a?\(/gi)].map(([color]) => `${name}: ${color}`);
+      const code = readFileSync(join(kApp, name), "utf8")
+        .replace(/\/\*[^]*?\*\//g, "")
+        .replace(/\/\/.*/g, "");
+      return [...code.matchAll(/#[0-9a-f]{3,8}\b|\b(?:rgb|hsl)a?\(/gi)].map(
+        ([color]) => `${name}: ${color}`,
+      );
     });
     expect(found.filter((each) => !kOfData.includes(each))).toEqual([]);
   });
 
   it("set the strength of all lines in their colours", () => {
     const files = readdirSync(kApp).filter((name) => name.endsWith(".ts"));
-    const found = files.filter((name) => /\d(px)? (solid|dashed) var\(--line\)/.test(readFileSync(join(kApp, name), "utf8")));
+    const found = files.filter((name) =>
+      /\d(px)? (solid|dashed) var\(--line\)/.test(readFileSync(join(kApp, name), "utf8")),
+    );
     expect(found).toEqual([]);
   });
 });

@@ -11,11 +11,34 @@ import { length, subtract } from "../src/core/vector";
 import { FakeSocket, welcome } from "./fake-socket";
 
 const bounds = { min: [0, 0, 0], max: [100, 100, 100] } as const;
-const model = { id: 1, name: "Pot", unit: "mm", up: "z", scale_verified: true, bounds } as unknown as Welcome["model"];
+const model = {
+  id: 1,
+  name: "Pot",
+  unit: "mm",
+  up: "z",
+  scale_verified: true,
+  bounds,
+} as unknown as Welcome["model"];
 const layer = {
-  id: 7, model: 1, name: "L", slug: "l", kind: "numeric", type: "u8", resolution: 2048, unit: "", description: "", labels: {}, descriptions: {},
-  palette: presence_palette("x", "#ff0000ff"), opacity: 1, visible: true, locked: false, visibility: "public", order: 0, sequence: 0,
-} as unknown as Welcome["layers"][number]; // prettier-ignore
+  id: 7,
+  model: 1,
+  name: "L",
+  slug: "l",
+  kind: "numeric",
+  type: "u8",
+  resolution: 2048,
+  unit: "",
+  description: "",
+  labels: {},
+  descriptions: {},
+  palette: presence_palette("x", "#ff0000ff"),
+  opacity: 1,
+  visible: true,
+  locked: false,
+  visibility: "public",
+  order: 0,
+  sequence: 0,
+} as unknown as Welcome["layers"][number];
 const words = texts.together;
 
 let sockets: FakeSocket[];
@@ -28,8 +51,15 @@ const socket = (): FakeSocket => sockets[sockets.length - 1]!;
 const said = (): PresenceUpdate => socket().of("presence").at(-1)!;
 const own = welcome().session;
 const me: PresenceUser = { session: own, name: "owner", color: "#0072b2" };
-const bea = (more: Partial<PresenceUser> = {}): PresenceUser => ({ session: "b", name: "bea", full_name: "Bea Ost", color: "#d55e00", ...more });
-const here = (...users: PresenceUser[]): void => socket().receive({ op: "presence", users: [me, ...users] });
+const bea = (more: Partial<PresenceUser> = {}): PresenceUser => ({
+  session: "b",
+  name: "bea",
+  full_name: "Bea Ost",
+  color: "#d55e00",
+  ...more,
+});
+const here = (...users: PresenceUser[]): void =>
+  socket().receive({ op: "presence", users: [me, ...users] });
 
 /** A camera of hers, from another side. */
 function hers(azimuth: number): OrbitCamera {
@@ -40,7 +70,8 @@ function hers(azimuth: number): OrbitCamera {
   camera.azimuth = azimuth;
   return camera;
 }
-const far_from = (camera: OrbitCamera): number => length(subtract(session.view.camera.eye(), camera.eye()));
+const far_from = (camera: OrbitCamera): number =>
+  length(subtract(session.view.camera.eye(), camera.eye()));
 
 function join(): void {
   socket().open();
@@ -137,7 +168,9 @@ describe("following somebody", () => {
     follow(hers(2));
     expect(session.view.camera.half_field).toBeGreaterThan(1.5 * usual);
     vi.advanceTimersByTime(200);
-    const asked = socket().of("pick").find(({ x, y }) => x === 150 && y === 300)!; // prettier-ignore
+    const asked = socket()
+      .of("pick")
+      .find(({ x, y }) => x === 150 && y === 300)!;
     const { camera } = session.view;
     const seen = subtract(camera.eye(), camera.axes().back.map((c) => c * 40) as never);
     socket().receive({ op: "picked", id: asked.id!, hit: true, position: [...seen] });
@@ -168,23 +201,51 @@ describe("following somebody", () => {
   it("ends when they leave, and the person is told, by whichever message comes first", () => {
     follow(hers(2));
     here();
-    expect([session.together.followed, told.map(({ title }) => title)]).toEqual([null, [words.left("Bea Ost")]]);
-    socket().receive({ op: "problem", title: "Not here", status: 404, detail: "", field: "follow" });
+    expect([session.together.followed, told.map(({ title }) => title)]).toEqual([
+      null,
+      [words.left("Bea Ost")],
+    ]);
+    socket().receive({
+      op: "problem",
+      title: "Not here",
+      status: 404,
+      detail: "",
+      field: "follow",
+    });
     expect(told.length).toBe(1);
     follow(hers(2));
-    socket().receive({ op: "problem", title: "Not here", status: 404, detail: "", field: "follow" });
+    socket().receive({
+      op: "problem",
+      title: "Not here",
+      status: 404,
+      detail: "",
+      field: "follow",
+    });
     expect([session.together.followed, told.length]).toEqual([null, 1]);
   });
 
   it("that the server refuses ends, and says why", () => {
     follow(hers(2));
-    socket().receive({ op: "problem", title: "Follows you already", status: 409, detail: "They do.", field: "follow" });
-    expect([session.together.followed, told.map(({ title, detail }) => [title, detail])]).toEqual([null, [[words.refused("Bea Ost"), "They do."]]]);
+    socket().receive({
+      op: "problem",
+      title: "Follows you already",
+      status: 409,
+      detail: "They do.",
+      field: "follow",
+    });
+    expect([session.together.followed, told.map(({ title, detail }) => [title, detail])]).toEqual([
+      null,
+      [[words.refused("Bea Ost"), "They do."]],
+    ]);
   });
 
   it("of who follows this window is not offered", () => {
     here(bea({ following: own }), { session: "c", name: "carl", color: "#009e73" });
-    expect(session.together.people.map((person) => session.together.can_follow(person))).toEqual([false, false, true]);
+    expect(session.together.people.map((person) => session.together.can_follow(person))).toEqual([
+      false,
+      false,
+      true,
+    ]);
   });
 
   it("goes on after a lost connection, if they are still there", async () => {
@@ -195,7 +256,9 @@ describe("following somebody", () => {
     join();
     expect(said()).toEqual({ op: "presence", pointer: null, follow: "b" });
     here(bea({ camera: hers(1).message() }));
-    expect([session.together.followed?.session, far_from(hers(1)) < 1e-6, told.length > 1]).toEqual(["b", true, false]);
+    expect([session.together.followed?.session, far_from(hers(1)) < 1e-6, told.length > 1]).toEqual(
+      ["b", true, false],
+    );
   });
 });
 
@@ -276,14 +339,25 @@ describe("what others see of the pointer", () => {
     socket().receive({ op: "picked", id: socket().of("pick").at(-1)!.id!, hit: true, position });
     vi.advanceTimersByTime(200);
     const { camera } = session.view;
-    expect(said().radius).toBeCloseTo(session.painting.radius_window_px() * camera.unit_per_pixel(camera.depth_of(position)), 9);
+    expect(said().radius).toBeCloseTo(
+      session.painting.radius_window_px() * camera.unit_per_pixel(camera.depth_of(position)),
+      9,
+    );
     // What lies there may be known later than the place is told.
     session.gestures.hover({ x: 402, y: 300 });
     vi.advanceTimersByTime(200);
     const nearer: [number, number, number] = [50, 20, 60];
-    socket().receive({ op: "picked", id: socket().of("pick").at(-1)!.id!, hit: true, position: nearer });
+    socket().receive({
+      op: "picked",
+      id: socket().of("pick").at(-1)!.id!,
+      hit: true,
+      position: nearer,
+    });
     vi.advanceTimersByTime(200);
-    expect(said().radius).toBeCloseTo(session.painting.radius_window_px() * camera.unit_per_pixel(camera.depth_of(nearer)), 9);
+    expect(said().radius).toBeCloseTo(
+      session.painting.radius_window_px() * camera.unit_per_pixel(camera.depth_of(nearer)),
+      9,
+    );
     session.choose_tool("orbit");
     session.gestures.hover({ x: 401, y: 300 });
     vi.advanceTimersByTime(200);

@@ -8,7 +8,12 @@ import { Api } from "../src/core/api";
 import type { Tool, ToolShape } from "../src/core/protocol.gen";
 import { in_square, likely_part, to_shape, type ShapePart } from "../src/core/shape";
 
-const tool = (id: number, name: string): Tool => ({ id, name, slug: name.toLowerCase(), deleted: false });
+const tool = (id: number, name: string): Tool => ({
+  id,
+  name,
+  slug: name.toLowerCase(),
+  deleted: false,
+});
 
 describe("the shapes that all people share", () => {
   let asked: [string, string][];
@@ -23,9 +28,15 @@ describe("the shapes that all people share", () => {
     answer = { tools: [tool(1, "Star"), tool(2, "Leaf")], total: 2 };
     const api = new Api(async (path, init) => {
       asked.push([init!.method!, path]);
-      return new Response(init!.method === "DELETE" ? null : JSON.stringify(answer), { status: init!.method === "DELETE" ? 204 : 200 });
+      return new Response(init!.method === "DELETE" ? null : JSON.stringify(answer), {
+        status: init!.method === "DELETE" ? 204 : 200,
+      });
     });
-    shapes = new ToolShapes(api, { chosen: () => chosen, choose: (shape) => (chosen = shape), changed: () => {} });
+    shapes = new ToolShapes(api, {
+      chosen: () => chosen,
+      choose: (shape) => (chosen = shape),
+      changed: () => {},
+    });
   });
 
   it("are asked for once somebody looks at them, and after each new connection", async () => {
@@ -74,14 +85,29 @@ describe("the shapes that all people share", () => {
 
 describe("a picture as a shape", () => {
   /** Grey levels; a level below 0 is transparent. */
-  const pixels = (width: number, levels: number[]): { width: number; height: number; data: Uint8ClampedArray } => ({
+  const pixels = (
+    width: number,
+    levels: number[],
+  ): { width: number; height: number; data: Uint8ClampedArray } => ({
     width,
     height: levels.length / width,
-    data: new Uint8ClampedArray(levels.flatMap((level) => (level < 0 ? [0, 0, 0, 0] : [level, level, level, 255]))),
+    data: new Uint8ClampedArray(
+      levels.flatMap((level) => (level < 0 ? [0, 0, 0, 0] : [level, level, level, 255])),
+    ),
   });
 
   it("is what is opaque, or what differs from its rim", () => {
-    const ring = (outside: number, inside: number): number[] => [outside, outside, outside, outside, inside, outside, outside, outside, outside];
+    const ring = (outside: number, inside: number): number[] => [
+      outside,
+      outside,
+      outside,
+      outside,
+      inside,
+      outside,
+      outside,
+      outside,
+      outside,
+    ];
     expect(likely_part(pixels(3, ring(255, 0)))).toBe("dark");
     expect(likely_part(pixels(3, ring(0, 255)))).toBe("light");
     expect(likely_part(pixels(3, ring(-1, 0)))).toBe("opaque");
@@ -90,7 +116,9 @@ describe("a picture as a shape", () => {
   it("takes what is the part by half and more", () => {
     const alpha = (part: ShapePart, levels: number[]): number[] => {
       const picture = pixels(levels.length, levels);
-      expect(to_shape(picture, part)).toBe(picture.data.some((value, at) => at % 4 === 3 && value === 255));
+      expect(to_shape(picture, part)).toBe(
+        picture.data.some((value, at) => at % 4 === 3 && value === 255),
+      );
       return levels.map((_, at) => picture.data[4 * at + 3]!);
     };
     expect(alpha("light", [255, 128, 127, 0, -1])).toEqual([255, 255, 0, 0, 0]);

@@ -16,7 +16,9 @@ let frames: (() => void)[];
 let host: BrushHost & { begun: boolean[]; ended: number; refuse: boolean };
 const draw = (): void => frames.splice(0).forEach((frame) => frame());
 const paths = (): number[][] =>
-  messages.flatMap((message) => (message.op === "stroke.extend" ? [message.path.map(([x]) => x)] : []));
+  messages.flatMap((message) =>
+    message.op === "stroke.extend" ? [message.path.map(([x]) => x)] : [],
+  );
 
 beforeEach(() => {
   messages = [];
@@ -53,7 +55,10 @@ describe("brush", () => {
     const brush = new BrushTool("brush", host);
     brush.down({ x: 0, y: 0 });
     brush.move([{ x: 10, y: 0 }]);
-    brush.move([{ x: 20, y: 0 }, { x: 30, y: 0 }]); // prettier-ignore
+    brush.move([
+      { x: 20, y: 0 },
+      { x: 30, y: 0 },
+    ]);
     expect(paths()).toEqual([[0]]);
     draw();
     expect(paths()).toEqual([[0], [10, 20, 30]]);
@@ -68,10 +73,15 @@ describe("brush", () => {
   });
 
   it("a pen's pressure goes with its points, and is nobody else's", () => {
-    const widths = (): (readonly number[] | undefined)[] => messages.flatMap((message) => (message.op === "stroke.extend" ? [message.widths] : []));
+    const widths = (): (readonly number[] | undefined)[] =>
+      messages.flatMap((message) => (message.op === "stroke.extend" ? [message.widths] : []));
     const brush = new BrushTool("brush", host);
     brush.down({ x: 0, y: 0, pressure: 0.5 });
-    brush.move([{ x: 10, y: 0, pressure: 1 }, { x: 10, y: 0, pressure: 0.9 }, { x: 10, y: 0, pressure: 0.2 }]); // prettier-ignore
+    brush.move([
+      { x: 10, y: 0, pressure: 1 },
+      { x: 10, y: 0, pressure: 0.9 },
+      { x: 10, y: 0, pressure: 0.2 },
+    ]);
     brush.up();
     expect(widths()).toEqual([[0.25], [0.5, 0.1]]); // pressed otherwise in place, too
     messages = [];
@@ -156,7 +166,10 @@ describe("navigation and pick", () => {
     for (const tool of [new OrbitTool(navigator), new PanTool(navigator)]) {
       tool.move([{ x: 9, y: 9 }]);
       tool.down({ x: 10, y: 10 });
-      tool.move([{ x: 11, y: 12 }, { x: 15, y: 13 }]); // prettier-ignore
+      tool.move([
+        { x: 11, y: 12 },
+        { x: 15, y: 13 },
+      ]);
       tool.up();
       tool.move([{ x: 99, y: 99 }]);
     }
@@ -171,7 +184,10 @@ describe("navigation and pick", () => {
     tool.move([{ x: 12, y: 13 }]);
     tool.up();
     tool.down({ x: 50, y: 50 });
-    tool.move([{ x: 90, y: 50 }, { x: 50, y: 50 }]); // prettier-ignore
+    tool.move([
+      { x: 90, y: 50 },
+      { x: 50, y: 50 },
+    ]);
     tool.move([{ x: 70, y: 50 }]);
     tool.move([{ x: 50, y: 50 }]);
     tool.up();
@@ -185,7 +201,10 @@ describe("navigation and pick", () => {
     const picked = vi.fn();
     const tool = new PickTool(picked);
     tool.down({ x: 1, y: 2 });
-    tool.move([{ x: 3, y: 4 }, { x: 5, y: 6 }]); // prettier-ignore
+    tool.move([
+      { x: 3, y: 4 },
+      { x: 5, y: 6 },
+    ]);
     expect(picked.mock.calls).toEqual([[{ x: 1, y: 2 }], [{ x: 5, y: 6 }]]);
   });
 });
@@ -227,7 +246,13 @@ describe("outlines", () => {
     expect(outlines).toEqual([]);
     expect(outline_host.open).toBe(1);
     close(polygon);
-    expect(outlines).toEqual([[[10, 10], [100, 10], [100, 100]]]); // prettier-ignore
+    expect(outlines).toEqual([
+      [
+        [10, 10],
+        [100, 10],
+        [100, 100],
+      ],
+    ]);
     expect([outline_host.open, polygon.outline]).toEqual([0, null]);
   });
 
@@ -245,7 +270,10 @@ describe("outlines", () => {
     press(polygon, [10, 10], [100, 10], [100, 100]);
     expect(polygon.key("b")).toBe(false);
     expect(polygon.key("Backspace")).toBe(true);
-    expect(polygon.outline?.points).toEqual([[10, 10], [100, 10]]); // prettier-ignore
+    expect(polygon.outline?.points).toEqual([
+      [10, 10],
+      [100, 10],
+    ]);
     expect(polygon.key("Escape")).toBe(true);
     expect([outline_host.open, polygon.outline, outlines.length]).toEqual([0, null, 0]);
     press(polygon, [10, 10]);
@@ -274,10 +302,21 @@ describe("outlines", () => {
   it("a lasso is what the drag went round; a click is none", () => {
     const lasso = new LassoTool(outline_host);
     lasso.down({ x: 0, y: 0 });
-    lasso.move([{ x: 1, y: 0 }, { x: 50, y: 0 }, { x: 50, y: 50 }]); // prettier-ignore
+    lasso.move([
+      { x: 1, y: 0 },
+      { x: 50, y: 0 },
+      { x: 50, y: 50 },
+    ]);
     lasso.move([{ x: 0, y: 50 }]);
     lasso.up();
-    expect(outlines).toEqual([[[0, 0], [50, 0], [50, 50], [0, 50]]]); // prettier-ignore
+    expect(outlines).toEqual([
+      [
+        [0, 0],
+        [50, 0],
+        [50, 50],
+        [0, 50],
+      ],
+    ]);
     press(lasso, [5, 5]);
     expect([outlines.length, outline_host.open]).toEqual([1, 0]);
   });
@@ -286,7 +325,10 @@ describe("outlines", () => {
     const lasso = new LassoTool(outline_host);
     for (const end of [() => lasso.cancel(), () => lasso.key("Escape"), () => lasso.deactivate()]) {
       lasso.down({ x: 0, y: 0 });
-      lasso.move([{ x: 50, y: 0 }, { x: 50, y: 50 }]); // prettier-ignore
+      lasso.move([
+        { x: 50, y: 0 },
+        { x: 50, y: 50 },
+      ]);
       end();
     }
     expect([outlines.length, outline_host.open]).toEqual([0, 0]);
@@ -295,7 +337,8 @@ describe("outlines", () => {
   it("a very long lasso keeps its shape in as many points as an edit may have", () => {
     const lasso = new LassoTool(outline_host);
     lasso.down({ x: 1000, y: 0 });
-    for (let i = 1; i <= 20_000; ++i) lasso.move([{ x: 1000 * Math.cos(i / 50), y: 1000 * Math.sin(i / 50) }]);
+    for (let i = 1; i <= 20_000; ++i)
+      lasso.move([{ x: 1000 * Math.cos(i / 50), y: 1000 * Math.sin(i / 50) }]);
     lasso.up();
     expect(outlines[0]!.length).toBeGreaterThan(1000);
     expect(outlines[0]!.length).toBeLessThanOrEqual(kMostPoints);
@@ -324,10 +367,20 @@ describe("outlines", () => {
     const tool = new LineTool(outline_host);
     tool.down({ x: 0, y: 0 });
     tool.move([{ x: 4, y: 0 }]); // a hand trembles
-    tool.move([{ x: 30, y: 0 }, { x: 31, y: 0 }, { x: 60, y: 9 }]); // prettier-ignore
+    tool.move([
+      { x: 30, y: 0 },
+      { x: 31, y: 0 },
+      { x: 60, y: 9 },
+    ]);
     expect(tool.outline).toMatchObject({ area: false, pointer: null, corners: [[0, 0]] });
     tool.up();
-    expect(outlines).toEqual([[[0, 0], [30, 0], [60, 9]]]); // prettier-ignore
+    expect(outlines).toEqual([
+      [
+        [0, 0],
+        [30, 0],
+        [60, 9],
+      ],
+    ]);
     expect([outline_host.open, tool.outline]).toEqual([0, null]);
   });
 
@@ -338,11 +391,23 @@ describe("outlines", () => {
     const tool = new LineTool(outline_host);
     press(tool, [10, 10], [100, 10]);
     tool.hover({ x: 50, y: 60 });
-    expect(tool.outline).toMatchObject({ corners: [[10, 10], [100, 10]], pointer: [50, 60] }); // prettier-ignore
+    expect(tool.outline).toMatchObject({
+      corners: [
+        [10, 10],
+        [100, 10],
+      ],
+      pointer: [50, 60],
+    });
     press(tool, [100, 50]);
     expect([outlines, outline_host.open]).toEqual([[], 1]);
     end(tool);
-    expect(outlines).toEqual([[[10, 10], [100, 10], [100, 50]]]); // prettier-ignore
+    expect(outlines).toEqual([
+      [
+        [10, 10],
+        [100, 10],
+        [100, 50],
+      ],
+    ]);
     expect(outline_host.open).toBe(0);
   });
 
@@ -355,7 +420,13 @@ describe("outlines", () => {
     tool.up();
     expect(outlines).toEqual([]);
     tool.key("Enter");
-    expect(outlines).toEqual([[[10, 10], [100, 10], [150, 10]]]); // prettier-ignore
+    expect(outlines).toEqual([
+      [
+        [10, 10],
+        [100, 10],
+        [150, 10],
+      ],
+    ]);
   });
 
   it("places of a line are taken back, by a key or where a second finger came", () => {
@@ -364,7 +435,16 @@ describe("outlines", () => {
     tool.down({ x: 200, y: 10 });
     tool.move([{ x: 260, y: 10 }]);
     tool.cancel();
-    expect(tool.outline).toMatchObject({ points: [[10, 10], [100, 10]], corners: [[10, 10], [100, 10]] }); // prettier-ignore
+    expect(tool.outline).toMatchObject({
+      points: [
+        [10, 10],
+        [100, 10],
+      ],
+      corners: [
+        [10, 10],
+        [100, 10],
+      ],
+    });
     tool.key("Backspace");
     expect(tool.outline?.points).toEqual([[10, 10]]);
     tool.key("Enter");

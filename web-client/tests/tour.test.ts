@@ -21,30 +21,61 @@ describe("the steps of the tour", () => {
 describe("the card of the tour", () => {
   const card = { width: 330, height: 160 };
   const gap = 12;
-  const box = (left: number, top: number, width: number, height: number): Box => ({ left, top, width, height });
+  const box = (left: number, top: number, width: number, height: number): Box => ({
+    left,
+    top,
+    width,
+    height,
+  });
 
   it("stands on that side of the bar that has room, at the height of the thing", () => {
     const desktop = { width: 1280, height: 800 };
     const rail = box(0, 54, 58, 746);
-    expect(beside_bar(box(8, 400, 42, 42), rail, card, desktop, gap)).toMatchObject({ left: 70, top: 341 });
+    expect(beside_bar(box(8, 400, 42, 42), rail, card, desktop, gap)).toMatchObject({
+      left: 70,
+      top: 341,
+    });
     const panel = box(950, 54, 330, 746);
     expect(beside_bar(panel, panel, card, desktop, gap)).toMatchObject({ left: 608, top: 347 });
     const head = box(0, 0, 1280, 54);
-    expect(beside_bar(box(1140, 9, 36, 36), head, card, desktop, gap)).toMatchObject({ left: 938, top: 66 });
+    expect(beside_bar(box(1140, 9, 36, 36), head, card, desktop, gap)).toMatchObject({
+      left: 938,
+      top: 66,
+    });
     const phone = { width: 390, height: 844 };
     const foot = box(0, 788, 390, 56);
-    expect(beside_bar(box(80, 794, 40, 44), foot, card, phone, gap)).toMatchObject({ left: 12, top: 616 });
+    expect(beside_bar(box(80, 794, 40, 44), foot, card, phone, gap)).toMatchObject({
+      left: 12,
+      top: 616,
+    });
   });
 
   it("never covers the bar, and is lower rather than outside of the window", () => {
-    for (const frame of [{ width: 390, height: 844 }, { width: 844, height: 390 }, { width: 390, height: 240 }, { width: 1280, height: 800 }]) {
-      const bars = [box(0, 0, frame.width, 54), box(0, frame.height - 56, frame.width, 56), box(0, 0, frame.width, frame.height * 0.44)];
-      if (frame.width > 820) bars.push(box(0, 54, 58, frame.height - 54), box(frame.width - 330, 54, 330, frame.height - 54));
+    for (const frame of [
+      { width: 390, height: 844 },
+      { width: 844, height: 390 },
+      { width: 390, height: 240 },
+      { width: 1280, height: 800 },
+    ]) {
+      const bars = [
+        box(0, 0, frame.width, 54),
+        box(0, frame.height - 56, frame.width, 56),
+        box(0, 0, frame.width, frame.height * 0.44),
+      ];
+      if (frame.width > 820)
+        bars.push(
+          box(0, 54, 58, frame.height - 54),
+          box(frame.width - 330, 54, 330, frame.height - 54),
+        );
       for (const bar of bars) {
         const size = { width: Math.min(card.width, frame.width - 24), height: card.height };
         const { left, top, most_height } = beside_bar(bar, bar, size, frame, gap);
         const height = Math.min(size.height, most_height);
-        const beside = left >= bar.left + bar.width || left + size.width <= bar.left || top >= bar.top + bar.height || top + height <= bar.top;
+        const beside =
+          left >= bar.left + bar.width ||
+          left + size.width <= bar.left ||
+          top >= bar.top + bar.height ||
+          top + height <= bar.top;
         expect(beside, JSON.stringify({ frame, bar, left, top, most_height })).toBe(true);
         expect(height).toBeGreaterThan(60);
         expect(left).toBeGreaterThanOrEqual(0);
@@ -58,7 +89,10 @@ describe("the card of the tour", () => {
 
 describe("that the tour is over", () => {
   let kept: Map<string, string>;
-  const storage = (): Pick<Storage, "getItem" | "setItem"> => ({ getItem: (name) => kept.get(name) ?? null, setItem: (name, value) => void kept.set(name, value) });
+  const storage = (): Pick<Storage, "getItem" | "setItem"> => ({
+    getItem: (name) => kept.get(name) ?? null,
+    setItem: (name, value) => void kept.set(name, value),
+  });
   /** Another page of the same browser. */
   const page = async (): Promise<typeof import("../src/app/preferences")> => {
     vi.resetModules();

@@ -6,15 +6,47 @@ import { Tours } from "../src/app/tours";
 import { Api, ApiError } from "../src/core/api";
 import { kSilent_ms, state_of_kiosk } from "../src/core/kiosks";
 import type { Tour, TourEntry } from "../src/core/protocol.gen";
-import { body_of, differs, draft_of, empty_tour, is_about, language_of_field, moved, new_stop, place_of, problem_of, untranslated, without_language, writes_in } from "../src/core/tours"; // prettier-ignore
+import {
+  body_of,
+  differs,
+  draft_of,
+  empty_tour,
+  is_about,
+  language_of_field,
+  moved,
+  new_stop,
+  place_of,
+  problem_of,
+  untranslated,
+  without_language,
+  writes_in,
+} from "../src/core/tours";
 import type { TourDraft } from "../src/core/tours";
 
 const stop = (more: Partial<Tour["stops"][number]> = {}): Tour["stops"][number] => ({
-  view: "west", title: { en: "The west" }, text: {}, attract_s: 10, transition: "move", transition_s: 2, layers: [], records: [], ...more,
-}); // prettier-ignore
+  view: "west",
+  title: { en: "The west" },
+  text: {},
+  attract_s: 10,
+  transition: "move",
+  transition_s: 2,
+  layers: [],
+  records: [],
+  ...more,
+});
 const tour = (more: Partial<Tour> = {}): Tour => ({
-  id: 3, slug: "round", name: "Round", text: "", languages: ["en", "es"], idle_s: 60, stops: [stop()], user: "ada", time: "2026-05-04T12:00:00.000Z", version: 1, ...more,
-}); // prettier-ignore
+  id: 3,
+  slug: "round",
+  name: "Round",
+  text: "",
+  languages: ["en", "es"],
+  idle_s: 60,
+  stops: [stop()],
+  user: "ada",
+  time: "2026-05-04T12:00:00.000Z",
+  version: 1,
+  ...more,
+});
 const draft = (more: Partial<Tour> = {}): TourDraft => draft_of(tour(more));
 
 describe("what is moved", () => {
@@ -25,7 +57,9 @@ describe("what is moved", () => {
         const [from, to] = [a % things.length, b % things.length];
         const result = moved(things, from, to);
         expect(result[to]).toBe(things[from]);
-        expect(result.filter((each) => each !== things[from])).toEqual(things.filter((each) => each !== things[from]));
+        expect(result.filter((each) => each !== things[from])).toEqual(
+          things.filter((each) => each !== things[from]),
+        );
       }),
     );
     expect(moved([1, 2, 3], 0, 9)).toEqual([2, 3, 1]);
@@ -39,7 +73,17 @@ describe("a tour that is written", () => {
       text: "Of the pot.",
       stops: [
         stop({ text: { en: "Broken." }, transition: "cut", layers: ["cracks", "salts"] }),
-        stop({ view: "east", attract_s: 12.5, records: [{ table: "pieces", keys: [2, 1], columns: [{ column: "name" }, { column: "state", labels: { es: "Estado" } }] }] }),
+        stop({
+          view: "east",
+          attract_s: 12.5,
+          records: [
+            {
+              table: "pieces",
+              keys: [2, 1],
+              columns: [{ column: "name" }, { column: "state", labels: { es: "Estado" } }],
+            },
+          ],
+        }),
       ],
     });
     const { name, text, languages, idle_s, stops } = full;
@@ -49,7 +93,10 @@ describe("a tour that is written", () => {
 
   it("differs by what it says, not by blanks", () => {
     const before = draft();
-    const written = (title: Record<string, string>): TourDraft => ({ ...before, stops: [{ ...before.stops[0]!, title }] });
+    const written = (title: Record<string, string>): TourDraft => ({
+      ...before,
+      stops: [{ ...before.stops[0]!, title }],
+    });
     expect(differs(before, { ...before, name: " Round " })).toBe(false);
     expect(differs(before, written({ es: " ", en: "The west" }))).toBe(false);
     expect(differs(before, written({ en: "The west", es: "El oeste" }))).toBe(true);
@@ -58,21 +105,40 @@ describe("a tour that is written", () => {
   });
 
   it("begins with a language, and stops with what their views are called", () => {
-    const made = { ...empty_tour("de"), name: "Rundgang", stops: [new_stop({ slug: "west", name: "Westwand", text: "" }, "de")] };
+    const made = {
+      ...empty_tour("de"),
+      name: "Rundgang",
+      stops: [new_stop({ slug: "west", name: "Westwand", text: "" }, "de")],
+    };
     expect(problem_of(made)).toBeNull();
-    expect(body_of(made).stops[0]).toMatchObject({ view: "west", title: { de: "Westwand" }, text: {}, attract_s: 10, transition: "move", transition_s: 2 });
+    expect(body_of(made).stops[0]).toMatchObject({
+      view: "west",
+      title: { de: "Westwand" },
+      text: {},
+      attract_s: 10,
+      transition: "move",
+      transition_s: 2,
+    });
   });
 
   it("sends no words that are blank, and the seconds of a cut only where they are some", () => {
     const [first] = draft().stops;
-    const sent = body_of({ ...draft(), stops: [{ ...first!, title: { en: " The west ", es: "  " }, transition: "cut", transition_s: "x" }] }).stops[0]!;
+    const sent = body_of({
+      ...draft(),
+      stops: [
+        { ...first!, title: { en: " The west ", es: "  " }, transition: "cut", transition_s: "x" },
+      ],
+    }).stops[0]!;
     expect(sent.title).toEqual({ en: "The west" });
     expect("transition_s" in sent).toBe(false);
   });
 });
 
 describe("what is wrong with a tour", () => {
-  const of_stop = (more: object): TourDraft => ({ ...draft(), stops: [draft().stops[0]!, { ...draft().stops[0]!, ...more }] });
+  const of_stop = (more: object): TourDraft => ({
+    ...draft(),
+    stops: [draft().stops[0]!, { ...draft().stops[0]!, ...more }],
+  });
   const cases: [string, TourDraft, string, string][] = [
     ["no name", { ...draft(), name: " " }, "name", "name_missing"],
     ["no language", { ...draft(), languages: [] }, "languages", "language_missing"],
@@ -80,13 +146,21 @@ describe("what is wrong with a tour", () => {
     ["too short a rest", { ...draft(), idle_s: "29" }, "idle_s", "seconds"],
     ["a rest that is not whole", { ...draft(), idle_s: "60.5" }, "idle_s", "seconds"],
     ["a view that is gone", of_stop({ view: "" }), "stops[1].view", "view_missing"],
-    ["no title in the first language", of_stop({ title: { es: "El oeste" } }), "stops[1].title.en", "title_missing"],
+    [
+      "no title in the first language",
+      of_stop({ title: { es: "El oeste" } }),
+      "stops[1].title.en",
+      "title_missing",
+    ],
     ["no number", of_stop({ attract_s: "a while" }), "stops[1].attract_s", "seconds"],
     ["too long a flight", of_stop({ transition_s: "31" }), "stops[1].transition_s", "seconds"],
   ];
-  it.each(cases)("is told at its field: %s", (_, wrong, field, what) => expect(problem_of(wrong)).toMatchObject({ field, wrong: what }));
+  it.each(cases)("is told at its field: %s", (_, wrong, field, what) =>
+    expect(problem_of(wrong)).toMatchObject({ field, wrong: what }),
+  );
 
-  it("is not how long a cut takes", () => expect(problem_of(of_stop({ transition: "cut", transition_s: "" }))).toBeNull());
+  it("is not how long a cut takes", () =>
+    expect(problem_of(of_stop({ transition: "cut", transition_s: "" }))).toBeNull());
   it("is a stop of the server whose view is gone", () => {
     const { view: _, ...gone } = stop();
     expect(problem_of(draft({ stops: [gone] }))).toMatchObject({ field: "stops[0].view" });
@@ -95,20 +169,36 @@ describe("what is wrong with a tour", () => {
 
 describe("languages of a tour", () => {
   it("are told to be incomplete where a title is missing, or a text that the first one has", () => {
-    const of = (title: Record<string, string>, text: Record<string, string> = {}): string[] => untranslated({ ...draft().stops[0]!, title, text }, ["en", "es", "fr"]);
+    const of = (title: Record<string, string>, text: Record<string, string> = {}): string[] =>
+      untranslated({ ...draft().stops[0]!, title, text }, ["en", "es", "fr"]);
     expect(of({ en: "West", es: "Oeste", fr: "Ouest" })).toEqual([]);
     expect(of({ en: "West", es: " " })).toEqual(["es", "fr"]);
-    expect(of({ en: "West", es: "Oeste", fr: "Ouest" }, { en: "Broken.", fr: "Brisé." })).toEqual(["es"]);
+    expect(of({ en: "West", es: "Oeste", fr: "Ouest" }, { en: "Broken.", fr: "Brisé." })).toEqual([
+      "es",
+    ]);
   });
 
   it("take along all that was written in them", () => {
-    const records = [{ table: "pieces", keys: [], columns: [{ column: "state", labels: { en: "State", es: "Estado" } }] }];
-    const before = draft({ stops: [stop({ title: { en: "West", es: "Oeste" }, text: { es: "Roto." }, records })] });
+    const records = [
+      {
+        table: "pieces",
+        keys: [],
+        columns: [{ column: "state", labels: { en: "State", es: "Estado" } }],
+      },
+    ];
+    const before = draft({
+      stops: [stop({ title: { en: "West", es: "Oeste" }, text: { es: "Roto." }, records })],
+    });
     expect(writes_in(before, "es")).toBe(true);
     const after = without_language(before, "es");
     expect(writes_in(after, "es")).toBe(false);
-    expect([after.languages, JSON.stringify(body_of(after)).includes('"es"')]).toEqual([["en"], false]);
-    expect(body_of(after).stops[0]!.records![0]!.columns).toEqual([{ column: "state", labels: { en: "State" } }]);
+    expect([after.languages, JSON.stringify(body_of(after)).includes('"es"')]).toEqual([
+      ["en"],
+      false,
+    ]);
+    expect(body_of(after).stops[0]!.records![0]!.columns).toEqual([
+      { column: "state", labels: { en: "State" } },
+    ]);
   });
 });
 
@@ -117,8 +207,22 @@ describe("a refusal of the server", () => {
     expect(place_of("stops[12].title.fr")).toEqual({ stop: 12, within: "title.fr" });
     expect(place_of("stops[0]")).toEqual({ stop: 0, within: "" });
     expect(place_of("languages[1]")).toEqual({ stop: null, within: "languages[1]" });
-    expect([is_about("layers[2]", "layers"), is_about("title.fr", "title"), is_about("text", "text"), is_about("text_more", "text")]).toEqual([true, true, true, false]);
-    expect(["title.fr", "text.pt-BR", "records[0].columns[1].labels.es", "attract_s", "records[0].table", "title"].map(language_of_field)).toEqual(["fr", "pt-BR", "es", null, null, null]);
+    expect([
+      is_about("layers[2]", "layers"),
+      is_about("title.fr", "title"),
+      is_about("text", "text"),
+      is_about("text_more", "text"),
+    ]).toEqual([true, true, true, false]);
+    expect(
+      [
+        "title.fr",
+        "text.pt-BR",
+        "records[0].columns[1].labels.es",
+        "attract_s",
+        "records[0].table",
+        "title",
+      ].map(language_of_field),
+    ).toEqual(["fr", "pt-BR", "es", null, null, null]);
   });
 });
 
@@ -127,7 +231,9 @@ describe("the tours of a model", () => {
     const { stops: _, idle_s: __, ...rest } = tour();
     return { ...rest, stop_count: 1, ...more };
   };
-  const made_of = (answer: (method: string, path: string, init: RequestInit) => [number, unknown]): { tours: Tours; told: () => number } => {
+  const made_of = (
+    answer: (method: string, path: string, init: RequestInit) => [number, unknown],
+  ): { tours: Tours; told: () => number } => {
     let told = 0;
     const api = new Api(async (path, init) => {
       const [status, body] = answer(init!.method!, path.replace("/api/v1/models/1", ""), init!);
@@ -139,9 +245,13 @@ describe("the tours of a model", () => {
   it("are read, changed with the version that was read, and deleted", async () => {
     const asked: string[] = [];
     const { tours } = made_of((method, path, { headers }) => {
-      asked.push(`${method} ${path} ${(headers as Record<string, string>)["If-Match"] ?? ""}`.trim());
+      asked.push(
+        `${method} ${path} ${(headers as Record<string, string>)["If-Match"] ?? ""}`.trim(),
+      );
       if (method === "DELETE") return [204, null];
-      return method === "GET" ? [200, { tours: [entry()], total: 1 }] : [200, tour({ name: "Again", version: 2, stops: [stop(), stop()] })];
+      return method === "GET"
+        ? [200, { tours: [entry()], total: 1 }]
+        : [200, tour({ name: "Again", version: 2, stops: [stop(), stop()] })];
     });
     await tours.load();
     expect(tours.all).toEqual([entry()]);
@@ -154,7 +264,11 @@ describe("the tours of a model", () => {
 
   it("are read again where somebody changed one that was to be deleted, and are gone where it is", async () => {
     let [status, version] = [412, 2];
-    const { tours } = made_of((method) => (method === "DELETE" ? [status, { title: "No" }] : [200, { tours: [entry({ version })], total: 1 }]));
+    const { tours } = made_of((method) =>
+      method === "DELETE"
+        ? [status, { title: "No" }]
+        : [200, { tours: [entry({ version })], total: 1 }],
+    );
     await tours.load();
     version = 3;
     await expect(tours.remove(tours.all[0]!)).rejects.toThrow(ApiError);
@@ -180,7 +294,9 @@ describe("a kiosk's link", () => {
     expect(state_of_kiosk({ last_seen: ago(kSilent_ms + 1) }, now)).toBe("silent");
     expect(state_of_kiosk({ last_seen: ago(0), expires: ago(0) }, now)).toBe("expired");
     expect(state_of_kiosk({ expires: ago(-1) }, now)).toBe("unopened");
-    expect(state_of_kiosk({ revoked: ago(5), expires: ago(9), last_seen: ago(0) }, now)).toBe("revoked");
+    expect(state_of_kiosk({ revoked: ago(5), expires: ago(9), last_seen: ago(0) }, now)).toBe(
+      "revoked",
+    );
   });
 
   it("was seen so long ago, in words", () => {

@@ -1,5 +1,7 @@
-// Every screen and dialog of the page: what axe-core finds in it, in English and German; its contrast in each theme; no overflow in the longest
-// language, in four sizes of the window; keyboards begin in dialogs where it is sensible, reach every control, see where they are, stay in dialogs and come back from them.
+// Every screen and dialog of the page: what axe-core finds in it, in English and German; its
+// contrast in each theme; no overflow in the longest language, in four sizes of the window;
+// keyboards begin in dialogs where it is sensible, reach every control, see where they are, stay in
+// dialogs and come back from them.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -9,10 +11,16 @@ import { StrataServer, wait_for } from "../support/strata-server.mjs";
 import { texts_of } from "../support/texts.mjs";
 import { bea_at, make_site, screens_of } from "../support/screens.mjs";
 
-const kSizes = [[390, 844], [820, 1180], [1280, 800], [3840, 2160]];
+const kSizes = [
+  [390, 844],
+  [820, 1180],
+  [1280, 800],
+  [3840, 2160],
+];
 const kShownSizes = new Set([390, 1280]); // whose pictures are kept
 const kThemes = ["light", "dark", "contrast"];
-const output = process.env.STRATA_TEST_OUTPUT && join(process.env.STRATA_TEST_OUTPUT, "accessibility");
+const output =
+  process.env.STRATA_TEST_OUTPUT && join(process.env.STRATA_TEST_OUTPUT, "accessibility");
 if (output) mkdirSync(output, { recursive: true });
 
 const browsers = { en: await Browser.open(), de: await Browser.open({ locale: "de-DE" }) };
@@ -23,30 +31,44 @@ const wrong = [];
 let step = "start";
 
 async function check(language, { page }, screen) {
-  const found = async (what, lines) => void (await lines).forEach((line) => wrong.push(`${language}, ${screen.name}, ${what}: ${line}`));
+  const found = async (what, lines) =>
+    void (await lines).forEach((line) =>
+      wrong.push(`${language}, ${screen.name}, ${what}: ${line}`),
+    );
   for (const theme of kThemes) {
     if (language === "de" && theme !== "light") continue;
     await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
     await found(theme, findings(page, theme === "light" ? null : ["color-contrast"]));
-    if (output && theme !== "light") await page.screenshot({ path: join(output, `${theme}_${screen.name.replaceAll(/\W+/g, "_")}.png`) });
+    if (output && theme !== "light")
+      await page.screenshot({
+        path: join(output, `${theme}_${screen.name.replaceAll(/\W+/g, "_")}.png`),
+      });
   }
   await page.evaluate(() => (document.documentElement.dataset.theme = "light"));
   if (language === "de") {
     for (const [width, height] of kSizes) {
       await page.setViewportSize({ width, height });
-      await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+      await page.evaluate(
+        () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
+      );
       await found(`${width}×${height}`, overflows(page));
       if (!output || !kShownSizes.has(width)) continue;
       for (const theme of ["light", "dark"]) {
         await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
-        await page.screenshot({ path: join(output, `${width}_${screen.name.replaceAll(/\W+/g, "_")}${theme === "dark" ? "_dark" : ""}.png`) });
+        await page.screenshot({
+          path: join(
+            output,
+            `${width}_${screen.name.replaceAll(/\W+/g, "_")}${theme === "dark" ? "_dark" : ""}.png`,
+          ),
+        });
       }
       await page.evaluate(() => (document.documentElement.dataset.theme = "light"));
     }
     await page.setViewportSize({ width: 1280, height: 800 });
   }
   if (language === "en" && (await page.locator("dialog[open]").count()) > 0) {
-    if ((await active(page)) === "button.icon.quiet “Close”") wrong.push(`${language}, ${screen.name}: the keyboard begins at the cross`);
+    if ((await active(page)) === "button.icon.quiet “Close”")
+      wrong.push(`${language}, ${screen.name}: the keyboard begins at the cross`);
   }
   if (language === "en" && screen.keyboard) {
     const { unreached, unseen, stops } = await walk(page);
@@ -89,11 +111,14 @@ try {
   }
 
   step = "empty home";
-  for (const { page } of [...Object.values(browsers), bea]) await page.goto("about:blank"); // home, too, asks for a picture of a model that goes
+  // home, too, asks for a picture of a model that goes
+  for (const { page } of [...Object.values(browsers), bea]) await page.goto("about:blank");
   await server.request("DELETE", `/models/${site.model}`);
   for (const [language, browser] of Object.entries(browsers)) {
     await browser.page.goto(server.url);
-    await browser.page.getByRole("heading", { name: texts_of(language).home.empty_title, exact: true }).waitFor();
+    await browser.page
+      .getByRole("heading", { name: texts_of(language).home.empty_title, exact: true })
+      .waitFor();
     await check(language, browser, { name: "empty home", keyboard: true });
   }
 
@@ -106,7 +131,10 @@ try {
   const moves = async (key) => {
     const from = await active(page);
     await page.keyboard.press(key);
-    await wait_for(async () => (await active(page)) !== from, `${key} to move the focus from ${from}`);
+    await wait_for(
+      async () => (await active(page)) !== from,
+      `${key} to move the focus from ${from}`,
+    );
   };
   await moves("Enter");
   await moves("ArrowDown");
@@ -121,16 +149,24 @@ try {
         path.push(at);
         at = at.shadowRoot?.activeElement;
       }
-      return path.length === 0 || path[0] === document.body || path.some((each) => /-dialog$/.test(each.localName));
+      return (
+        path.length === 0 ||
+        path[0] === document.body ||
+        path.some((each) => /-dialog$/.test(each.localName))
+      );
     });
     assert.ok(inside, `Tab leaves the dialog for ${await active(page)}`);
   }
   await page.keyboard.press("Escape");
-  await wait_for(async () => (await active(page)) === before, `the focus to come back to ${before}`);
+  await wait_for(
+    async () => (await active(page)) === before,
+    `the focus to come back to ${before}`,
+  );
 
   step = "a theme is chosen and kept, and the system is followed where none is";
   const theme = () => page.evaluate(() => document.documentElement.dataset.theme);
-  const becomes = (name) => wait_for(async () => (await theme()) === name, `the theme to be ${name}`);
+  const becomes = (name) =>
+    wait_for(async () => (await theme()) === name, `the theme to be ${name}`);
   const choose_theme = async (name) => {
     await opener.click();
     await page.getByRole("menuitem", { name: "Language and theme…" }).click();
@@ -155,14 +191,21 @@ try {
 
   step = "the end";
   console.log(`${checked.length} screens checked:\n  ${checked.join("\n  ")}`);
-  if (wrong.length > 0) throw new Error(`${wrong.length} findings:\n${[...new Set(wrong)].join("\n")}`);
-  for (const browser of [...Object.values(browsers), bea]) browser.assert_no_complaints(["status of 401", "status of 404"]);
+  if (wrong.length > 0)
+    throw new Error(`${wrong.length} findings:\n${[...new Set(wrong)].join("\n")}`);
+  for (const browser of [...Object.values(browsers), bea])
+    browser.assert_no_complaints(["status of 401", "status of 404"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 } catch (error) {
-  console.log(`failed at: ${step}; findings so far:\n${[...new Set(wrong)].join("\n")}\n--- log of the server\n${server.log.slice(-30).join("\n")}`);
+  console.log(
+    `failed at: ${step}; findings so far:\n${[...new Set(wrong)].join("\n")}\n--- log of the server\n${server.log.slice(-30).join("\n")}`,
+  );
   if (process.env.STRATA_TEST_OUTPUT) {
-    for (const [name, { page }] of Object.entries({ ...browsers, bea })) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `accessibility_${name}.png`) }).catch(() => {});
+    for (const [name, { page }] of Object.entries({ ...browsers, bea }))
+      await page
+        .screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `accessibility_${name}.png`) })
+        .catch(() => {});
   }
   throw error;
 } finally {

@@ -1,4 +1,5 @@
-// What was done on a model, in the side panel: by days, with others' work as it comes, earlier lines when asked for, and where a line leads.
+// What was done on a model, in the side panel: by days, with others' work as it comes, earlier
+// lines when asked for, and where a line leads.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
@@ -13,14 +14,19 @@ let step = "start";
 const say = (text) => console.log((step = text));
 
 const shot = async ({ page }, name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 const panel = ({ page }) => page.locator("strata-activity-panel");
 const line = (who, text) => panel(who).locator("[data-activity]", { hasText: text });
 /** As somebody else than the owner. */
 const post = async ({ token }, path, body) => {
   const headers = { Authorization: `Bearer ${token}`, "Content-Type": "application/json" };
-  const answer = await fetch(`${server.url}/api/v1${path}`, { method: "POST", headers, body: JSON.stringify(body) });
+  const answer = await fetch(`${server.url}/api/v1${path}`, {
+    method: "POST",
+    headers,
+    body: JSON.stringify(body),
+  });
   assert.ok(answer.ok, `POST ${path}: ${answer.status}`);
   return answer.json();
 };
@@ -29,12 +35,23 @@ try {
   await server.start();
   const bea = await server.add_person("bea", "annotator");
   await server.json("POST", `${kBase}/layers`, {
-    name: "Finds", kind: "database", type: "u16", resolution: 2048, columns: [{ name: "Name", required: true, unique: true }],
+    name: "Finds",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    columns: [{ name: "Name", required: true, unique: true }],
     palette: { mode: "categorical", points: [{ at: 1, color: "#2c6a63" }] },
   });
   await server.json("POST", "/tables/finds/records", { values: { name: "Handle" } });
-  const { id, bounds } = await server.json("PATCH", kBase, { scale_verified: true, credit: "A museum" });
-  const place = [bounds.max[0], (bounds.min[1] + bounds.max[1]) / 2, (bounds.min[2] + bounds.max[2]) / 2];
+  const { id, bounds } = await server.json("PATCH", kBase, {
+    scale_verified: true,
+    credit: "A museum",
+  });
+  const place = [
+    bounds.max[0],
+    (bounds.min[1] + bounds.max[1]) / 2,
+    (bounds.min[2] + bounds.max[2]) / 2,
+  ];
   await ada.sign_in(server, await server.add_person("ada", "curator"));
   await phone.sign_in(server, await server.add_person("carl", "viewer"));
 
@@ -49,10 +66,19 @@ try {
   assert.match(first, /changed the model/);
 
   say("what others do comes by itself, a line for what is done in one go");
-  for (let i = 0; i < 3; ++i) await post(bea, `${kBase}/layers/finds/edits`, { op: "fill", mode: "where", where: "true", value: 1 });
+  for (let i = 0; i < 3; ++i)
+    await post(bea, `${kBase}/layers/finds/edits`, {
+      op: "fill",
+      mode: "where",
+      where: "true",
+      value: 1,
+    });
   await line(ada, "3 times").waitFor();
   assert.match(await line(ada, "3 times").textContent(), /bea\s*filled in Finds/);
-  const thread = await post(bea, `${kBase}/comments`, { text: "Is this the rim?", position: place });
+  const thread = await post(bea, `${kBase}/comments`, {
+    text: "Is this the rim?",
+    position: place,
+  });
   await line(ada, "Is this the rim?").waitFor();
   await shot(ada, "activity");
 
@@ -66,7 +92,8 @@ try {
   await shot(ada, "activity_record");
 
   say("earlier lines are shown when asked for, and those of the whole project");
-  for (let i = 0; i < 60; ++i) await post(bea, `${kBase}/comments`, { text: `Note ${i}`, position: place });
+  for (let i = 0; i < 60; ++i)
+    await post(bea, `${kBase}/comments`, { text: `Note ${i}`, position: place });
   await line(ada, "Note 59").waitFor();
   await ada.page.reload();
   await ada.drawn();
@@ -81,7 +108,8 @@ try {
   await phone.page.goto(`${server.url}/models/${id}`);
   await phone.drawn();
   const shown = panel(phone).getByRole("button", { name: "Activity" });
-  if (!(await shown.isVisible())) await phone.page.getByRole("button", { name: "Show the panel" }).click();
+  if (!(await shown.isVisible()))
+    await phone.page.getByRole("button", { name: "Show the panel" }).click();
   await shown.tap();
   await line(phone, "Note 59").scrollIntoViewIfNeeded();
   await shot(phone, "activity_phone");
@@ -92,7 +120,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ ada, phone })) await shot(who, `activity_failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ ada, phone }))
+    await shot(who, `activity_failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of [ada, phone]) await who.close();

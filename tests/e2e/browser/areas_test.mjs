@@ -1,5 +1,5 @@
-// Whole areas: polygon, lasso, fill of what is connected, fill where a condition holds. What the page shows while they are drawn,
-// what they paint, and that they are taken back.
+// Whole areas: polygon, lasso, fill of what is connected, fill where a condition holds. What the
+// page shows while they are drawn, what they paint, and that they are taken back.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
@@ -20,7 +20,8 @@ const button = (name) => page.getByRole("button", { name, exact: true });
 const radio = (name) => page.getByRole("radio", { name, exact: true });
 const magenta = () => browser.count(rgb(kMagenta));
 const shot = async (name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 
 /** Points in shares of the stage, in pixels of the page. */
@@ -48,7 +49,10 @@ async function painted(expected_px, what) {
   await wait_for(async () => (await magenta()) > expected_px * 0.5, what, 150);
   const pixels_painted = await magenta();
   console.log(`  ${what}: ${pixels_painted} pixels of ${Math.round(expected_px)}`);
-  assert.ok(Math.abs(pixels_painted / expected_px - 1) < 0.1, `${what}: ${pixels_painted} pixels instead of ${expected_px}`);
+  assert.ok(
+    Math.abs(pixels_painted / expected_px - 1) < 0.1,
+    `${what}: ${pixels_painted} pixels instead of ${expected_px}`,
+  );
 }
 async function taken_back(what) {
   await page.keyboard.press("Control+z");
@@ -57,12 +61,19 @@ async function taken_back(what) {
 }
 
 let cameras = 0; // that were sent: the number that a picture has may be older
-page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => (cameras += JSON.parse(payload).op === "camera" ? 1 : 0)));
+page.on("websocket", (socket) =>
+  socket.on("framesent", ({ payload }) => (cameras += JSON.parse(payload).op === "camera" ? 1 : 0)),
+);
 
 try {
   await server.start();
   const palette = { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Test" }] };
-  await server.json("POST", `${base}/layers`, { name: "Test", type: "u8", resolution: 4096, palette });
+  await server.json("POST", `${base}/layers`, {
+    name: "Test",
+    type: "u8",
+    resolution: 4096,
+    palette,
+  });
   for (const { id, slug } of (await server.json("GET", `${base}/layers`)).layers) {
     await server.json("PATCH", `${base}/layers/${id}`, { visible: slug === "test" });
   }
@@ -74,7 +85,12 @@ try {
   await button("Paint on Test").click();
 
   say("a polygon is closed with Enter, and its inside is painted");
-  const corners = [[0.44, 0.5], [0.56, 0.52], [0.54, 0.68], [0.46, 0.62]]; // prettier-ignore
+  const corners = [
+    [0.44, 0.5],
+    [0.56, 0.52],
+    [0.54, 0.68],
+    [0.46, 0.62],
+  ];
   await page.keyboard.press("a");
   await click(...corners);
   await browser.point(0.5, 0.6);
@@ -84,7 +100,10 @@ try {
   await page.keyboard.press("Home");
   assert.equal(await edits(), 0, "painted before it was closed");
   await page.keyboard.press("Enter");
-  await page.getByText(/m² changed\./).first().waitFor();
+  await page
+    .getByText(/m² changed\./)
+    .first()
+    .waitFor();
   await painted(await area_px(corners), "the polygon");
   assert.equal(cameras, held, "the camera moved while the outline was drawn");
   await taken_back("the polygon");
@@ -104,14 +123,20 @@ try {
 
   say("a lasso paints what the drag went round");
   await page.keyboard.press("l");
-  const round = Array.from({ length: 25 }, (_, i) => [0.5 + 0.06 * Math.cos(i / 4), 0.58 + 0.09 * Math.sin(i / 4)]);
+  const round = Array.from({ length: 25 }, (_, i) => [
+    0.5 + 0.06 * Math.cos(i / 4),
+    0.58 + 0.09 * Math.sin(i / 4),
+  ]);
   await browser.drag(round);
   await painted(await area_px(round.slice(0, 25)), "the lasso");
   await shot("lasso");
 
   say("what is connected is erased by one click, and what is not stays");
   await page.keyboard.press("b");
-  await browser.drag([[0.35, 0.6], [0.37, 0.6]]);
+  await browser.drag([
+    [0.35, 0.6],
+    [0.37, 0.6],
+  ]);
   await browser.saved();
   await away();
   const both = (await statistics("test")).area_m2;
@@ -134,7 +159,10 @@ try {
   const condition = page.getByLabel("Condition");
   await condition.fill("cracks >");
   await page.keyboard.press("Enter");
-  await page.getByRole("alert").getByText(/at character 9/).waitFor();
+  await page
+    .getByRole("alert")
+    .getByText(/at character 9/)
+    .waitFor();
   await shot("where");
   await condition.fill("not ");
   await condition.press("End");
@@ -144,7 +172,8 @@ try {
   assert.equal(await condition.inputValue(), "not cracks");
   await condition.fill("valid(cracks)");
   await button("Fill").click();
-  await page.getByRole("heading", { name: /where…/ }).waitFor({ state: "hidden" }); // closed once it is durable
+  // closed once it is durable
+  await page.getByRole("heading", { name: /where…/ }).waitFor({ state: "hidden" });
   const cracks = (await statistics("cracks")).area_m2;
   const now = (await statistics("test")).area_m2;
   assert.ok(now > cracks * 0.9, `${now} m² for cracks of ${cracks} m²`);

@@ -1,5 +1,6 @@
-// Pictures and documents of records on the page: added in the form, seen in the table and on the card of the surface, taken away, undone;
-// and a folder of photos whose names say which records they are of.
+// Pictures and documents of records on the page: added in the form, seen in the table and on the
+// card of the surface, taken away, undone; and a folder of photos whose names say which records
+// they are of.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -23,7 +24,8 @@ const form = page.locator("strata-record-dialog");
 const photos = page.locator("strata-photos-dialog");
 const card = page.locator("strata-record-card");
 const shot = async (name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 /** A picture that is all of one colour, so that two are two. */
 function photo(name, red) {
@@ -33,8 +35,18 @@ function photo(name, red) {
   writeFileSync(path, encode_png({ width: 64, height: 48, data }));
   return path;
 }
-const files = async (key) => (await server.json("GET", `${T}/records/${key}/attachments`)).attachments.map(({ name, column }) => [name, column]);
-const shown = (images) => wait_for(() => images.evaluateAll((all) => all.length > 0 && all.every((image) => image.complete && image.naturalWidth > 0)), "thumbnails to be drawn");
+const files = async (key) =>
+  (await server.json("GET", `${T}/records/${key}/attachments`)).attachments.map(
+    ({ name, column }) => [name, column],
+  );
+const shown = (images) =>
+  wait_for(
+    () =>
+      images.evaluateAll(
+        (all) => all.length > 0 && all.every((image) => image.complete && image.naturalWidth > 0),
+      ),
+    "thumbnails to be drawn",
+  );
 
 const glance = page.locator("strata-hover-card section");
 let mouse = [0, 0];
@@ -47,20 +59,49 @@ async function rest_at(x, y) {
 async function lies_beside() {
   const [stage, box] = [await browser.stage_box(), await glance.boundingBox()];
   const [x, y] = mouse;
-  assert.ok(box.x >= stage.x && box.y >= stage.y && box.x + box.width <= stage.x + stage.width && box.y + box.height <= stage.y + stage.height, "within the stage");
-  assert.ok(x < box.x || x > box.x + box.width || y < box.y || y > box.y + box.height, "not over the pointer");
+  assert.ok(
+    box.x >= stage.x &&
+      box.y >= stage.y &&
+      box.x + box.width <= stage.x + stage.width &&
+      box.y + box.height <= stage.y + stage.height,
+    "within the stage",
+  );
+  assert.ok(
+    x < box.x || x > box.x + box.width || y < box.y || y > box.y + box.height,
+    "not over the pointer",
+  );
 }
 
 try {
   await server.start();
   await server.json("POST", `${base}/layers`, {
-    name: "Finds", kind: "database", type: "u16", resolution: 2048,
-    columns: [{ name: "Code", required: true, unique: true }, { name: "Photos", kind: "picture" }, { name: "Reports", kind: "document" },
-      { name: "Depth", kind: "numeric", unit: "m" }, { name: "Note", labels: { en: "Remark" } }],
+    name: "Finds",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    columns: [
+      { name: "Code", required: true, unique: true },
+      { name: "Photos", kind: "picture" },
+      { name: "Reports", kind: "document" },
+      { name: "Depth", kind: "numeric", unit: "m" },
+      { name: "Note", labels: { en: "Remark" } },
+    ],
   });
-  await server.json("POST", `${T}/records`, { values: { code: "SU 1", depth: 1.2, note: "Charcoal and burnt clay, cut by the later pit in the north" } });
-  for (const code of ["SU 2", "SU 3"]) await server.json("POST", `${T}/records`, { values: { code } });
-  await server.json("POST", `${base}/layers/finds/edits`, { op: "fill", value: 1, mode: "where", where: "true" });
+  await server.json("POST", `${T}/records`, {
+    values: {
+      code: "SU 1",
+      depth: 1.2,
+      note: "Charcoal and burnt clay, cut by the later pit in the north",
+    },
+  });
+  for (const code of ["SU 2", "SU 3"])
+    await server.json("POST", `${T}/records`, { values: { code } });
+  await server.json("POST", `${base}/layers/finds/edits`, {
+    op: "fill",
+    value: 1,
+    mode: "where",
+    where: "true",
+  });
 
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
@@ -74,18 +115,31 @@ try {
   say("files are added in the record's form, and sent when it is saved");
   await panel.getByRole("rowheader", { name: "1", exact: true }).click();
   await button("Edit the record").click();
-  await form.getByRole("group", { name: "Photos" }).locator("input").setInputFiles([photo("north.png", 230), photo("south.png", 30)]);
+  await form
+    .getByRole("group", { name: "Photos" })
+    .locator("input")
+    .setInputFiles([photo("north.png", 230), photo("south.png", 30)]);
   await form.getByText("south.png").waitFor();
   assert.deepEqual(await files(1), [], "not yet");
   writeFileSync(join(folder, "report.pdf"), "%PDF-1.4\n% a report\n");
-  await form.getByRole("group", { name: "Reports" }).locator("input").setInputFiles(join(folder, "report.pdf"));
+  await form
+    .getByRole("group", { name: "Reports" })
+    .locator("input")
+    .setInputFiles(join(folder, "report.pdf"));
   await shot("files-waiting");
   await button("Save").click();
   await wait_for(async () => (await form.count()) === 0, "the form to close");
-  assert.deepEqual((await files(1)).sort(), [["north.png", "photos"], ["report.pdf", "reports"], ["south.png", "photos"]]);
+  assert.deepEqual((await files(1)).sort(), [
+    ["north.png", "photos"],
+    ["report.pdf", "reports"],
+    ["south.png", "photos"],
+  ]);
 
   say("the table shows pictures small, and how many files there are");
-  await wait_for(async () => (await panel.locator("img.thumbnail").count()) === 2, "two thumbnails");
+  await wait_for(
+    async () => (await panel.locator("img.thumbnail").count()) === 2,
+    "two thumbnails",
+  );
   await shown(panel.locator("img.thumbnail"));
   await panel.getByText("1 file", { exact: true }).waitFor();
   await shot("files-in-table");
@@ -93,7 +147,10 @@ try {
   say("a file that is no picture is refused by its column, and the form stays");
   await panel.getByRole("rowheader", { name: "2", exact: true }).click();
   await button("Edit the record").click();
-  await form.getByRole("group", { name: "Photos" }).locator("input").setInputFiles(join(folder, "report.pdf"));
+  await form
+    .getByRole("group", { name: "Photos" })
+    .locator("input")
+    .setInputFiles(join(folder, "report.pdf"));
   await button("Save").click();
   await form.getByRole("alert").getByText(/./).first().waitFor();
   await form.getByRole("group", { name: "Photos" }).getByText("report.pdf").waitFor();
@@ -112,7 +169,10 @@ try {
   await wait_for(async () => (await files(1)).length === 3, "the file to be back");
 
   say("the legend has the records that there are");
-  assert.deepEqual(await page.locator("strata-layer-panel .legend-classes").first().locator("li").allInnerTexts(), ["SU 1", "SU 2", "SU 3"]);
+  assert.deepEqual(
+    await page.locator("strata-layer-panel .legend-classes").first().locator("li").allInnerTexts(),
+    ["SU 1", "SU 2", "SU 3"],
+  );
 
   say("a click on the surface, while turning, shows the record with its picture");
   const box = await browser.stage_box();
@@ -123,9 +183,19 @@ try {
 
   say("a mouse that rests on a record sees it at a glance, beside the pointer");
   await button("Close the record").click();
-  await server.json("POST", `${base}/layers/finds/edits`, { op: "fill", value: 2, mode: "where", where: "x > 0" });
+  await server.json("POST", `${base}/layers/finds/edits`, {
+    op: "fill",
+    value: 2,
+    mode: "where",
+    where: "x > 0",
+  });
   const asked = [];
-  page.on("request", (request) => /\/tables\/\d+\/records\/\d+$/.test(request.url()) && asked.push(request.url().split("/").at(-1)));
+  page.on(
+    "request",
+    (request) =>
+      /\/tables\/\d+\/records\/\d+$/.test(request.url()) &&
+      asked.push(request.url().split("/").at(-1)),
+  );
   await rest_at(0.37, 0.57);
   await glance.getByText("SU 1", { exact: true }).waitFor();
   await shown(glance.locator("img"));
@@ -160,9 +230,17 @@ try {
   await glance.getByText("SU 2", { exact: true }).waitFor();
   const before = await glance.elementHandle();
   await page.mouse.wheel(0, -240);
-  await wait_for(() => before.evaluate((element) => !element.isConnected), "the glance to go as the view comes nearer");
+  await wait_for(
+    () => before.evaluate((element) => !element.isConnected),
+    "the glance to go as the view comes nearer",
+  );
   for (let steps = 0; steps < 5; ++steps) await page.mouse.wheel(0, -240);
-  for (const at of [[0.03, 0.04], [0.97, 0.04], [0.03, 0.96], [0.97, 0.96]]) {
+  for (const at of [
+    [0.03, 0.04],
+    [0.97, 0.04],
+    [0.03, 0.96],
+    [0.97, 0.96],
+  ]) {
     await rest_at(...at);
     await glance.getByText(at[0] > 0.9 ? "SU 2" : "SU 1", { exact: true }).waitFor();
     await lies_beside();
@@ -175,22 +253,37 @@ try {
   await button("More about the table").click();
   const chooser = page.waitForEvent("filechooser");
   await page.getByRole("menuitem", { name: "Add photos by their names…" }).click();
-  await (await chooser).setFiles([photo("SU-2_north_1.png", 10), photo("su 3_north_1.png", 60), photo("SU 9_north_1.png", 90), photo("IMG1.png", 99)]);
+  await (
+    await chooser
+  ).setFiles([
+    photo("SU-2_north_1.png", 10),
+    photo("su 3_north_1.png", 60),
+    photo("SU 9_north_1.png", 90),
+    photo("IMG1.png", 99),
+  ]);
   await photos.getByText("2 files have a record").waitFor();
   await photos.getByText("No such record").waitFor();
   await photos.getByText("Not named by the pattern").waitFor();
   await shot("photos-matched");
   await button("Send 2 files").click();
   await wait_for(async () => (await photos.count()) === 0, "the dialog to close");
-  assert.deepEqual([await files(2), await files(3)], [[["SU-2_north_1.png", "photos"]], [["su 3_north_1.png", "photos"]]]);
-  await wait_for(async () => (await panel.locator("img.thumbnail").count()) === 4, "their thumbnails in the table");
+  assert.deepEqual(
+    [await files(2), await files(3)],
+    [[["SU-2_north_1.png", "photos"]], [["su 3_north_1.png", "photos"]]],
+  );
+  await wait_for(
+    async () => (await panel.locator("img.thumbnail").count()) === 4,
+    "their thumbnails in the table",
+  );
 
   say("the end");
   browser.assert_no_complaints(["415", "422"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 } catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`);
+  console.log(
+    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
+  );
   await shot("attachments-failed");
   throw error;
 } finally {

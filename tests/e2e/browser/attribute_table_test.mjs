@@ -1,5 +1,6 @@
-// The table of a layer's records: ten thousand rows, sorted, written into, refused, changed by two at once, undone; new records, deleted
-// ones, columns, and CSV both ways. What the page shows is compared with what the server has.
+// The table of a layer's records: ten thousand rows, sorted, written into, refused, changed by two
+// at once, undone; new records, deleted ones, columns, and CSV both ways. What the page shows is
+// compared with what the server has.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
@@ -19,15 +20,32 @@ const button = (name) => page.getByRole("button", { name, exact: true });
 const panel = page.locator("strata-table-panel");
 const grid = panel.getByRole("grid");
 const bubble = panel.locator(".bubble");
-const dialog = page.locator("strata-record-dialog, strata-delete-record-dialog, strata-csv-dialog, strata-column-dialog");
+const dialog = page.locator(
+  "strata-record-dialog, strata-delete-record-dialog, strata-csv-dialog, strata-column-dialog",
+);
 const record = async (key) => (await server.json("GET", `${T}/records/${key}`)).values;
 const shot = async (name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 /** The cell of a column in the row of a record that is in sight. */
-const columns = ["Key", "Code", "Depth", "Period", "Dug", "Soil", "Sealed", "Note", "Above", "Area"];
+const columns = [
+  "Key",
+  "Code",
+  "Depth",
+  "Period",
+  "Dug",
+  "Soil",
+  "Sealed",
+  "Note",
+  "Above",
+  "Area",
+];
 const cell = (key, column) =>
-  panel.locator(".line", { has: page.getByRole("rowheader", { name: String(key), exact: true }) }).locator(".cell").nth(columns.indexOf(column));
+  panel
+    .locator(".line", { has: page.getByRole("rowheader", { name: String(key), exact: true }) })
+    .locator(".cell")
+    .nth(columns.indexOf(column));
 async function write(key, column, text, end = "Enter") {
   await cell(key, column).click();
   await page.keyboard.press("F2");
@@ -36,14 +54,19 @@ async function write(key, column, text, end = "Enter") {
   await page.keyboard.press(end);
 }
 async function stored(key, slug, value) {
-  await wait_for(async () => JSON.stringify((await record(key))[slug]) === JSON.stringify(value), `${slug} of ${key} to be ${JSON.stringify(value)}`);
+  await wait_for(
+    async () => JSON.stringify((await record(key))[slug]) === JSON.stringify(value),
+    `${slug} of ${key} to be ${JSON.stringify(value)}`,
+  );
 }
 async function drop_csv(name, text) {
   await panel.evaluate(
     (element, [file, body]) => {
       const dataTransfer = new DataTransfer();
       dataTransfer.items.add(new File([body], file, { type: "text/csv" }));
-      element.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, composed: true, cancelable: true }));
+      element.dispatchEvent(
+        new DragEvent("drop", { dataTransfer, bubbles: true, composed: true, cancelable: true }),
+      );
     },
     [name, text],
   );
@@ -69,14 +92,23 @@ try {
     ],
   });
   await server.json("POST", `${T}/columns`, { name: "Above", kind: "relation", target: "units" });
-  const lines = Array.from({ length: kMany }, (_, n) => `SU ${n + 1},${((n * 7) % kMany) / 100},${1500 + (n % 300)}`);
+  const lines = Array.from(
+    { length: kMany },
+    (_, n) => `SU ${n + 1},${((n * 7) % kMany) / 100},${1500 + (n % 300)}`,
+  );
   const bulk = await fetch(`${server.url}/api/v1${T}/records`, {
     method: "POST",
     headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "text/csv" },
     body: ["code,depth,period", ...lines].join("\n"),
   });
   assert.equal(bulk.status, 200);
-  await server.json("POST", `${base}/layers`, { name: "Units", kind: "database", type: "u16", table: "units", resolution: 2048 });
+  await server.json("POST", `${base}/layers`, {
+    name: "Units",
+    kind: "database",
+    type: "u16",
+    table: "units",
+    resolution: 2048,
+  });
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
@@ -103,7 +135,11 @@ try {
   await depth.getByRole("button", { name: /Depth/ }).first().click();
   assert.equal(await depth.getAttribute("aria-sort"), "descending");
   const deepest = (await server.json("GET", `${T}/records?sortby=-depth&limit=1`)).records[0];
-  await wait_for(async () => (await panel.locator(".line .cell.key").first().textContent()).trim() === String(deepest.key), "the deepest first");
+  await wait_for(
+    async () =>
+      (await panel.locator(".line .cell.key").first().textContent()).trim() === String(deepest.key),
+    "the deepest first",
+  );
   await depth.getByRole("button", { name: /Depth/ }).first().click();
   await cell(1, "Code").getByText("SU 1", { exact: true }).waitFor();
 
@@ -141,7 +177,10 @@ try {
   say("what is emptied while it is still being saved is empty in the end");
   const version = async () => (await server.json("GET", `${T}/records/2`)).version;
   const before = await version();
-  await wait_for(async () => !(await cell(2, "Note").getAttribute("class")).includes("saving"), "the page to know that it is stored");
+  await wait_for(
+    async () => !(await cell(2, "Note").getAttribute("class")).includes("saving"),
+    "the page to know that it is stored",
+  );
   let let_go;
   let on_its_way = false;
   const held = new Promise((done) => (let_go = done));
@@ -158,7 +197,10 @@ try {
   await page.keyboard.press("ArrowUp");
   await page.keyboard.press("Delete");
   let_go();
-  await wait_for(async () => (await version()) === before + 2, "both changes of the note to be stored");
+  await wait_for(
+    async () => (await version()) === before + 2,
+    "both changes of the note to be stored",
+  );
   await page.unroute("**/records/2");
   await stored(2, "note", null);
 
@@ -230,19 +272,31 @@ try {
   await dialog.getByLabel("Code").fill("Pit");
   await button("Save").click();
   await panel.getByText("10,001 records").waitFor();
-  await cell(kMany + 1, "Code").getByText("Pit").waitFor(); // brought into sight, and chosen
+  await cell(kMany + 1, "Code")
+    .getByText("Pit")
+    .waitFor(); // brought into sight, and chosen
 
   say("the chosen record is painted with, and its area is seen in the table");
   await button("Paint with it").click();
-  await browser.drag([[0.45, 0.6], [0.5, 0.62]]);
+  await browser.drag([
+    [0.45, 0.6],
+    [0.5, 0.62],
+  ]);
   await browser.saved();
   await shot("table-painted");
-  await cell(kMany + 1, "Area").getByText(/mm²|cm²/).waitFor();
+  await cell(kMany + 1, "Area")
+    .getByText(/mm²|cm²/)
+    .waitFor();
 
-  say("a click with the pick tool shows the record's card, with its form and its row; the brush finds records by name");
+  say(
+    "a click with the pick tool shows the record's card, with its form and its row; the brush finds records by name",
+  );
   await page.getByRole("combobox", { name: "Record to paint, by its name" }).fill("SU 55");
   await page.getByRole("option", { name: /^SU 55 55$/ }).click();
-  await browser.drag([[0.6, 0.6], [0.62, 0.62]]);
+  await browser.drag([
+    [0.6, 0.6],
+    [0.62, 0.62],
+  ]);
   await browser.saved();
   await page.keyboard.press("i");
   const stage = await browser.stage_box();
@@ -262,7 +316,12 @@ try {
   await cell(55, "Code").getByText("SU 55").waitFor();
   await button("Close the record").click();
   assert.equal(await card.count(), 0);
-  await server.json("POST", `${base}/layers/units/edits`, { op: "fill", mode: "where", where: "units = 55", erase: true });
+  await server.json("POST", `${base}/layers/units/edits`, {
+    op: "fill",
+    mode: "where",
+    where: "units = 55",
+    erase: true,
+  });
   await cell(55, "Code").click();
   await page.keyboard.press("Control+End");
   await cell(kMany + 1, "Key").click();
@@ -280,7 +339,10 @@ try {
   assert.ok((await server.json("GET", `${base}/layers/units/records/7777`)).area_m2 > 0);
   await panel.getByRole("columnheader", { name: /Area/ }).getByRole("button").first().click();
   await panel.getByRole("columnheader", { name: /Area/ }).getByRole("button").first().click();
-  await wait_for(async () => (await panel.locator(".line .cell.key").first().textContent()).trim() === "7777", "the largest area first");
+  await wait_for(
+    async () => (await panel.locator(".line .cell.key").first().textContent()).trim() === "7777",
+    "the largest area first",
+  );
   await panel.getByRole("columnheader", { name: /Area/ }).getByRole("button").first().click();
 
   say("a CSV is looked at first: nothing is written while a row is wrong");
@@ -296,10 +358,15 @@ try {
   await button("Import").click();
   await panel.getByText("10,001 records").waitFor();
   await stored(1, "note", "changed");
-  const [download] = await Promise.all([page.waitForEvent("download"), menu("More about the table", /^Save as CSV$/)]);
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    menu("More about the table", /^Save as CSV$/),
+  ]);
   assert.equal(download.suggestedFilename(), "units.csv");
 
-  say("columns come, get names in other languages, change their kind and tell what that loses, and go");
+  say(
+    "columns come, get names in other languages, change their kind and tell what that loses, and go",
+  );
   await menu("More about the table", "New column…");
   await dialog.getByLabel("Name").fill("Bags");
   await dialog.getByLabel("Holds").selectOption("integer");
@@ -312,7 +379,10 @@ try {
   await dialog.getByRole("textbox", { name: "Name in es_MX" }).fill("Bolsas");
   await button("Save").click();
   await dialog.getByText('"es_MX" is no language tag such as `es` or `pt-BR`.').waitFor();
-  assert.equal(await dialog.getByLabel("Language 1", { exact: true }).getAttribute("aria-invalid"), "true");
+  assert.equal(
+    await dialog.getByLabel("Language 1", { exact: true }).getAttribute("aria-invalid"),
+    "true",
+  );
   await shot("column-language-refused");
   await dialog.getByLabel("Language 1", { exact: true }).fill("es");
   await button("Add a language").click();
@@ -320,7 +390,8 @@ try {
   await dialog.getByRole("textbox", { name: "Name in English" }).fill("Finds bags");
   await shot("column-languages");
   await dialog.getByRole("textbox", { name: "Name in English" }).press("Enter");
-  await panel.getByRole("columnheader", { name: /^Finds bags/ }).waitFor(); // the browser's language is English
+  // the browser's language is English
+  await panel.getByRole("columnheader", { name: /^Finds bags/ }).waitFor();
   const bags = (await server.json("GET", T)).columns.find(({ slug }) => slug === "bags");
   assert.deepEqual([bags.name, bags.labels], ["Bags", { en: "Finds bags", es: "Bolsas" }]);
   await button("New record").click();
@@ -335,7 +406,10 @@ try {
   await cell(1, "Note").getByText("changed").waitFor();
   await menu("Options for the column Finds bags", "Drop…");
   await button("Drop").click();
-  await wait_for(async () => (await panel.getByRole("columnheader", { name: /^Finds bags/ }).count()) === 0, "the column to go");
+  await wait_for(
+    async () => (await panel.getByRole("columnheader", { name: /^Finds bags/ }).count()) === 0,
+    "the column to go",
+  );
 
   say("on a phone, too");
   await page.setViewportSize({ width: 400, height: 800 });
@@ -351,7 +425,9 @@ try {
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 } catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`);
+  console.log(
+    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
+  );
   await shot("tables-failed");
   throw error;
 } finally {

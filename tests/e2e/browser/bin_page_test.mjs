@@ -1,4 +1,5 @@
-// The Bin on the page: Undo right after a deletion, the list of what was deleted in a project, with keys, a mouse and a finger; what others may of it.
+// The Bin on the page: Undo right after a deletion, the list of what was deleted in a project, with
+// keys, a mouse and a finger; what others may of it.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -29,9 +30,12 @@ const menu = async (who, label, command) => {
 const bin = ({ page }) => page.locator("strata-bin-dialog");
 const entry = (who, name) => bin(who).locator("li", { hasText: name });
 const notice = ({ page }, text) => page.locator("strata-notices").getByText(text);
-const undo = (who) => who.page.locator("strata-notices").getByRole("button", { name: "Undo", exact: true });
-const layers_of = async () => (await server.json("GET", `${kBase}/layers`)).layers.map(({ name }) => name);
-const pictured = ({ page }) => page.locator("strata-thumbnail canvas.drawn").waitFor(); // what is deleted while it is drawn is a refused request
+const undo = (who) =>
+  who.page.locator("strata-notices").getByRole("button", { name: "Undo", exact: true });
+const layers_of = async () =>
+  (await server.json("GET", `${kBase}/layers`)).layers.map(({ name }) => name);
+// what is deleted while it is drawn is a refused request
+const pictured = ({ page }) => page.locator("strata-thumbnail canvas.drawn").waitFor();
 const confirm = async ({ page }, name) => {
   const question = page.locator("strata-dialog").last();
   await question.getByRole("button", { name, exact: true }).click();
@@ -40,7 +44,14 @@ const confirm = async ({ page }, name) => {
 try {
   await server.start();
   const [pot] = (await server.json("GET", "/models")).models;
-  await server.json("POST", `${kBase}/layers`, { name: "Finds", kind: "database", type: "u16", resolution: 2048, columns: [{ name: "Name" }], palette: { mode: "categorical", points: [{ at: 1, color: "#2c6a63" }] } });
+  await server.json("POST", `${kBase}/layers`, {
+    name: "Finds",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    columns: [{ name: "Name" }],
+    palette: { mode: "categorical", points: [{ at: 1, color: "#2c6a63" }] },
+  });
   await server.json("POST", "/tables/finds/records", { values: { name: "Handle" } });
   await carl.sign_in(server, await server.add_person("carl", "curator"));
   await phone.sign_in(server, await server.add_person("pia", "administrator"));
@@ -53,7 +64,9 @@ try {
   await carl.page.goto(`${server.url}/models/${pot.id}`);
   await carl.drawn();
   await menu(carl, `Options for ${name}`, "Delete…");
-  await carl.page.getByText("For 30 days it can be restored from the Bin of the project.").waitFor();
+  await carl.page
+    .getByText("For 30 days it can be restored from the Bin of the project.")
+    .waitFor();
   await shoot(carl, "question");
   await confirm(carl, "Delete");
   await notice(carl, `The layer “${name}” was deleted.`).waitFor();
@@ -72,7 +85,9 @@ try {
   await entry(carl, name).waitFor();
   await shoot(carl, "list");
   assert.match(await entry(carl, name).textContent(), /Layer of Demo pot[\s\S]*deleted by carl/);
-  await entry(carl, name).getByRole("button", { name: `Restore ${name}` }).focus();
+  await entry(carl, name)
+    .getByRole("button", { name: `Restore ${name}` })
+    .focus();
   await carl.page.keyboard.press("Enter");
   await bin(carl).getByText(`“${name}” is back.`).waitFor();
   await bin(carl).getByText("Nothing lies in the Bin.").waitFor();
@@ -98,7 +113,12 @@ try {
   await menu(bea, "More about the table", "Bin…");
   await entry(bea, "Handle").waitFor();
   assert.equal(await bin(bea).locator("li").count(), 1, "layers are for curators");
-  assert.equal(await bin(bea).getByRole("button", { name: /for ever/ }).count(), 0);
+  assert.equal(
+    await bin(bea)
+      .getByRole("button", { name: /for ever/ })
+      .count(),
+    0,
+  );
   await shoot(bea, "records");
   await button(bea, "Restore Handle").click();
   await bin(bea).getByText("“Handle” is back.").waitFor();
@@ -120,7 +140,10 @@ try {
   await menu(phone, "Options for Demo", "Delete…");
   await phone.page.getByRole("heading", { name: "Models of “Demo” lie in the Bin" }).waitFor();
   await shoot(phone, "project_kept");
-  await phone.page.locator("strata-delete-project-dialog").getByRole("button", { name: "Bin…" }).tap();
+  await phone.page
+    .locator("strata-delete-project-dialog")
+    .getByRole("button", { name: "Bin…" })
+    .tap();
   await entry(phone, "Demo pot").waitFor();
   await shoot(phone, "phone");
   await button(phone, "Restore Demo pot").tap();
@@ -145,7 +168,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [who, browser] of Object.entries(everybody)) await shoot(browser, `failed_${who}`).catch(() => {});
+  for (const [who, browser] of Object.entries(everybody))
+    await shoot(browser, `failed_${who}`).catch(() => {});
   throw error;
 } finally {
   for (const browser of Object.values(everybody)) await browser.close();

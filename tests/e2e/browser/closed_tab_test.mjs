@@ -1,4 +1,5 @@
-// A tab is closed, or dies, while what was painted is not saved: closing it warns, and the next page of the same person sends it, once.
+// A tab is closed, or dies, while what was painted is not saved: closing it warns, and the next
+// page of the same person sends it, once.
 import assert from "node:assert/strict";
 import { Browser, kOfLostServer } from "../support/browser.mjs";
 import { kLong_ms, StrataServer, wait_for } from "../support/strata-server.mjs";
@@ -10,16 +11,25 @@ const say = (text) => console.log((step = text));
 let { page } = browser;
 
 /** Ids of the batches of strokes that the browser keeps, or of other messages, in their order. */
-const kept = (wanted = "stroke.extend") => page.evaluate((wanted) => new Promise((done, failed) => {
-  const request = indexedDB.open("strata");
-  request.onerror = () => failed(request.error);
-  request.onsuccess = () => {
-    const database = request.result;
-    const all = database.transaction("unsaved").objectStore("unsaved").getAll();
-    all.onsuccess = () => (database.close(), done(all.result.filter(({ op }) => op === wanted).map(({ id }) => id)));
-  };
-}), wanted);
-const history = async () => (await server.json("GET", "/models/demo-pot/layers/marks/edits?limit=1000")).edits;
+const kept = (wanted = "stroke.extend") =>
+  page.evaluate(
+    (wanted) =>
+      new Promise((done, failed) => {
+        const request = indexedDB.open("strata");
+        request.onerror = () => failed(request.error);
+        request.onsuccess = () => {
+          const database = request.result;
+          const all = database.transaction("unsaved").objectStore("unsaved").getAll();
+          all.onsuccess = () => (
+            database.close(),
+            done(all.result.filter(({ op }) => op === wanted).map(({ id }) => id))
+          );
+        };
+      }),
+    wanted,
+  );
+const history = async () =>
+  (await server.json("GET", "/models/demo-pot/layers/marks/edits?limit=1000")).edits;
 const ids = async () => (await history()).map(({ id }) => id);
 
 async function open_model() {
@@ -32,9 +42,15 @@ async function open_model() {
 /** Painted to a server that hears nothing. Returns what the browser keeps of it. */
 async function paint_unheard(y) {
   await server.signal("SIGSTOP");
-  await browser.drag([[0.4, y], [0.6, y]]);
+  await browser.drag([
+    [0.4, y],
+    [0.6, y],
+  ]);
   await page.locator('.saving:not([data-state="saved"])').waitFor();
-  await wait_for(async () => (await kept("stroke.end")).length > 0, "the browser to keep what is not saved");
+  await wait_for(
+    async () => (await kept("stroke.end")).length > 0,
+    "the browser to keep what is not saved",
+  );
   return kept();
 }
 
@@ -58,9 +74,15 @@ try {
   say("closing warns while something is not saved, and only then");
   const asked = [];
   page.on("dialog", (dialog) => (asked.push(dialog.type()), dialog.dismiss()));
-  await browser.drag([[0.4, 0.4], [0.6, 0.4]]);
+  await browser.drag([
+    [0.4, 0.4],
+    [0.6, 0.4],
+  ]);
   await browser.saved();
-  await wait_for(async () => (await kept()).length === 0, "the browser to keep nothing that is saved");
+  await wait_for(
+    async () => (await kept()).length === 0,
+    "the browser to keep nothing that is saved",
+  );
   const before = await ids();
   assert.ok(before.length > 0, "nothing was painted");
   let left = await paint_unheard(0.5);
@@ -72,15 +94,25 @@ try {
   await tab_dies();
   await server.signal("SIGKILL");
   await server.start();
-  assert.deepEqual(await ids(), before, "the server knew what it was not to know: this test shows nothing");
+  assert.deepEqual(
+    await ids(),
+    before,
+    "the server knew what it was not to know: this test shows nothing",
+  );
 
   say("somebody else at the same browser sends nothing of it");
   await browser.sign_in(server, bea);
   await open_model();
-  await browser.drag([[0.45, 0.7], [0.55, 0.7]]);
+  await browser.drag([
+    [0.45, 0.7],
+    [0.55, 0.7],
+  ]);
   await browser.saved();
   const hers = await history();
-  assert.deepEqual([...new Set(hers.slice(0, hers.length - before.length).map(({ user }) => user))], ["bea"]);
+  assert.deepEqual(
+    [...new Set(hers.slice(0, hers.length - before.length).map(({ user }) => user))],
+    ["bea"],
+  );
   assert.deepEqual(await kept(), left);
 
   say("who painted it comes back: it is sent, in their name, once");
@@ -90,25 +122,43 @@ try {
   await browser.saved();
   await wait_for(async () => (await kept()).length === 0, "all to be saved");
   const now = await history();
-  assert.deepEqual(now.slice(0, now.length - hers.length).map(({ id, user }) => `${id} ${user}`).reverse(), left.map((id) => `${id} ada`));
+  assert.deepEqual(
+    now
+      .slice(0, now.length - hers.length)
+      .map(({ id, user }) => `${id} ${user}`)
+      .reverse(),
+    left.map((id) => `${id} ada`),
+  );
 
-  say("a tab that is closed in mid-stroke, of which the server read all: nothing is painted twice, and the stroke ends");
+  say(
+    "a tab that is closed in mid-stroke, of which the server read all: nothing is painted twice, and the stroke ends",
+  );
   await page.mouse.move(0, 0);
   await server.signal("SIGSTOP");
   const box = await browser.stage_box();
   await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.6 * box.height);
   await page.mouse.down();
   await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.6 * box.height, { steps: 6 });
-  left = await wait_for(async () => ((await kept()).length > 1 ? kept() : null), "the browser to keep the stroke");
+  left = await wait_for(
+    async () => ((await kept()).length > 1 ? kept() : null),
+    "the browser to keep the stroke",
+  );
   await tab_dies();
   await server.signal("SIGCONT");
   await open_model();
   await wait_for(async () => (await kept()).length === 0, "all to be saved");
-  await browser.drag([[0.45, 0.3], [0.55, 0.3]]);
+  await browser.drag([
+    [0.45, 0.3],
+    [0.55, 0.3],
+  ]);
   await browser.saved();
   const all = await ids();
   assert.equal(new Set(all).size, all.length, "an edit is there twice");
-  assert.deepEqual(left.filter((id) => !all.includes(id)), [], "a part of the stroke is lost");
+  assert.deepEqual(
+    left.filter((id) => !all.includes(id)),
+    [],
+    "a part of the stroke is lost",
+  );
 
   browser.assert_no_complaints(kOfLostServer);
   assert.equal(await server.signal("SIGTERM"), 0);

@@ -1,4 +1,5 @@
-// Two people on one model: each sees what the other paints, undo is one's own, and a killed server costs nobody a stroke.
+// Two people on one model: each sees what the other paints, undo is one's own, and a killed server
+// costs nobody a stroke.
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
@@ -8,7 +9,7 @@ import { StrataServer, wait_for } from "../support/strata-server.mjs";
 const kScan = join(process.env.STRATA_TEST_DATA ?? "", "statue_nefertiti_70k.ply");
 const has_scan = existsSync(kScan);
 const kEnough = 150; // pixels of a stroke that is there
-const kFew = 12;     // that chance makes
+const kFew = 12; // that chance makes
 
 if (!has_scan) console.log(`the demo pot stands in for the scan: there is no ${kScan}`);
 const [anna, bea] = [await Browser.open(), await Browser.open()];
@@ -16,7 +17,8 @@ const server = new StrataServer({ demo: !has_scan });
 let step = "start";
 const say = (text) => console.log((step = text));
 
-const appears = (who, color, what) => wait_for(async () => (await who.count(color)) > kEnough, what, 150);
+const appears = (who, color, what) =>
+  wait_for(async () => (await who.count(color)) > kEnough, what, 150);
 const goes = (who, color, what) => wait_for(async () => (await who.count(color)) < kFew, what, 150);
 const choose_class = (who, name) => who.page.getByRole("radio", { name, exact: true }).click();
 
@@ -49,11 +51,16 @@ try {
   await choose_class(anna, "Bone");
   const layers = await server.json("GET", `/models/${id}/layers`);
   const layer = layers.layers.find((each) => each.slug === "finds");
-  assert.deepEqual(layer.palette.points.slice(0, 2).map((point) => point.label), ["Bone", "Glass"]);
+  assert.deepEqual(
+    layer.palette.points.slice(0, 2).map((point) => point.label),
+    ["Bone", "Glass"],
+  );
   const [bone, glass] = layer.palette.points.map((point) => rgb(point.color));
   const path = `/models/${id}/layers/${layer.id}`;
   // What other layers show would only disturb the counting of pixels.
-  for (const other of layers.layers) if (other.id !== layer.id) await server.json("PATCH", `/models/${id}/layers/${other.id}`, { visible: false });
+  for (const other of layers.layers)
+    if (other.id !== layer.id)
+      await server.json("PATCH", `/models/${id}/layers/${other.id}`, { visible: false });
 
   say("somebody else opens the same model and looks from another side");
   await bea.sign_in(server, await server.add_person("bea", "annotator"));
@@ -74,11 +81,17 @@ try {
   }
 
   say("each sees the other's stroke");
-  await anna.drag([[0.46, 0.5], [0.56, 0.52]]);
+  await anna.drag([
+    [0.46, 0.5],
+    [0.56, 0.52],
+  ]);
   await anna.saved();
   await appears(anna, bone, "anna's stroke on her own page");
   await appears(bea, bone, "anna's stroke on bea's page");
-  await bea.drag([[0.46, 0.62], [0.56, 0.64]]);
+  await bea.drag([
+    [0.46, 0.62],
+    [0.56, 0.64],
+  ]);
   await bea.saved();
   await appears(bea, glass, "bea's stroke on her own page");
   await appears(anna, glass, "bea's stroke on anna's page");
@@ -104,14 +117,25 @@ try {
     await anna.page.getByRole("button", { name: "Check the size" }).click();
     await anna.page.getByRole("radio", { name: "centimetres" }).click();
     await anna.page.getByRole("radio", { name: "millimetres" }).click();
-    await anna.page.getByText(/This object is .*mm: right\?|This object is .*cm: right\?/).waitFor();
+    await anna.page
+      .getByText(/This object is .*mm: right\?|This object is .*cm: right\?/)
+      .waitFor();
     await anna.page.getByRole("button", { name: "Yes, that is right" }).click();
-    await wait_for(async () => (await server.json("GET", `/models/${id}`)).scale_verified, "the size to be confirmed");
-    const [after, now] = [await server.json("GET", `${path}/statistics`), await server.json("GET", `/models/${id}`)];
+    await wait_for(
+      async () => (await server.json("GET", `/models/${id}`)).scale_verified,
+      "the size to be confirmed",
+    );
+    const [after, now] = [
+      await server.json("GET", `${path}/statistics`),
+      await server.json("GET", `/models/${id}`),
+    ];
     assert.equal(now.unit, "mm");
     assert.equal(after.texels, before.texels);
     const scale = { mm: 1e-3, cm: 1e-2, m: 1 }[model.unit] / 1e-3;
-    assert.ok(Math.abs((after.area_m2 * scale * scale) / before.area_m2 - 1) < 1e-6, `${before.area_m2} became ${after.area_m2}`);
+    assert.ok(
+      Math.abs((after.area_m2 * scale * scale) / before.area_m2 - 1) < 1e-6,
+      `${before.area_m2} became ${after.area_m2}`,
+    );
     await appears(anna, bone, "the paint after the change");
   }
 
@@ -119,7 +143,11 @@ try {
   const history = async () => (await server.json("GET", `${path}/edits?limit=1000`)).edits;
   const edits_before = (await history()).length;
   await server.signal("SIGSTOP");
-  await anna.drag([[0.44, 0.4], [0.5, 0.36], [0.56, 0.4]]);
+  await anna.drag([
+    [0.44, 0.4],
+    [0.5, 0.36],
+    [0.56, 0.4],
+  ]);
   await anna.page.locator('.saving:not([data-state="saved"])').waitFor();
   await server.signal("SIGKILL");
   await anna.page.locator('.saving[data-state="not-saved"]').waitFor();
@@ -128,7 +156,11 @@ try {
   await anna.saved();
   const edits = await history();
   assert.ok(edits.length > edits_before, "what was painted is not in the history");
-  assert.equal(new Set(edits.map((edit) => edit.id)).size, edits.length, "an edit is in the history twice");
+  assert.equal(
+    new Set(edits.map((edit) => edit.id)).size,
+    edits.length,
+    "an edit is in the history twice",
+  );
   await bea.page.getByText("Connection lost").waitFor({ state: "hidden" });
   await appears(bea, bone, "bea's page to show the model again");
   await anna.point(0.5, 0.36);
@@ -142,7 +174,9 @@ try {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
   if (process.env.STRATA_TEST_OUTPUT) {
     for (const [name, who] of Object.entries({ anna, bea })) {
-      await who.page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `collaboration_${name}.png`) }).catch(() => {});
+      await who.page
+        .screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `collaboration_${name}.png`) })
+        .catch(() => {});
     }
   }
   throw error;

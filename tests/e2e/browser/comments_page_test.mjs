@@ -1,5 +1,6 @@
-// Comments on the surface: written at a place, kept unsent, seen by others at once, answered, resolved, edited, deleted, found in the panel and by
-// their address; by mouse, keyboard and finger. Pins are not shown through the model.
+// Comments on the surface: written at a place, kept unsent, seen by others at once, answered,
+// resolved, edited, deleted, found in the panel and by their address; by mouse, keyboard and
+// finger. Pins are not shown through the model.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
@@ -15,7 +16,8 @@ let step = "start";
 const say = (text) => console.log((step = text));
 
 const shot = async ({ page }, name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 const button = ({ page }, name) => page.getByRole("button", { name, exact: true });
 const card = ({ page }) => page.locator("strata-comment-card section");
@@ -25,7 +27,11 @@ const pin = ({ page }, id) => page.locator(`strata-comment-pins button[data-comm
 const article = (who, text) => card(who).locator("article", { hasText: text });
 const gone = (locator) => locator.waitFor({ state: "detached" });
 const comments = async () => (await server.json("GET", `${kBase}/comments?limit=1000`)).comments;
-const comment_with = (text) => wait_for(async () => (await comments()).find((comment) => comment.text.includes(text)), `a comment with ${text}`);
+const comment_with = (text) =>
+  wait_for(
+    async () => (await comments()).find((comment) => comment.text.includes(text)),
+    `a comment with ${text}`,
+  );
 const focused = ({ page }) =>
   page.evaluate(() => {
     let active = document.activeElement;
@@ -45,14 +51,25 @@ let id;
 
 try {
   await server.start();
-  for (const layer of (await server.json("GET", `${kBase}/layers`)).layers) await server.json("PATCH", `${kBase}/layers/${layer.id}`, { visible: false });
+  for (const layer of (await server.json("GET", `${kBase}/layers`)).layers)
+    await server.json("PATCH", `${kBase}/layers/${layer.id}`, { visible: false });
   await server.json("POST", `${kBase}/layers`, {
-    name: "Finds", kind: "database", type: "u16", resolution: 2048, columns: [{ name: "Name", required: true, unique: true }],
+    name: "Finds",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    columns: [{ name: "Name", required: true, unique: true }],
     palette: { mode: "categorical", points: [{ at: 1, color: "#2c6a63" }] },
   });
   await server.json("POST", "/tables/finds/records", { values: { name: "Handle" } });
-  await server.json("POST", `${kBase}/layers/finds/edits`, { op: "fill", mode: "where", where: "true", value: 1 });
-  const model = await server.json("PATCH", kBase, { scale_verified: true }); // or curators are asked for it
+  await server.json("POST", `${kBase}/layers/finds/edits`, {
+    op: "fill",
+    mode: "where",
+    where: "true",
+    value: 1,
+  });
+  // or curators are asked for it
+  const model = await server.json("PATCH", kBase, { scale_verified: true });
   id = model.id;
   await ada.sign_in(server, await server.add_person("ada", "annotator"));
   await bea.sign_in(server, await server.add_person("bea", "annotator"));
@@ -69,8 +86,14 @@ try {
   await card(ada).getByRole("textbox", { name: "Comment" }).waitFor();
   assert.equal(await focused(ada), "textarea");
   assert.equal(await button(ada, "Comment").first().isDisabled(), false);
-  assert.equal(await card(ada).getByRole("button", { name: "Comment", exact: true }).isDisabled(), true, "nothing is written yet");
-  await ada.page.keyboard.type("Is this the crack of 2019?\nSee https://example.org/report (page 3).");
+  assert.equal(
+    await card(ada).getByRole("button", { name: "Comment", exact: true }).isDisabled(),
+    true,
+    "nothing is written yet",
+  );
+  await ada.page.keyboard.type(
+    "Is this the crack of 2019?\nSee https://example.org/report (page 3).",
+  );
   await card(ada).getByLabel("About").selectOption({ label: "Handle (Finds)" });
   await shot(ada, "composer");
 
@@ -80,7 +103,10 @@ try {
   await ada.page.reload();
   await ada.drawn();
   await button(ada, "Your comment that is not sent yet").click();
-  assert.match(await card(ada).getByRole("textbox", { name: "Comment" }).inputValue(), /^Is this the crack of 2019\?\nSee/);
+  assert.match(
+    await card(ada).getByRole("textbox", { name: "Comment" }).inputValue(),
+    /^Is this the crack of 2019\?\nSee/,
+  );
   assert.equal((await comments()).length, 0);
   assert.equal(await pins(bea).count(), 0);
 
@@ -91,7 +117,10 @@ try {
   const first = await comment_with("Is this the crack");
   assert.equal(first.record, 1);
   await pin(bea, first.id).waitFor();
-  assert.match(await pin(bea, first.id).getAttribute("aria-label"), /^Comment by ada: something new: Is this the crack of 2019\? See/);
+  assert.match(
+    await pin(bea, first.id).getAttribute("aria-label"),
+    /^Comment by ada: something new: Is this the crack of 2019\? See/,
+  );
   assert.equal(await button(ada, "Your comment that is not sent yet").count(), 0);
   assert.match(ada.page.url(), new RegExp(`#comment=${first.id}$`));
   const link = card(ada).getByRole("link", { name: "https://example.org/report", exact: true });
@@ -102,10 +131,15 @@ try {
   say("a reply with somebody's name reaches them");
   await pin(bea, first.id).click();
   await article(bea, "Is this the crack").waitFor();
-  await wait_for(async () => !/something new/.test(await pin(bea, first.id).getAttribute("aria-label")), "the thread to be read");
+  await wait_for(
+    async () => !/something new/.test(await pin(bea, first.id).getAttribute("aria-label")),
+    "the thread to be read",
+  );
   await ada.page.keyboard.press("Escape");
   await gone(card(ada));
-  await card(bea).getByRole("textbox", { name: "Reply" }).fill("@ada yes, <b>it</b> has grown.\nMore in May.");
+  await card(bea)
+    .getByRole("textbox", { name: "Reply" })
+    .fill("@ada yes, <b>it</b> has grown.\nMore in May.");
   await card(bea).getByRole("button", { name: "Reply", exact: true }).click();
   await article(bea, "it has grown").or(article(bea, "has grown.")).first().waitFor();
   assert.equal(await card(bea).locator(".mention").innerText(), "@ada");
@@ -130,10 +164,22 @@ try {
   await bea.page.keyboard.press("Backspace");
   await bea.page.keyboard.press("Backspace");
   await names.getByRole("option", { name: "owner" }).waitFor();
-  assert.deepEqual((await names.getByRole("option").allInnerTexts()).map((text) => text.trim().split("\n").at(-1)), ["ada", "carl", "owner"]);
-  assert.equal(await names.getByRole("option", { selected: true }).innerText().then((text) => text.split("\n").at(-1)), "ada");
+  assert.deepEqual(
+    (await names.getByRole("option").allInnerTexts()).map((text) => text.trim().split("\n").at(-1)),
+    ["ada", "carl", "owner"],
+  );
+  assert.equal(
+    await names
+      .getByRole("option", { selected: true })
+      .innerText()
+      .then((text) => text.split("\n").at(-1)),
+    "ada",
+  );
   await bea.page.keyboard.press("ArrowDown");
-  assert.equal(await writing.getAttribute("aria-activedescendant"), await names.getByRole("option", { selected: true }).getAttribute("id"));
+  assert.equal(
+    await writing.getAttribute("aria-activedescendant"),
+    await names.getByRole("option", { selected: true }).getAttribute("id"),
+  );
   await bea.page.keyboard.press("Enter");
   await gone(names);
   assert.equal(await writing.inputValue(), "Ask @carl ");
@@ -144,7 +190,9 @@ try {
   assert.equal(await card(bea).getByRole("combobox").count(), 0, "it is a plain field again");
   await writing.fill("");
 
-  say("pins are hidden behind the surface: on the far side, and inside where the wall stands before them");
+  say(
+    "pins are hidden behind the surface: on the far side, and inside where the wall stands before them",
+  );
   await bea.page.keyboard.press("Escape");
   await bea.page.keyboard.press("c");
   await click_at(bea, 0.44, 0.42); // through the gap, the inside of the far wall
@@ -175,7 +223,9 @@ try {
   assert.equal(await article(ada, "has grown").getByRole("button", { name: "Edit" }).count(), 0);
   await card(ada).locator(`textarea[name="edit ${first.id}"]`).fill("Is this the crack of 2020?");
   await card(ada).getByRole("button", { name: "Save" }).click();
-  await article(ada, "Is this the crack of 2020?").getByText(/^edited/).waitFor();
+  await article(ada, "Is this the crack of 2020?")
+    .getByText(/^edited/)
+    .waitFor();
   await pin(bea, first.id).click();
   await article(bea, "Is this the crack of 2020?").waitFor();
 
@@ -183,23 +233,36 @@ try {
   await article(ada, "of 2020?").getByRole("button", { name: "Edit" }).click();
   await card(ada).locator(`textarea[name="edit ${first.id}"]`).fill("Is this the crack of 2021?");
   await ada.page.route(`**/comments/${first.id}`, async (route) => {
-    if (route.request().method() === "PATCH") await server.json("PATCH", `/comments/${first.id}`, { state: "open" });
+    if (route.request().method() === "PATCH")
+      await server.json("PATCH", `/comments/${first.id}`, { state: "open" });
     await route.continue();
   });
   await card(ada).getByRole("button", { name: "Save" }).click();
-  await card(ada).getByRole("alert").getByText(/changed this since/i).waitFor();
+  await card(ada)
+    .getByRole("alert")
+    .getByText(/changed this since/i)
+    .waitFor();
   await ada.page.unroute(`**/comments/${first.id}`);
-  assert.equal(await card(ada).locator(`textarea[name="edit ${first.id}"]`).inputValue(), "Is this the crack of 2021?");
+  assert.equal(
+    await card(ada).locator(`textarea[name="edit ${first.id}"]`).inputValue(),
+    "Is this the crack of 2021?",
+  );
   await card(ada).getByRole("button", { name: "Save" }).click();
   await article(bea, "Is this the crack of 2021?").waitFor();
 
   say("a thread is resolved by anybody who writes; its pin is shown only when asked for");
   await card(bea).getByRole("button", { name: "Resolve" }).click();
-  await card(bea).getByText(/^Resolved by bea/).waitFor();
-  await card(ada).getByText(/^Resolved by bea/).waitFor();
+  await card(bea)
+    .getByText(/^Resolved by bea/)
+    .waitFor();
+  await card(ada)
+    .getByText(/^Resolved by bea/)
+    .waitFor();
   await ada.page.keyboard.press("Escape");
   await gone(pin(ada, first.id));
-  await panel(ada).getByRole("button", { name: /^Comments/ }).click();
+  await panel(ada)
+    .getByRole("button", { name: /^Comments/ })
+    .click();
   await panel(ada).getByText("None is like that.").waitFor();
   await panel(ada).getByRole("radio", { name: "Resolved" }).click();
   await pin(ada, first.id).waitFor();
@@ -210,11 +273,14 @@ try {
   const height = model.bounds.max[2] - model.bounds.min[2];
   for (const [n, text] of ["Soot on the rim", "Old repair, see @bea", "Fingerprint"].entries()) {
     const [x, y, z] = first.position;
-    const coords = encodeURIComponent(`POINT Z(${x} ${y} ${z + [-0.2, 0.18, -0.38][n] * height})`); // so far that a finger tells them apart
+    // so far that a finger tells them apart
+    const coords = encodeURIComponent(`POINT Z(${x} ${y} ${z + [-0.2, 0.18, -0.38][n] * height})`);
     const { position } = await server.json("GET", `${kBase}/position?coords=${coords}`);
     await server.json("POST", `${kBase}/comments`, { text, position });
   }
-  await panel(bea).getByRole("button", { name: /^Comments/ }).click();
+  await panel(bea)
+    .getByRole("button", { name: /^Comments/ })
+    .click();
   const rows = panel(bea).locator("li button");
   await wait_for(async () => (await rows.count()) === 3, "three open threads");
   await panel(bea).getByRole("img", { name: "3 threads with something new" }).waitFor();
@@ -252,7 +318,11 @@ try {
   await article(ada, "of 2021?").getByRole("button", { name: "Delete" }).click();
   await ada.page.locator("strata-dialog").getByRole("button", { name: "Delete" }).click();
   await card(ada).getByText("This comment was deleted.").waitFor();
-  assert.equal(await article(ada, "has grown").getByRole("button", { name: "Delete" }).count(), 0, "it is bea's");
+  assert.equal(
+    await article(ada, "has grown").getByRole("button", { name: "Delete" }).count(),
+    0,
+    "it is bea's",
+  );
   await card(ada).getByRole("button", { name: "Open again" }).click();
   await gone(card(ada).getByText(/^Resolved by/));
   await panel(ada).getByRole("radio", { name: "Open" }).click();
@@ -270,7 +340,10 @@ try {
   await shot(phone, "phone_thread");
 
   say("what somebody says meanwhile is shown above the sheet");
-  const { id: aside } = await server.json("POST", `${kBase}/comments`, { text: "@carl, see here", position: first.position });
+  const { id: aside } = await server.json("POST", `${kBase}/comments`, {
+    text: "@carl, see here",
+    position: first.position,
+  });
   const told = phone.page.locator("strata-notices .notice", { hasText: "owner wrote to you" });
   await told.waitFor();
   await shot(phone, "phone_told");
@@ -296,7 +369,10 @@ try {
   await ada.page.keyboard.press("c");
   await ada.page.keyboard.press("Enter");
   await card(ada).getByRole("textbox", { name: "Comment" }).waitFor();
-  await wait_for(async () => (await focused(ada)) === "textarea", "the composer to have the keyboard");
+  await wait_for(
+    async () => (await focused(ada)) === "textarea",
+    "the composer to have the keyboard",
+  );
   await ada.page.keyboard.type("In the middle");
   await card(ada).getByRole("button", { name: "Discard" }).click();
   await gone(card(ada));
@@ -318,7 +394,12 @@ try {
   await pin(phone, fingerprint.id).tap();
   await article(phone, "Fingerprint").waitFor();
   assert.equal(await card(phone).getByRole("textbox").count(), 0);
-  assert.equal(await card(phone).getByRole("button", { name: /Resolve|Edit|Delete/ }).count(), 0);
+  assert.equal(
+    await card(phone)
+      .getByRole("button", { name: /Resolve|Edit|Delete/ })
+      .count(),
+    0,
+  );
   await shot(phone, "phone_viewer");
 
   say("the end");
@@ -327,7 +408,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ ada, bea, phone })) await shot(who, `comments_failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ ada, bea, phone }))
+    await shot(who, `comments_failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of [ada, bea, phone]) await who.close();

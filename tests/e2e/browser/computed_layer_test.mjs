@@ -1,5 +1,6 @@
-// A computed layer in the page: names are completed while one writes, what it holds for is told, mistakes at their character; stale when
-// something that it reads changes, computed again by a button or by itself.
+// A computed layer in the page: names are completed while one writes, what it holds for is told,
+// mistakes at their character; stale when something that it reads changes, computed again by a
+// button or by itself.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
@@ -11,9 +12,11 @@ const server = new StrataServer({ demo: true });
 const base = "/models/demo-pot";
 const button = (name) => page.getByRole("button", { name });
 const shot = async (name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `computed-${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `computed-${name}.png`) });
 };
-const risk = async () => (await server.json("GET", `${base}/layers`)).layers.find((layer) => layer.slug === "risk");
+const risk = async () =>
+  (await server.json("GET", `${base}/layers`)).layers.find((layer) => layer.slug === "risk");
 
 try {
   await server.start();
@@ -37,18 +40,29 @@ try {
   await page.getByLabel("Name", { exact: true }).fill("Risk");
   await shot("dialog");
   await button("Compute layer").click();
-  await page.locator("strata-layer-dialog").waitFor({ state: "detached" }); // it is computed first and gets its colours then
+  // it is computed first and gets its colours then
+  await page.locator("strata-layer-dialog").waitFor({ state: "detached" });
   await wait_for(async () => (await risk())?.stale === false, "the layer");
   const made = await risk();
-  assert.deepEqual([made.expression, made.inputs, made.recompute], ["if(valid(cracks), 2, 1)", ["cracks"], "manual"]);
+  assert.deepEqual(
+    [made.expression, made.inputs, made.recompute],
+    ["if(valid(cracks), 2, 1)", ["cracks"], "manual"],
+  );
   assert.ok(made.palette.max <= 2 && made.palette.min >= 1, JSON.stringify(made.palette));
   await page.getByText("if(valid(cracks), 2, 1)").waitFor();
 
-  await server.json("POST", `${base}/layers/cracks/edits`, { op: "fill", mode: "where", where: "z > 0", value: 1 });
+  await server.json("POST", `${base}/layers/cracks/edits`, {
+    op: "fill",
+    mode: "where",
+    where: "z > 0",
+    value: 1,
+  });
   await page.getByText("Something that it is computed from has changed since.").waitFor();
   await shot("stale");
   await button("Compute again").click();
-  await page.getByText("Something that it is computed from has changed since.").waitFor({ state: "hidden" });
+  await page
+    .getByText("Something that it is computed from has changed since.")
+    .waitFor({ state: "hidden" });
   assert.equal((await risk()).stale, false);
 
   await button("Options for Risk").click();
@@ -56,9 +70,17 @@ try {
   await page.getByLabel("Expression: a number").fill("if(valid(cracks), 7, 5)");
   await page.getByLabel(/by itself/).check();
   await page.getByRole("button", { name: "Save", exact: true }).click();
-  await wait_for(async () => (await risk()).expression === "if(valid(cracks), 7, 5)" && !(await risk()).stale, "the new expression");
+  await wait_for(
+    async () => (await risk()).expression === "if(valid(cracks), 7, 5)" && !(await risk()).stale,
+    "the new expression",
+  );
   assert.equal((await risk()).recompute, "automatic");
-  await server.json("POST", `${base}/layers/cracks/edits`, { op: "fill", mode: "where", where: "true", value: 1 });
+  await server.json("POST", `${base}/layers/cracks/edits`, {
+    op: "fill",
+    mode: "where",
+    where: "true",
+    value: 1,
+  });
   const least = async () => (await server.json("GET", `${base}/layers/risk/statistics`)).min;
   await wait_for(async () => (await least()) === 7, "the layer to follow by itself");
 

@@ -1,6 +1,7 @@
-// Pictures of every screen and dialog of the page in the windows of a phone, a tablet and a desk, on one sheet that a person can judge. No test: it
-// finds nothing wrong by itself. `scripts/contact_sheet` runs it; the first argument is the folder that it writes, `--language` and `--theme`
-// say how the page is shown, `--windows` in which windows: a wall's has 4K.
+// Pictures of every screen and dialog of the page in the windows of a phone, a tablet and a desk,
+// on one sheet that a person can judge. No test: it finds nothing wrong by itself.
+// `scripts/contact_sheet` runs it; the first argument is the folder that it writes, `--language`
+// and `--theme` say how the page is shown, `--windows` in which windows: a wall's has 4K.
 import { mkdirSync, statSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -30,8 +31,15 @@ const { values, positionals } = parseArgs({
 });
 const { language, theme } = values;
 const windows = values.windows.split(",");
-if (positionals.length !== 1 || !(language in kLocales) || !["light", "dark", "contrast"].includes(theme) || !windows.every((each) => each in kSizes)) {
-  console.error("contact_sheet FOLDER [--language en|de|es] [--theme light|dark|contrast] [--windows phone,tablet,desk,wall]");
+if (
+  positionals.length !== 1 ||
+  !(language in kLocales) ||
+  !["light", "dark", "contrast"].includes(theme) ||
+  !windows.every((each) => each in kSizes)
+) {
+  console.error(
+    "contact_sheet FOLDER [--language en|de|es] [--theme light|dark|contrast] [--windows phone,tablet,desk,wall]",
+  );
   process.exit(2);
 }
 const kWindows = Object.fromEntries(windows.map((each) => [each, kSizes[each]]));
@@ -48,7 +56,9 @@ const file_of = (screen, window) => `shots/${screen.name.replaceAll(/\W+/g, "_")
 
 /** In a window of another size the server draws the model anew. */
 async function settled() {
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await page.evaluate(
+    () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
+  );
   const canvas = page.locator("strata-stage canvas, strata-kiosk-stage canvas.live").first();
   if ((await canvas.count()) === 0) return;
   const fits = () =>
@@ -56,24 +66,33 @@ async function settled() {
       const { width, height } = canvas.getBoundingClientRect();
       return Math.abs(canvas.width / canvas.height - width / height) < 0.02;
     });
-  for (const end = Date.now() + kFrame_ms; Date.now() < end && !(await fits()); ) await page.waitForTimeout(100);
+  for (const end = Date.now() + kFrame_ms; Date.now() < end && !(await fits());)
+    await page.waitForTimeout(100);
 }
 
 async function take(screen) {
   for (const [window, [width, height]] of Object.entries(kWindows)) {
     await page.setViewportSize({ width, height });
     await settled();
-    await page.screenshot({ path: join(folder, file_of(screen, window)), type: "jpeg", quality: 80 });
+    await page.screenshot({
+      path: join(folder, file_of(screen, window)),
+      type: "jpeg",
+      quality: 80,
+    });
   }
   await page.setViewportSize(kDesk);
 }
 
 function sheet_of(screens) {
-  const shot = (screen) => ([window, [width, height]]) =>
-    `<a href="${file_of(screen, window)}"><img src="${file_of(screen, window)}" alt="${window}" width="${Math.round(width * kScale)}" height="${Math.round(height * kScale)}"></a>`;
+  const shot =
+    (screen) =>
+    ([window, [width, height]]) =>
+      `<a href="${file_of(screen, window)}"><img src="${file_of(screen, window)}" alt="${window}" width="${Math.round(width * kScale)}" height="${Math.round(height * kScale)}"></a>`;
   const figure = (screen, n) =>
     `<figure><figcaption><b>${n + 1}</b> ${escaped(screen.name)}</figcaption><div>${Object.entries(kWindows).map(shot(screen)).join("")}</div></figure>`;
-  const sizes = Object.entries(kWindows).map(([window, size]) => `${window} ${size.join(" × ")}`).join(", ");
+  const sizes = Object.entries(kWindows)
+    .map(([window, size]) => `${window} ${size.join(" × ")}`)
+    .join(", ");
   return `<!doctype html><meta charset="utf-8"><title>Screens</title><style>
     body { margin: 24px; font: 14px system-ui, sans-serif; background: #ddd; color: #111; }
     main { display: flex; flex-wrap: wrap; gap: 22px 26px; }
@@ -98,7 +117,14 @@ async function picture_of(sheet) {
 let step = "start";
 try {
   await server.start();
-  await page.addInitScript((name) => document.addEventListener("DOMContentLoaded", () => (document.documentElement.dataset.theme = name)), theme);
+  await page.addInitScript(
+    (name) =>
+      document.addEventListener(
+        "DOMContentLoaded",
+        () => (document.documentElement.dataset.theme = name),
+      ),
+    theme,
+  );
   const site = await make_site(server, bea);
   const screens = screens_of(viewer, texts_of(language), site);
   const take_all = async (of) => {

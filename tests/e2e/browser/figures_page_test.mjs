@@ -1,5 +1,6 @@
-// Measured figures on the page: chosen with the sheet before one's eyes, made and saved, of what this person sees or of a kept view, also square to a
-// face that is picked; given up, refused, and left to themselves while they are made. Who may only look makes them, too.
+// Measured figures on the page: chosen with the sheet before one's eyes, made and saved, of what
+// this person sees or of a kept view, also square to a face that is picked; given up, refused, and
+// left to themselves while they are made. Who may only look makes them, too.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -17,12 +18,17 @@ const say = (text) => console.log((step = text));
 let id;
 
 const shot = async ({ page }, name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `figures_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `figures_${name}.png`) });
 };
 const dialog = ({ page }) => page.locator("strata-figure-dialog");
 const button = (who, name) => dialog(who).getByRole("button", { name, exact: true });
 const field = (who, name) => dialog(who).locator(`[name="${name}"]`);
-const radio = (who, name) => dialog(who).getByRole("radio", { name, exact: name !== "TIFF" && name !== "PDF" && name !== "PNG" && name !== "SVG" });
+const radio = (who, name) =>
+  dialog(who).getByRole("radio", {
+    name,
+    exact: name !== "TIFF" && name !== "PDF" && name !== "PNG" && name !== "SVG",
+  });
 const notice = ({ page }, text) => page.locator("strata-notices .notice", { hasText: text });
 const closed = (who) => dialog(who).waitFor({ state: "detached" });
 const bar = (who) => dialog(who).getByRole("progressbar");
@@ -33,28 +39,45 @@ function listen(who) {
   asked.set(who, {});
   who.page.on("request", (request) => {
     if (request.method() === "POST" && new URL(request.url()).pathname.endsWith("/figures"))
-      asked.get(who)[request.headers()["prefer"] === "respond-async" ? "file" : "preview"] = request.postDataJSON();
+      asked.get(who)[request.headers()["prefer"] === "respond-async" ? "file" : "preview"] =
+        request.postDataJSON();
   });
 }
 
 const state = (who) => dialog(who).locator("figure").getAttribute("data-state");
-/** The sheet once it is drawn as it is chosen now: what kind of pixels it has, and a text that is the same for the same picture. */
+/**
+ * The sheet once it is drawn as it is chosen now: what kind of pixels it has, and a text that is
+ * the same for the same picture.
+ */
 async function sheet(who) {
   await wait_for(async () => (await state(who)) === "drawn", "the sheet");
-  return dialog(who).locator("figure img").evaluate(async (img) => {
-    await img.decode();
-    const [width, height] = [img.naturalWidth, img.naturalHeight];
-    const canvas = new OffscreenCanvas(width, height).getContext("2d");
-    canvas.drawImage(img, 0, 0);
-    const { data } = canvas.getImageData(0, 0, width, height);
-    let [drawn, text] = [0, 5381];
-    for (let at = 0; at < data.length; at += 4) {
-      if (Math.min(data[at], data[at + 1], data[at + 2]) < 235) ++drawn;
-      text = (text * 33 + data[at] + 3 * data[at + 1] + 7 * data[at + 2]) % 4294967291;
-    }
-    const corner = (x, y) => [...data.slice(4 * (y * width + x), 4 * (y * width + x) + 3)];
-    return { width, height, drawn: drawn / (width * height), text, corners: [corner(2, 2), corner(width - 3, 2), corner(2, height - 3), corner(width - 3, height - 3)] };
-  });
+  return dialog(who)
+    .locator("figure img")
+    .evaluate(async (img) => {
+      await img.decode();
+      const [width, height] = [img.naturalWidth, img.naturalHeight];
+      const canvas = new OffscreenCanvas(width, height).getContext("2d");
+      canvas.drawImage(img, 0, 0);
+      const { data } = canvas.getImageData(0, 0, width, height);
+      let [drawn, text] = [0, 5381];
+      for (let at = 0; at < data.length; at += 4) {
+        if (Math.min(data[at], data[at + 1], data[at + 2]) < 235) ++drawn;
+        text = (text * 33 + data[at] + 3 * data[at + 1] + 7 * data[at + 2]) % 4294967291;
+      }
+      const corner = (x, y) => [...data.slice(4 * (y * width + x), 4 * (y * width + x) + 3)];
+      return {
+        width,
+        height,
+        drawn: drawn / (width * height),
+        text,
+        corners: [
+          corner(2, 2),
+          corner(width - 3, 2),
+          corner(2, height - 3),
+          corner(width - 3, height - 3),
+        ],
+      };
+    });
 }
 /** The sheet after a choice; it must be another than before. */
 async function sheet_after(who, before, choose) {
@@ -88,11 +111,28 @@ try {
   const [{ id: hidden, name: hidden_name }] = (await server.json("GET", `${kBase}/layers`)).layers;
   const finds = await server.json("POST", `/projects/${model.project}/tables`, {
     name: "Finds",
-    columns: [{ name: "Name", kind: "text", required: true }, { name: "Depth", kind: "numeric", unit: "m" }, { name: "Photos", kind: "picture" }],
+    columns: [
+      { name: "Name", kind: "text", required: true },
+      { name: "Depth", kind: "numeric", unit: "m" },
+      { name: "Photos", kind: "picture" },
+    ],
   });
-  await server.json("POST", `/tables/${finds.id}/records`, { values: { name: "Handle of Agathe", depth: 1.25 } });
-  await server.json("POST", `${kBase}/layers`, { name: "Finds", kind: "database", type: "u16", resolution: 2048, table: finds.slug });
-  await server.json("POST", `${kBase}/layers/finds/edits`, { op: "fill", value: 1, mode: "where", where: "true" });
+  await server.json("POST", `/tables/${finds.id}/records`, {
+    values: { name: "Handle of Agathe", depth: 1.25 },
+  });
+  await server.json("POST", `${kBase}/layers`, {
+    name: "Finds",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    table: finds.slug,
+  });
+  await server.json("POST", `${kBase}/layers/finds/edits`, {
+    op: "fill",
+    value: 1,
+    mode: "where",
+    where: "true",
+  });
   const ada_person = await server.add_person("ada", "annotator");
   await ada.sign_in(server, ada_person);
   await phone.sign_in(server, await server.add_person("vera", "viewer"));
@@ -109,11 +149,27 @@ try {
   await dialog(ada).getByRole("dialog").waitFor();
   const first = await sheet(ada);
   assert.deepEqual(first.corners, Array(4).fill([255, 255, 255]));
-  assert.ok(first.drawn > 0.03 && first.drawn < 0.7, `the model covers ${first.drawn} of the sheet`);
+  assert.ok(
+    first.drawn > 0.03 && first.drawn < 0.7,
+    `the model covers ${first.drawn} of the sheet`,
+  );
   const { preview } = asked.get(ada);
-  assert.deepEqual([preview.format, preview.paper, preview.light.mode, preview.camera.section.length, "scale" in preview, preview.provisional], ["png", "a4", "raking", 1, false, "Provisional"]);
+  assert.deepEqual(
+    [
+      preview.format,
+      preview.paper,
+      preview.light.mode,
+      preview.camera.section.length,
+      "scale" in preview,
+      preview.provisional,
+    ],
+    ["png", "a4", "raking", 1, false, "Provisional"],
+  );
   assert.equal(preview.layers.find(({ layer }) => layer === hidden).visible, false);
-  assert.match(await dialog(ada).locator("figure img").getAttribute("alt"), /A4, seen from: As I see it, scale: As fits/);
+  assert.match(
+    await dialog(ada).locator("figure img").getAttribute("alt"),
+    /A4, seen from: As I see it, scale: As fits/,
+  );
   await shot(ada, "first");
 
   say("where nobody has confirmed the size, that is told, until somebody has");
@@ -125,12 +181,21 @@ try {
   say("another scale is another sheet: twice as small is a quarter of the area");
   await field(ada, "legend").uncheck();
   await wait_for(async () => asked.get(ada).preview.legend === false, "a sheet without a legend");
-  const one = await sheet_after(ada, await sheet_after(ada, await sheet(ada), () => field(ada, "scale").selectOption("5")), () => field(ada, "scale").selectOption("1"));
+  const one = await sheet_after(
+    ada,
+    await sheet_after(ada, await sheet(ada), () => field(ada, "scale").selectOption("5")),
+    () => field(ada, "scale").selectOption("1"),
+  );
   const two = await sheet_after(ada, one, () => field(ada, "scale").selectOption("2"));
-  assert.ok(one.drawn > 2.5 * two.drawn && two.drawn > 0.004, `${one.drawn} at 1 : 1, ${two.drawn} at 1 : 2`);
+  assert.ok(
+    one.drawn > 2.5 * two.drawn && two.drawn > 0.004,
+    `${one.drawn} at 1 : 1, ${two.drawn} at 1 : 2`,
+  );
   await field(ada, "scale").selectOption("own");
   await field(ada, "own_scale").fill("2 to 1");
-  await dialog(ada).getByText(/^Write it as 1 : 40/).waitFor();
+  await dialog(ada)
+    .getByText(/^Write it as 1 : 40/)
+    .waitFor();
   assert.equal(await field(ada, "own_scale").getAttribute("aria-invalid"), "true");
   await button(ada, "Make the figure").click();
   assert.equal(asked.get(ada).file, undefined);
@@ -140,12 +205,19 @@ try {
 
   say("so are another direction, paper and orientation");
   const top = await sheet_after(ada, half, () => field(ada, "from").selectOption("top"));
-  assert.deepEqual([asked.get(ada).preview.direction, asked.get(ada).preview.camera.section.length], ["top", 1]);
-  const turned = await sheet_after(ada, top, () => radio(ada, top.width > top.height ? "Portrait" : "Landscape").click());
+  assert.deepEqual(
+    [asked.get(ada).preview.direction, asked.get(ada).preview.camera.section.length],
+    ["top", 1],
+  );
+  const turned = await sheet_after(ada, top, () =>
+    radio(ada, top.width > top.height ? "Portrait" : "Landscape").click(),
+  );
   assert.notEqual(turned.width > turned.height, top.width > top.height);
   await sheet_after(ada, turned, () => radio(ada, "A5").click());
 
-  say("square to a face: the dialog steps aside, Escape leads back as it was, a click takes the face");
+  say(
+    "square to a face: the dialog steps aside, Escape leads back as it was, a click takes the face",
+  );
   const hint = ada.page.locator("strata-face-hint section");
   await field(ada, "from").selectOption("face");
   await hint.waitFor();
@@ -156,9 +228,18 @@ try {
   const before_face = await sheet(ada);
   await field(ada, "from").selectOption("face");
   await hint.waitFor();
-  const seen = (await ada.page.locator("strata-stage canvas").first().getAttribute("data-camera-seq")) ?? "";
-  await ada.drag([[0.5, 0.5], [0.62, 0.5]]);
-  await wait_for(async () => (await ada.page.locator("strata-stage canvas").first().getAttribute("data-camera-seq")) !== seen, "the model to turn");
+  const seen =
+    (await ada.page.locator("strata-stage canvas").first().getAttribute("data-camera-seq")) ?? "";
+  await ada.drag([
+    [0.5, 0.5],
+    [0.62, 0.5],
+  ]);
+  await wait_for(
+    async () =>
+      (await ada.page.locator("strata-stage canvas").first().getAttribute("data-camera-seq")) !==
+      seen,
+    "the model to turn",
+  );
   const square = await sheet_after(ada, before_face, async () => {
     const box = await ada.stage_box();
     await ada.page.mouse.click(box.x + box.width * 0.4, box.y + box.height * 0.55);
@@ -166,7 +247,9 @@ try {
     await wait_for(() => asked.get(ada).preview.normal, "the face to be asked for");
   });
   const { normal, center, direction } = asked.get(ada).preview;
-  assert.ok(Math.abs(Math.hypot(...normal) - 1) < 1e-3 && center.length === 3 && direction === undefined);
+  assert.ok(
+    Math.abs(Math.hypot(...normal) - 1) < 1e-3 && center.length === 3 && direction === undefined,
+  );
   assert.equal(await field(ada, "from").inputValue(), "face");
   await button(ada, "Pick another face…").click();
   await hint.waitFor();
@@ -180,15 +263,22 @@ try {
   const unlabelled = await sheet(ada);
   await field(ada, "caption").fill("The handle,\nfrom the side");
   await sheet_after(ada, unlabelled, () => field(ada, "labels").selectOption({ label: "Finds" }));
-  assert.deepEqual(await field(ada, "column").locator("option").allTextContents(), ["Name", "Depth"]);
+  assert.deepEqual(await field(ada, "column").locator("option").allTextContents(), [
+    "Name",
+    "Depth",
+  ]);
   await field(ada, "credit").fill("Museum of Strata, CC BY 4.0");
   await radio(ada, "SVG").click();
   await radio(ada, "150 dpi").click();
   await shot(ada, "labels");
   const svg = await make(ada);
   assert.match(svg.name, /\.svg$/);
-  for (const word of ["Handle of Agathe", "Museum of Strata"]) assert.ok(svg.bytes.toString("utf8").includes(word), `${word} is not in the drawing`);
-  assert.deepEqual([asked.get(ada).file.labels.column, asked.get(ada).file.dpi, asked.get(ada).file.caption], ["name", 150, "The handle,\nfrom the side"]);
+  for (const word of ["Handle of Agathe", "Museum of Strata"])
+    assert.ok(svg.bytes.toString("utf8").includes(word), `${word} is not in the drawing`);
+  assert.deepEqual(
+    [asked.get(ada).file.labels.column, asked.get(ada).file.dpi, asked.get(ada).file.caption],
+    ["name", 150, "The handle,\nfrom the side"],
+  );
   await dialog(ada).getByText(`Saved as ${svg.name}.`).waitFor();
 
   say("a PDF is made, saved under its name, and listed no more");
@@ -208,14 +298,22 @@ try {
   await radio(ada, "600 dpi").click();
   await radio(ada, "TIFF").click();
   const [started] = await Promise.all([
-    ada.page.waitForResponse((answer) => answer.request().method() === "POST" && new URL(answer.url()).pathname.endsWith("/figures") && answer.status() === 202),
+    ada.page.waitForResponse(
+      (answer) =>
+        answer.request().method() === "POST" &&
+        new URL(answer.url()).pathname.endsWith("/figures") &&
+        answer.status() === 202,
+    ),
     button(ada, "Make the figure").click(),
   ]);
   await bar(ada).waitFor();
   await shot(ada, "making");
   await button(ada, "Cancel the figure").click();
   await bar(ada).waitFor({ state: "detached" });
-  const job = await ada.page.evaluate(async (at) => (await fetch(`/api/v1/jobs/${at}`)).json(), (await started.json()).id);
+  const job = await ada.page.evaluate(
+    async (at) => (await fetch(`/api/v1/jobs/${at}`)).json(),
+    (await started.json()).id,
+  );
   assert.deepEqual([job.state, job.file, downloads], ["cancelled", undefined, []]);
 
   say("one whose dialog is closed goes on, and is offered");
@@ -239,20 +337,32 @@ try {
   await shot(ada, "ready");
   assert.deepEqual(downloads, []);
   await ada.page.unroute("**/api/v1/jobs/*");
-  const png = await download(ada, () => notice(ada, "The figure is ready").getByRole("button", { name: "Save the file" }).click());
+  const png = await download(ada, () =>
+    notice(ada, "The figure is ready").getByRole("button", { name: "Save the file" }).click(),
+  );
   assert.match(png.name, /\.png$/);
   assert.equal(png.bytes.subarray(1, 4).toString("latin1"), "PNG");
   await row.waitFor({ state: "detached" });
 
   say("what was written is there again, also what was chosen, in another visit as well");
   await open_dialog(ada);
-  assert.deepEqual([await field(ada, "title").inputValue(), await field(ada, "from").inputValue()], ["Pot of Agathe", "face"]);
+  assert.deepEqual(
+    [await field(ada, "title").inputValue(), await field(ada, "from").inputValue()],
+    ["Pot of Agathe", "face"],
+  );
   await field(ada, "from").selectOption("front");
   await ada.page.keyboard.press("Escape");
   await closed(ada);
   await open_model(ada);
   await open_dialog(ada);
-  assert.deepEqual([await field(ada, "title").inputValue(), await field(ada, "from").inputValue(), await field(ada, "own_scale").inputValue()], ["", "front", "1 : 1.5"]);
+  assert.deepEqual(
+    [
+      await field(ada, "title").inputValue(),
+      await field(ada, "from").inputValue(),
+      await field(ada, "own_scale").inputValue(),
+    ],
+    ["", "front", "1 : 1.5"],
+  );
   assert.equal(await radio(ada, "A5").getAttribute("aria-checked"), "true");
 
   say("what the server refuses stands at its field");
@@ -260,11 +370,17 @@ try {
   await field(ada, "column").selectOption("depth");
   await sheet(ada);
   const columns = (await server.json("GET", `/tables/${finds.id}`)).columns;
-  await server.request("DELETE", `/tables/${finds.id}/columns/${columns.find(({ slug }) => slug === "depth").id}`);
+  await server.request(
+    "DELETE",
+    `/tables/${finds.id}/columns/${columns.find(({ slug }) => slug === "depth").id}`,
+  );
   await button(ada, "Make the figure").click();
   await dialog(ada).locator("#labels_problem").waitFor();
   assert.equal(await field(ada, "labels").getAttribute("aria-invalid"), "true");
-  await wait_for(() => field(ada, "labels").evaluate((select) => select.getRootNode().activeElement === select), "the keyboard to be in the field");
+  await wait_for(
+    () => field(ada, "labels").evaluate((select) => select.getRootNode().activeElement === select),
+    "the keyboard to be in the field",
+  );
   assert.equal(await bar(ada).count(), 0);
   await shot(ada, "refused");
   await field(ada, "labels").selectOption("");
@@ -274,31 +390,63 @@ try {
 
   say("of a kept view, by its menu: what it shows, not what is seen");
   const list = ada.page.locator("strata-view-list");
-  const as_ada = { Authorization: `Bearer ${ada_person.token}`, "Content-Type": "application/json", "Idempotency-Key": "west" };
-  const { scale: _s, dpi: _d, format: _f, paper: _p, legend: _l, provisional: _v, continued: _c, direction: _r, ...kept } = preview;
-  const made = await fetch(`${server.url}/api/v1${kBase}/views`, { method: "POST", headers: as_ada, body: JSON.stringify({ name: "West wall", text: "", ...kept }) });
+  const as_ada = {
+    Authorization: `Bearer ${ada_person.token}`,
+    "Content-Type": "application/json",
+    "Idempotency-Key": "west",
+  };
+  const {
+    scale: _s,
+    dpi: _d,
+    format: _f,
+    paper: _p,
+    legend: _l,
+    provisional: _v,
+    continued: _c,
+    direction: _r,
+    ...kept
+  } = preview;
+  const made = await fetch(`${server.url}/api/v1${kBase}/views`, {
+    method: "POST",
+    headers: as_ada,
+    body: JSON.stringify({ name: "West wall", text: "", ...kept }),
+  });
   assert.equal(made.status, 201, await made.clone().text());
   await list.getByRole("button", { name: "Options for West wall" }).click();
   await list.getByRole("menuitem", { name: "Figure of this view…" }).click();
   await dialog(ada).getByRole("heading", { name: "Figure of the view “West wall”" }).waitFor();
   await sheet(ada);
-  assert.deepEqual([asked.get(ada).preview.view, asked.get(ada).preview.camera, asked.get(ada).preview.direction], [String((await made.json()).id), undefined, undefined]);
+  assert.deepEqual(
+    [asked.get(ada).preview.view, asked.get(ada).preview.camera, asked.get(ada).preview.direction],
+    [String((await made.json()).id), undefined, undefined],
+  );
   await shot(ada, "of_view");
   await ada.page.keyboard.press("Escape");
   await closed(ada);
 
   say("what a browser kept and is no choice does no harm");
-  await ada.page.evaluate(() => localStorage.setItem("strata.figure", '{"from":"north","dpi":1e9,"paper":["a4"],"scale":"x"}'));
+  await ada.page.evaluate(() =>
+    localStorage.setItem("strata.figure", '{"from":"north","dpi":1e9,"paper":["a4"],"scale":"x"}'),
+  );
   await open_model(ada);
   await open_dialog(ada);
   await sheet(ada);
-  assert.deepEqual([await field(ada, "from").inputValue(), await field(ada, "scale").inputValue()], ["camera", ""]);
+  assert.deepEqual(
+    [await field(ada, "from").inputValue(), await field(ada, "scale").inputValue()],
+    ["camera", ""],
+  );
 
   say("on a phone, by who may only look");
   await open_model(phone);
   await phone.page.getByRole("button", { name: "Show the panel" }).tap();
-  await phone.page.locator("strata-view-panel").getByRole("button", { name: "View", exact: true }).tap();
-  await phone.page.locator("strata-view-panel").getByRole("button", { name: "Make a figure…" }).tap();
+  await phone.page
+    .locator("strata-view-panel")
+    .getByRole("button", { name: "View", exact: true })
+    .tap();
+  await phone.page
+    .locator("strata-view-panel")
+    .getByRole("button", { name: "Make a figure…" })
+    .tap();
   const small = await sheet(phone);
   assert.ok(small.drawn > 0.03);
   await shot(phone, "phone");
@@ -306,9 +454,14 @@ try {
   const phone_hint = phone.page.locator("strata-face-hint section");
   await phone_hint.waitFor();
   await shot(phone, "phone_pick");
-  // The dialog that stepped aside left the stage of another shape: what is tapped is what is seen there then.
-  const fits = (canvas) => Math.abs(canvas.width / canvas.height - canvas.clientWidth / canvas.clientHeight) < 0.02;
-  await wait_for(() => phone.page.locator("strata-stage canvas").first().evaluate(fits), "the picture in the stage's new shape");
+  // The dialog that stepped aside left the stage of another shape: what is tapped is what is seen
+  // there then.
+  const fits = (canvas) =>
+    Math.abs(canvas.width / canvas.height - canvas.clientWidth / canvas.clientHeight) < 0.02;
+  await wait_for(
+    () => phone.page.locator("strata-stage canvas").first().evaluate(fits),
+    "the picture in the stage's new shape",
+  );
   const stage = await phone.stage_box();
   await phone.page.touchscreen.tap(stage.x + stage.width / 2, stage.y + 0.58 * stage.height);
   await phone_hint.waitFor({ state: "detached" });
@@ -316,7 +469,10 @@ try {
   await sheet(phone);
   await radio(phone, "PNG").tap();
   await radio(phone, "150 dpi").tap();
-  const [of_viewer] = await Promise.all([phone.page.waitForEvent("download"), button(phone, "Make the figure").tap()]);
+  const [of_viewer] = await Promise.all([
+    phone.page.waitForEvent("download"),
+    button(phone, "Make the figure").tap(),
+  ]);
   assert.match(of_viewer.suggestedFilename(), /\.png$/);
 
   say("the end");
@@ -325,7 +481,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ ada, phone })) await shot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ ada, phone }))
+    await shot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of [ada, phone]) await who.close();

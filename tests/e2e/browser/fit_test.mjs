@@ -1,5 +1,6 @@
-// Nothing lies over or touches anything else: long names of layers, numbers with their units, the filter beside a chosen record, the switch of the light. On a
-// phone what is painted and undo stay in sight. Controls are named by what is seen on them, and all of the page lies in landmarks.
+// Nothing lies over or touches anything else: long names of layers, numbers with their units, the
+// filter beside a chosen record, the switch of the light. On a phone what is painted and undo stay
+// in sight. Controls are named by what is seen on them, and all of the page lies in landmarks.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -8,8 +9,17 @@ import { Browser } from "../support/browser.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 import { texts_of } from "../support/texts.mjs";
 
-const kWindows = { desk: { width: 1440, height: 900 }, tablet: { width: 820, height: 1180 }, phone: { width: 390, height: 844 } };
-const kHeadRules = ["label-content-name-mismatch", "region", "landmark-one-main", "empty-table-header"];
+const kWindows = {
+  desk: { width: 1440, height: 900 },
+  tablet: { width: 820, height: 1180 },
+  phone: { width: 390, height: 844 },
+};
+const kHeadRules = [
+  "label-content-name-mismatch",
+  "region",
+  "landmark-one-main",
+  "empty-table-header",
+];
 const output = process.env.STRATA_TEST_OUTPUT;
 if (output) mkdirSync(output, { recursive: true });
 
@@ -19,34 +29,71 @@ const server = new StrataServer({ demo: true });
 const { page } = desk;
 let step = "start";
 const say = (text) => console.log((step = text));
-const shoot = async (who, name) => output && (await who.page.screenshot({ path: join(output, `fit_${name}.png`) }));
+const shoot = async (who, name) =>
+  output && (await who.page.screenshot({ path: join(output, `fit_${name}.png`) }));
 const button = (name, who = desk) => who.page.getByRole("button", { name, exact: true });
 /** Where each element's words are, and where its own box ends. */
-const boxes = (locator) => locator.evaluateAll((all) => all.map((each) => each.getBoundingClientRect().toJSON()));
-const apart = (a, b) => a.right <= b.left + 0.5 || b.right <= a.left + 0.5 || a.bottom <= b.top + 0.5 || b.bottom <= a.top + 0.5;
+const boxes = (locator) =>
+  locator.evaluateAll((all) => all.map((each) => each.getBoundingClientRect().toJSON()));
+const apart = (a, b) =>
+  a.right <= b.left + 0.5 ||
+  b.right <= a.left + 0.5 ||
+  a.bottom <= b.top + 0.5 ||
+  b.bottom <= a.top + 0.5;
 /** What is written in a field, as drawn, does not reach the unit beside it. */
 const number_box = (field) =>
   field.evaluate((all) => {
     const input = all.querySelector("input");
     const unit = [...all.children].find((each) => each !== input);
     const style = getComputedStyle(input);
-    const right = input.getBoundingClientRect().right - parseFloat(style.paddingRight) - parseFloat(style.borderRightWidth);
-    return { text_right: right, unit_left: unit.getBoundingClientRect().left, unit_right: unit.getBoundingClientRect().right, right: all.getBoundingClientRect().right };
+    const right =
+      input.getBoundingClientRect().right -
+      parseFloat(style.paddingRight) -
+      parseFloat(style.borderRightWidth);
+    return {
+      text_right: right,
+      unit_left: unit.getBoundingClientRect().left,
+      unit_right: unit.getBoundingClientRect().right,
+      right: all.getBoundingClientRect().right,
+    };
   });
 
 try {
   await server.start();
   const [{ id: model, project }] = (await server.json("GET", "/models")).models;
-  await server.json("POST", `/projects/${project}/templates/stone-condition`, { model: String(model) });
-  await server.json("POST", `/models/${model}/layers`, { name: "Curvature", kind: "numeric", type: "f32", unit: "1/mm", resolution: 2048, palette: { mode: "linear", min: -1, max: 1, points: [{ at: -1, color: "#0000ffff" }, { at: 1, color: "#ff0000ff" }] } });
-  await server.json("POST", "/tables/stone-observations/records", { values: { urgency: "now", depth: 2.4 } });
+  await server.json("POST", `/projects/${project}/templates/stone-condition`, {
+    model: String(model),
+  });
+  await server.json("POST", `/models/${model}/layers`, {
+    name: "Curvature",
+    kind: "numeric",
+    type: "f32",
+    unit: "1/mm",
+    resolution: 2048,
+    palette: {
+      mode: "linear",
+      min: -1,
+      max: 1,
+      points: [
+        { at: -1, color: "#0000ffff" },
+        { at: 1, color: "#ff0000ff" },
+      ],
+    },
+  });
+  await server.json("POST", "/tables/stone-observations/records", {
+    values: { urgency: "now", depth: 2.4 },
+  });
   const person = await server.add_person("ida", "curator");
-  await server.json("PATCH", "/users/ida", { full_name: "Ida Roe" }); // whose initials are not in what she is called
+  // whose initials are not in what she is called
+  await server.json("PATCH", "/users/ida", { full_name: "Ida Roe" });
   await desk.sign_in(server, person);
   await page.goto(`${server.url}/models/${model}`);
   await desk.drawn();
 
-  for (const [language, labels] of Object.entries({ en: "Stone observations", de: "Beobachtungen am Stein" })) {
+  for (const [language, labels] of Object.entries({
+    en: "Stone observations",
+    de: "Beobachtungen am Stein",
+  })) {
     const w = texts_of(language);
     await page.evaluate((chosen) => localStorage.setItem("strata.language", chosen), language);
     await page.reload();
@@ -55,21 +102,32 @@ try {
     say(`${language}: the chosen layer's name is read whole, and no card leaves the panel`);
     await button(w.layers.select(labels)).click();
     const panel = (await boxes(page.locator("strata-model-page aside")))[0];
-    for (const card of await boxes(page.locator("strata-layer-panel li.layer"))) assert.ok(card.right <= panel.right - 13, `a card ends at ${card.right} in a panel that ends at ${panel.right}`);
+    for (const card of await boxes(page.locator("strata-layer-panel li.layer")))
+      assert.ok(
+        card.right <= panel.right - 13,
+        `a card ends at ${card.right} in a panel that ends at ${panel.right}`,
+      );
     const name = page.locator("strata-layer-panel li.selected .name .ellipsis");
-    assert.ok(await name.evaluate((each) => each.scrollWidth <= each.clientWidth + 1), "the chosen layer's name is cut off");
+    assert.ok(
+      await name.evaluate((each) => each.scrollWidth <= each.clientWidth + 1),
+      "the chosen layer's name is cut off",
+    );
     await shoot(desk, `${language}_layers`);
 
     say(`${language}: a number does not touch its unit, however long that is`);
     await button(w.layers.select("Curvature")).click();
     await page.keyboard.press("b");
     const value = await number_box(page.locator("strata-value-picker .number"));
-    assert.ok(value.text_right < value.unit_left && value.unit_right <= value.right, JSON.stringify(value));
+    assert.ok(
+      value.text_right < value.unit_left && value.unit_right <= value.right,
+      JSON.stringify(value),
+    );
     await shoot(desk, `${language}_value`);
 
     say(`${language}: the words of the light switch keep apart`);
     const view = page.locator("strata-view-panel");
-    if ((await view.getByRole("radiogroup").count()) === 0) await view.getByRole("button", { name: w.view.title, expanded: false }).click();
+    if ((await view.getByRole("radiogroup").count()) === 0)
+      await view.getByRole("button", { name: w.view.title, expanded: false }).click();
     const lights = view.getByRole("radiogroup", { name: w.view.light }).getByRole("radio");
     await lights.first().scrollIntoViewIfNeeded();
     const gaps = await lights.evaluateAll((all) =>
@@ -81,7 +139,10 @@ try {
         return Math.min(words.left - box.left, box.right - words.right);
       }),
     );
-    assert.ok(gaps.every((gap) => gap >= 4), `words ${gaps} px from the edges of their buttons`);
+    assert.ok(
+      gaps.every((gap) => gap >= 4),
+      `words ${gaps} px from the edges of their buttons`,
+    );
     await shoot(desk, `${language}_light`);
 
     say(`${language}: a chosen record leaves the filter its room, and the rows their places`);
@@ -102,19 +163,39 @@ try {
     await shoot(desk, `${language}_filter`);
     for (const [window, size] of Object.entries(kWindows)) {
       await page.setViewportSize(size);
-      await wait_for(async () => (await boxes(page.locator("strata-table-panel")))[0].width <= size.width, "the window's width");
+      await wait_for(
+        async () => (await boxes(page.locator("strata-table-panel")))[0].width <= size.width,
+        "the window's width",
+      );
       const parts = await boxes(page.locator("strata-table-panel .bar > *:not(.grow)"));
       const [table] = await boxes(page.locator("strata-table-panel"));
-      for (const part of parts) assert.ok(part.right <= table.right, `in the ${window}: ${JSON.stringify(part)} leaves the table`);
-      for (const [index, part] of parts.entries()) for (const other of parts.slice(index + 1)) assert.ok(part.width === 0 || other.width === 0 || apart(part, other), `in the ${window}: ${JSON.stringify([part, other])}`);
-      assert.ok((await boxes(page.locator("strata-table-panel .filter input")))[0].width >= 190, `the filter in the ${window}`);
+      for (const part of parts)
+        assert.ok(
+          part.right <= table.right,
+          `in the ${window}: ${JSON.stringify(part)} leaves the table`,
+        );
+      for (const [index, part] of parts.entries())
+        for (const other of parts.slice(index + 1))
+          assert.ok(
+            part.width === 0 || other.width === 0 || apart(part, other),
+            `in the ${window}: ${JSON.stringify([part, other])}`,
+          );
+      assert.ok(
+        (await boxes(page.locator("strata-table-panel .filter input")))[0].width >= 190,
+        `the filter in the ${window}`,
+      );
       await shoot(desk, `${language}_filter_${window}`);
     }
     await page.setViewportSize(kWindows.desk);
 
     say(`${language}: in a record's form a number and its unit keep apart`);
-    await page.locator("strata-table-panel .chosen").getByRole("button", { name: w.tables.edit, exact: true }).click();
-    const depth = await number_box(page.locator("strata-record-dialog strata-cell-input .number").first());
+    await page
+      .locator("strata-table-panel .chosen")
+      .getByRole("button", { name: w.tables.edit, exact: true })
+      .click();
+    const depth = await number_box(
+      page.locator("strata-record-dialog strata-cell-input .number").first(),
+    );
     assert.ok(depth.text_right < depth.unit_left, JSON.stringify(depth));
     await shoot(desk, `${language}_form`);
     await page.keyboard.press("Escape");
@@ -125,9 +206,17 @@ try {
     await page.locator("strata-stage .surface").focus();
     await page.keyboard.press("?");
     const help = page.locator("strata-help-sheet");
-    const framed = () => help.locator(".content").evaluate((each) => getComputedStyle(each).outlineStyle !== "none" && each.matches(":focus"));
+    const framed = () =>
+      help
+        .locator(".content")
+        .evaluate(
+          (each) => getComputedStyle(each).outlineStyle !== "none" && each.matches(":focus"),
+        );
     await help.locator("dialog[open]").waitFor();
-    await wait_for(() => help.locator(".content").evaluate((each) => each.matches(":focus")), "the keyboard in the help");
+    await wait_for(
+      () => help.locator(".content").evaluate((each) => each.matches(":focus")),
+      "the keyboard in the help",
+    );
     assert.equal(await framed(), false);
     await shoot(desk, `${language}_help`);
     await page.keyboard.press("Tab");
@@ -145,7 +234,8 @@ try {
   await page.reload();
   await desk.drawn();
   assert.deepEqual(await violations(page, kHeadRules), []);
-  await button(texts_of("en").layers.select("Stone observations")).click(); // the chosen layer after a reload has no table
+  // the chosen layer after a reload has no table
+  await button(texts_of("en").layers.select("Stone observations")).click();
   await page.locator("strata-stage .surface").focus();
   await page.keyboard.press("t");
   await page.getByRole("grid").waitFor();
@@ -164,7 +254,13 @@ try {
   const rail = phone.page.locator("strata-tool-rail");
   const in_sight = async (locator, what) => {
     const [box] = await boxes(locator);
-    assert.ok(box && box.left >= -0.5 && box.right <= kWindows.phone.width + 0.5 && box.bottom <= kWindows.phone.height + 0.5, `${what} at ${JSON.stringify(box)}`);
+    assert.ok(
+      box &&
+        box.left >= -0.5 &&
+        box.right <= kWindows.phone.width + 0.5 &&
+        box.bottom <= kWindows.phone.height + 0.5,
+      `${what} at ${JSON.stringify(box)}`,
+    );
     const hit = await locator.evaluate((each) => {
       const { left, top, width, height } = each.getBoundingClientRect();
       let at = document.elementFromPoint(left + width / 2, top + height / 2);
@@ -182,7 +278,8 @@ try {
   await chip.waitFor();
   for (const place of [0, 60, 100_000]) {
     await rail.evaluate((each, left) => (each.scrollLeft = left), place);
-    for (const name of ["Undo", "Redo"]) await in_sight(rail.getByRole("button", { name, exact: true }), name);
+    for (const name of ["Undo", "Redo"])
+      await in_sight(rail.getByRole("button", { name, exact: true }), name);
     await in_sight(chip, "what is painted");
   }
   await rail.evaluate((each) => (each.scrollLeft = 0));
@@ -191,7 +288,8 @@ try {
   await shoot(phone, "phone_brush");
 
   say("the line that says so leads to what can be chosen");
-  if ((await phone.page.locator("strata-model-page aside").count()) > 0) await button("Hide the panel", phone).click();
+  if ((await phone.page.locator("strata-model-page aside").count()) > 0)
+    await button("Hide the panel", phone).click();
   await chip.click();
   await phone.page.locator("strata-brush-panel").getByRole("heading", { name: "Brush" }).waitFor();
   await shoot(phone, "phone_options");
@@ -204,7 +302,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-30).join("\n")}`);
-  for (const [name, who] of Object.entries({ desk, phone })) await shoot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ desk, phone }))
+    await shoot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const browser of [desk, phone]) await browser.close();

@@ -1,6 +1,6 @@
-// The page and the streamed picture compared with checked-in pictures of tests/golden (generated models only).
-// STRATA_UPDATE_GOLDEN=1 writes them anew: look at what you check in. On failure the picture and a difference image
-// (red: what differs) lie in the build folder.
+// The page and the streamed picture compared with checked-in pictures of tests/golden (generated
+// models only). STRATA_UPDATE_GOLDEN=1 writes them anew: look at what you check in. On failure the
+// picture and a difference image (red: what differs) lie in the build folder.
 import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -14,14 +14,16 @@ const kGolden = join(kRoot, "tests", "golden");
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-golden";
 const is_update = process.env.STRATA_UPDATE_GOLDEN === "1";
 
-// A pixel differs when a channel is off by more than `kStep`: less is what other versions of Mesa, libjpeg and FreeType make
-// of the same picture. `share` is how many may: edges of the pot move by a pixel with another rasteriser, letters with another
-// FreeType. `mean` holds the whole to account: a wrong colour on a small patch is allowed by neither.
+// A pixel differs when a channel is off by more than `kStep`: less is what other versions of Mesa,
+// libjpeg and FreeType make of the same picture. `share` is how many may: edges of the pot move by
+// a pixel with another rasteriser, letters with another FreeType. `mean` holds the whole to
+// account: a wrong colour on a small patch is allowed by neither.
 const kStep = 40;
 const kPageLimits = { share: 0.012, mean: 1.6 };
 const kPictureLimits = { share: 0.004, mean: 0.8 };
-// A small thing that is missing drowns in a whole page, so the details are looked at on their own. The limits leave room for
-// the edges of letters and lines; that none of the details may be missing is tried with each of them.
+// A small thing that is missing drowns in a whole page, so the details are looked at on their own.
+// The limits leave room for the edges of letters and lines; that none of the details may be missing
+// is tried with each of them.
 const kDetailLimits = { share: 0.05, mean: 7 };
 
 const failures = [];
@@ -66,10 +68,15 @@ function compare(name, shot, limits, details = {}) {
   }
   const [now, golden] = [decode_png(shot), decode_png(readFileSync(file))];
   if (now.width !== golden.width || now.height !== golden.height) {
-    failures.push(`${name}: ${now.width} × ${now.height} instead of ${golden.width} × ${golden.height}`);
+    failures.push(
+      `${name}: ${now.width} × ${now.height} instead of ${golden.width} × ${golden.height}`,
+    );
     return;
   }
-  const parts = [[name, whole(now), limits], ...Object.entries(details).map(([part, box]) => [`${name}, ${part}`, box, kDetailLimits])];
+  const parts = [
+    [name, whole(now), limits],
+    ...Object.entries(details).map(([part, box]) => [`${name}, ${part}`, box, kDetailLimits]),
+  ];
   let is_good = true;
   for (const [part, box, most] of parts) {
     const found = difference(now, golden, box);
@@ -87,20 +94,33 @@ function compare(name, shot, limits, details = {}) {
 /** The page without a detail must not pass for the golden picture. */
 function assert_noticed(name, detail, box, without) {
   if (is_update) return;
-  const found = difference(decode_png(without), decode_png(readFileSync(join(kGolden, `${name}.png`))), box);
-  console.log(`${name} without ${detail}: ${(found.share * 100).toFixed(1)} % of pixels differ, mean ${found.mean.toFixed(1)}`);
-  if (within(found, kDetailLimits)) failures.push(`${name}: the limits do not notice that ${detail} is missing`);
+  const found = difference(
+    decode_png(without),
+    decode_png(readFileSync(join(kGolden, `${name}.png`))),
+    box,
+  );
+  console.log(
+    `${name} without ${detail}: ${(found.share * 100).toFixed(1)} % of pixels differ, mean ${found.mean.toFixed(1)}`,
+  );
+  if (within(found, kDetailLimits))
+    failures.push(`${name}: the limits do not notice that ${detail} is missing`);
 }
 
 /** Where an element is, in whole pixels. */
 async function box_of(locator) {
   const { x, y, width, height } = await locator.boundingBox();
-  return { x: Math.round(x), y: Math.round(y), width: Math.round(width), height: Math.round(height) };
+  return {
+    x: Math.round(x),
+    y: Math.round(y),
+    width: Math.round(width),
+    height: Math.round(height),
+  };
 }
 
 /** The page's own screens, at the size of a laptop and of a phone. */
 async function compare_page(server) {
-  const laptop = await Browser.open({ viewport: { width: 1280, height: 900 } }); // the legend is seen below the brush
+  // the legend is seen below the brush
+  const laptop = await Browser.open({ viewport: { width: 1280, height: 900 } });
   try {
     const { page } = laptop;
     await page.goto(server.link);
@@ -112,7 +132,10 @@ async function compare_page(server) {
     await page.keyboard.press("b");
     await page.getByRole("radio", { name: "Open crack" }).click();
     await laptop.point(0.5, 0.6);
-    await page.locator("strata-value-readout").getByText(/Position/).waitFor();
+    await page
+      .locator("strata-value-readout")
+      .getByText(/Position/)
+      .waitFor();
     const ring = await box_of(page.locator("strata-stage svg.over circle").first());
     const elements = {
       title: page.locator("strata-model-page h1"),
@@ -122,10 +145,20 @@ async function compare_page(server) {
       "the scale bar": page.locator("strata-stage .scale"),
       "the value under the pointer": page.locator("strata-value-readout .card"),
     };
-    const details = { "the cursor": { x: ring.x - 3, y: ring.y - 3, width: ring.width + 6, height: ring.height + 6 } };
+    const details = {
+      "the cursor": {
+        x: ring.x - 3,
+        y: ring.y - 3,
+        width: ring.width + 6,
+        height: ring.height + 6,
+      },
+    };
     for (const [name, locator] of Object.entries(elements)) details[name] = await box_of(locator);
     compare("model", await laptop.settled(), kPageLimits, details);
-    for (const [name, element] of Object.entries({ "the cursor": page.locator("strata-stage svg.over"), ...elements })) {
+    for (const [name, element] of Object.entries({
+      "the cursor": page.locator("strata-stage svg.over"),
+      ...elements,
+    })) {
       await element.evaluate((each) => (each.style.visibility = "hidden"));
       assert_noticed("model", name, details[name], await laptop.settled());
       await element.evaluate((each) => (each.style.visibility = ""));
@@ -138,7 +171,12 @@ async function compare_page(server) {
   } finally {
     await laptop.close();
   }
-  const phone = await Browser.open({ viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true });
+  const phone = await Browser.open({
+    viewport: { width: 390, height: 844 },
+    deviceScaleFactor: 2,
+    hasTouch: true,
+    isMobile: true,
+  });
   try {
     await phone.sign_in(server, server.token);
     await phone.page.goto(`${server.url}/models/1`);
@@ -150,7 +188,10 @@ async function compare_page(server) {
   }
 }
 
-const frame = async (server, request) => Buffer.from(await (await server.request("POST", "/models/demo-pot/frame", request)).arrayBuffer());
+const frame = async (server, request) =>
+  Buffer.from(
+    await (await server.request("POST", "/models/demo-pot/frame", request)).arrayBuffer(),
+  );
 
 /** Looks for one along a line across the pot. */
 async function point_at_open_crack(browser) {
@@ -159,7 +200,7 @@ async function point_at_open_crack(browser) {
   for (let x = 0.25; x < 0.75; x += 0.004) {
     await browser.point(x, 0.6);
     await card.getByText(/Position/).waitFor();
-    for (let text = before; text === before; ) text = await card.innerText();
+    for (let text = before; text === before;) text = await card.innerText();
     before = await card.innerText();
     if (before.includes("Open crack")) return;
   }
@@ -179,7 +220,10 @@ async function write_readme_picture(browser) {
   await point_at_open_crack(browser);
   mkdirSync(join(kRoot, "docs"), { recursive: true });
   const picture = decode_png(await browser.settled());
-  picture.data.forEach((value, at) => (picture.data[at] = Math.min(254, Math.round(value / 2) * 2))); // a quarter smaller, looks the same
+  // a quarter smaller, looks the same
+  picture.data.forEach(
+    (value, at) => (picture.data[at] = Math.min(254, Math.round(value / 2) * 2)),
+  );
   writeFileSync(join(kRoot, "docs", "demo.png"), encode_png(picture));
 }
 
@@ -198,12 +242,29 @@ function distance_to(path, x, y) {
 /** painting across a chart seam shows no visible seam */
 async function compare_seam(server) {
   const camera = pot_camera(960, 720);
-  const path = [[300, 400], [420, 470], [540, 470], [660, 400]];
+  const path = [
+    [300, 400],
+    [420, 470],
+    [540, 470],
+    [660, 400],
+  ];
   const radius = 30;
   const palette = { mode: "categorical", points: [{ at: 1, color: "#ff00ff" }] };
-  // Finer than a pixel: a coarser texel on a surface seen edge-on may show a corner while its middle is hidden, and is not painted.
-  await server.json("POST", "/models/demo-pot/layers", { name: "Seam", type: "u8", resolution: 8192, palette });
-  const edit = await server.json("POST", "/models/demo-pot/layers/seam/edits", { op: "stroke", value: 1, camera, radius_px: radius, path });
+  // Finer than a pixel: a coarser texel on a surface seen edge-on may show a corner while its
+  // middle is hidden, and is not painted.
+  await server.json("POST", "/models/demo-pot/layers", {
+    name: "Seam",
+    type: "u8",
+    resolution: 8192,
+    palette,
+  });
+  const edit = await server.json("POST", "/models/demo-pot/layers/seam/edits", {
+    op: "stroke",
+    value: 1,
+    camera,
+    radius_px: radius,
+    path,
+  });
   assert.ok(edit.texels_changed > 10_000, JSON.stringify(edit));
 
   // The stroke does cross seams: neighbours on the surface lie far apart in the texture.
@@ -212,8 +273,15 @@ async function compare_seam(server) {
   for (let x = path[0][0]; x <= path.at(-1)[0]; x += 4) {
     const i = path.findIndex(([right]) => right >= x);
     const [[ax, ay], [bx, by]] = i > 0 ? [path[i - 1], path[i]] : [path[0], path[1]];
-    const hit = await server.json("POST", "/models/demo-pot/pick", { camera, x: x + 0.5, y: ay + ((by - ay) * (x - ax)) / (bx - ax) + 0.5 });
-    assert.ok(hit.hit && hit.values.seam.valid, `the middle of the stroke at x = ${x} is not painted: ${JSON.stringify(hit)}`);
+    const hit = await server.json("POST", "/models/demo-pot/pick", {
+      camera,
+      x: x + 0.5,
+      y: ay + ((by - ay) * (x - ax)) / (bx - ax) + 0.5,
+    });
+    assert.ok(
+      hit.hit && hit.values.seam.valid,
+      `the middle of the stroke at x = ${x} is not painted: ${JSON.stringify(hit)}`,
+    );
     if (last && Math.hypot(hit.uv[0] - last.uv[0], hit.uv[1] - last.uv[1]) > 0.05) ++seams;
     last = hit;
   }
@@ -230,31 +298,67 @@ async function compare_seam(server) {
       if (distance > radius + 1.5 && painted) spills.push([x, y]);
     }
   }
-  console.log(`seam: ${seams} seams crossed, ${holes.length} pixels unpainted inside, ${spills.length} painted outside`);
+  console.log(
+    `seam: ${seams} seams crossed, ${holes.length} pixels unpainted inside, ${spills.length} painted outside`,
+  );
   if (holes.length + spills.length > 0) {
     writeFileSync(join(kOutput, "seam.png"), shot);
-    failures.push(`seam: unpainted inside ${JSON.stringify(holes.slice(0, 10))}, painted outside ${JSON.stringify(spills.slice(0, 10))}`);
+    failures.push(
+      `seam: unpainted inside ${JSON.stringify(holes.slice(0, 10))}, painted outside ${JSON.stringify(spills.slice(0, 10))}`,
+    );
   }
   compare("seam", shot, kPictureLimits);
-  compare("seam_aside", await frame(server, { camera: pot_camera(960, 720, 0.9), layers: ["seam"], format: "png" }), kPictureLimits);
+  compare(
+    "seam_aside",
+    await frame(server, { camera: pot_camera(960, 720, 0.9), layers: ["seam"], format: "png" }),
+    kPictureLimits,
+  );
 }
 
 /** the pot cut open, its inside painted; and its relief in raking light */
 async function compare_cut(server) {
-  const camera = { ...pot_camera(960, 720, 0.3), section: [[0, 1, 0, 0]] }; // the half before the eye is cut away
+  // the half before the eye is cut away
+  const camera = { ...pot_camera(960, 720, 0.3), section: [[0, 1, 0, 0]] };
   const palette = { mode: "categorical", points: [{ at: 1, color: "#00c8ff" }] };
-  await server.json("POST", "/models/demo-pot/layers", { name: "Inside", type: "u8", resolution: 4096, palette });
-  const stroke = { op: "stroke", value: 1, camera, radius_px: 40, path: [[330, 420], [480, 500], [640, 420]] };
+  await server.json("POST", "/models/demo-pot/layers", {
+    name: "Inside",
+    type: "u8",
+    resolution: 4096,
+    palette,
+  });
+  const stroke = {
+    op: "stroke",
+    value: 1,
+    camera,
+    radius_px: 40,
+    path: [
+      [330, 420],
+      [480, 500],
+      [640, 420],
+    ],
+  };
   const edit = await server.json("POST", "/models/demo-pot/layers/inside/edits", stroke);
   assert.ok(edit.texels_changed > 10_000, JSON.stringify(edit));
-  compare("cut", await frame(server, { camera, layers: ["inside"], format: "png" }), kPictureLimits);
+  compare(
+    "cut",
+    await frame(server, { camera, layers: ["inside"], format: "png" }),
+    kPictureLimits,
+  );
   const whole = { ...camera, section: [] };
-  const outside = decode_png(await frame(server, { camera: whole, layers: ["inside"], format: "png" }));
+  const outside = decode_png(
+    await frame(server, { camera: whole, layers: ["inside"], format: "png" }),
+  );
   let spilled = 0;
-  for (let at = 0; at < outside.data.length; at += 4) if (has_hue(outside.data, at, [0, 200, 255])) ++spilled;
-  if (spilled > 0) failures.push(`cut: ${spilled} pixels are painted on the side that was cut away`);
+  for (let at = 0; at < outside.data.length; at += 4)
+    if (has_hue(outside.data, at, [0, 200, 255])) ++spilled;
+  if (spilled > 0)
+    failures.push(`cut: ${spilled} pixels are painted on the side that was cut away`);
   const light = { mode: "raking", direction: [-0.9, 0.3, 0.3] };
-  compare("raking", await frame(server, { camera: whole, layers: [], light, format: "png" }), kPictureLimits);
+  compare(
+    "raking",
+    await frame(server, { camera: whole, layers: [], light, format: "png" }),
+    kPictureLimits,
+  );
 }
 
 require_browser();

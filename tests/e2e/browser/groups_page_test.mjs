@@ -1,19 +1,31 @@
-// Groups on the page: an administrator makes one, puts people into it, gives it a role in a project; its people see the project and where their
-// role comes from, until it is taken away under their open pages.
+// Groups on the page: an administrator makes one, puts people into it, gives it a role in a
+// project; its people see the project and where their role comes from, until it is taken away under
+// their open pages.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/browser.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 // What the browser says of answers that the test wants, and of sockets that the server ends.
-const kExpected = ["status of 401", "status of 403", "status of 404", "status of 409", "status of 422", ...kOfLostServer];
+const kExpected = [
+  "status of 401",
+  "status of 403",
+  "status of 404",
+  "status of 409",
+  "status of 422",
+  ...kOfLostServer,
+];
 
-const [owner, gil] = [await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
+const [owner, gil] = [
+  await Browser.open(),
+  await Browser.open({ viewport: { width: 390, height: 844 } }),
+];
 const server = new StrataServer({ demo: true });
 let step = "start";
 const say = (text) => console.log((step = text));
 const shot = async ({ page }, name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `groups_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `groups_${name}.png`) });
 };
 
 async function choose_in_menu({ page }, name) {
@@ -27,7 +39,10 @@ async function choose_for(options, command) {
 }
 async function leave_inner_dialog() {
   await owner.page.keyboard.press("Escape");
-  await wait_for(async () => (await owner.page.locator("dialog[open]").count()) === 1, "the inner dialog to close");
+  await wait_for(
+    async () => (await owner.page.locator("dialog[open]").count()) === 1,
+    "the inner dialog to close",
+  );
 }
 
 try {
@@ -64,7 +79,10 @@ try {
   await owner.page.getByRole("checkbox", { name: "max" }).uncheck();
   await owner.page.getByText("Is out now.").waitFor();
   await owner.page.getByLabel("Find people").last().fill("gil");
-  await wait_for(async () => (await owner.page.getByRole("checkbox").count()) === 1, "gil alone to be listed");
+  await wait_for(
+    async () => (await owner.page.getByRole("checkbox").count()) === 1,
+    "gil alone to be listed",
+  );
   await owner.page.getByRole("checkbox", { name: /Gil Guest/ }).focus();
   await owner.page.keyboard.press("Space");
   await owner.page.getByText("Is in it now.").waitFor();
@@ -74,7 +92,9 @@ try {
 
   say("it gets a role in the project of the demo: its people see it, and where that comes from");
   await choose_for("Options for the group Students", "Roles in projects…");
-  const in_demo = owner.page.locator("strata-project-roles-dialog").getByRole("combobox", { name: "Role in Demo" });
+  const in_demo = owner.page
+    .locator("strata-project-roles-dialog")
+    .getByRole("combobox", { name: "Role in Demo" });
   assert.equal(await in_demo.inputValue(), "");
   await in_demo.selectOption("annotator");
   await owner.page.locator("strata-project-roles-dialog").getByText("Is annotator now.").waitFor();
@@ -91,7 +111,10 @@ try {
 
   say("administrators see it of the person, too");
   await show("People");
-  await owner.page.getByRole("row", { name: /Gil Guest/ }).getByText("Students").waitFor();
+  await owner.page
+    .getByRole("row", { name: /Gil Guest/ })
+    .getByText("Students")
+    .waitFor();
   await owner.page.getByLabel("Find people").fill("students");
   await owner.page.getByText(/^1 of \d people$/).waitFor();
   await shot(owner, "people");
@@ -112,7 +135,9 @@ try {
   await owner.page.getByRole("checkbox", { name: "Students" }).check();
   await shot(owner, "invite");
   await owner.page.getByRole("button", { name: "Make link" }).click();
-  const link = await owner.page.getByRole("textbox", { name: "Link for ida", exact: true }).inputValue();
+  const link = await owner.page
+    .getByRole("textbox", { name: "Link for ida", exact: true })
+    .inputValue();
   await owner.page.getByRole("row", { name: /ida/ }).getByText("Students").waitFor();
   const guest = await Browser.open();
   await guest.page.goto(link);
@@ -135,7 +160,9 @@ try {
   await owner.page.keyboard.press("Enter");
   await owner.page.getByText("Pupils").waitFor();
   await choose_for("Options for the group Pupils", "Delete…");
-  await owner.page.getByText("2 people of the 2 in it will see fewer projects, or may do less there.").waitFor();
+  await owner.page
+    .getByText("2 people of the 2 in it will see fewer projects, or may do less there.")
+    .waitFor();
   await shot(owner, "delete");
   await owner.page.keyboard.press("Escape");
   await owner.page.getByText("2 people · a role in 1 project").waitFor();

@@ -1,8 +1,10 @@
-// A kiosk in a real browser: by its link alone, with fingers, left alone and come back to, without its server and with it again, loaded anew from afar and
-// revoked. The page's clock is the test's. STRATA_KIOSK_ROUNDS: how often it is visited and left while its memory is looked at; STRATA_KIOSK_ALONE_MIN: minutes of that
-// clock for which its tour plays alone after each; STRATA_KIOSK_STEP_S: how much of it passes at once then, with one stop of the tour each time;
-// STRATA_KIOSK_TOURS: how often the tour is seen through before, with each way to a stop in its own time. 205, 50, 75 and 0 are a week, in an hour; 24, 1, 5 and 10
-// are 480 ways, in 40 minutes.
+// A kiosk in a real browser: by its link alone, with fingers, left alone and come back to, without
+// its server and with it again, loaded anew from afar and revoked. The page's clock is the test's.
+// STRATA_KIOSK_ROUNDS: how often it is visited and left while its memory is looked at;
+// STRATA_KIOSK_ALONE_MIN: minutes of that clock for which its tour plays alone after each;
+// STRATA_KIOSK_STEP_S: how much of it passes at once then, with one stop of the tour each time;
+// STRATA_KIOSK_TOURS: how often the tour is seen through before, with each way to a stop in its own
+// time. 205, 50, 75 and 0 are a week, in an hour; 24, 1, 5 and 10 are 480 ways, in 40 minutes.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -16,26 +18,39 @@ const kAlone_min = Number(process.env.STRATA_KIOSK_ALONE_MIN ?? 1);
 const kStep_s = Number(process.env.STRATA_KIOSK_STEP_S ?? 5);
 const kTours = Number(process.env.STRATA_KIOSK_TOURS ?? 1);
 const kUpright = { width: 1080, height: 1920 };
-const kScreens = [{ width: 1920, height: 1080 }, { width: 768, height: 1024 }, kUpright]; // the last one is the test's own
+// the last one is the test's own
+const kScreens = [{ width: 1920, height: 1080 }, { width: 768, height: 1024 }, kUpright];
 const kTarget_px = 57; // 15 mm
-const kMostHeapGrowth = 1.5; // MB, and of the server below: what the allocators of both make of the same work, and no leak of a picture a round
+// MB, and of the server below: what the allocators of both make of the same work, and no leak of a
+// picture a round
+const kMostHeapGrowth = 1.5;
 const kMostServerGrowth = 48; // MB
 const kMostNodeGrowth = 60;
 
 const browser = await Browser.open({ viewport: kUpright, hasTouch: true });
 const server = new StrataServer({ demo: true });
 const { page } = browser;
-await page.addInitScript(() => ["VideoDecoder", "ImageDecoder", "VideoFrame", "EncodedVideoChunk"].forEach((name) => delete globalThis[name])); // a kiosk needs none of WebCodecs
+// a kiosk needs none of WebCodecs
+await page.addInitScript(() =>
+  ["VideoDecoder", "ImageDecoder", "VideoFrame", "EncodedVideoChunk"].forEach(
+    (name) => delete globalThis[name],
+  ),
+);
 let step = "start";
 const say = (text) => console.log((step = text));
 
 const shot = async (name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `kiosk_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `kiosk_${name}.png`) });
 };
 const button = (name) => page.getByRole("button", { name, exact: true });
 const heading = (name) => page.getByRole("heading", { level: 1, name, exact: true });
 const begin = page.getByRole("button", { name: /^Touch to begin/ });
-const live = () => wait_for(() => page.locator("strata-kiosk-stage canvas.live[data-still=true]").count(), "a live picture that is still");
+const live = () =>
+  wait_for(
+    () => page.locator("strata-kiosk-stage canvas.live[data-still=true]").count(),
+    "a live picture that is still",
+  );
 /** A time that the page's timers see pass, in steps between which it hears what the server says. */
 const pass = async (seconds, step_s = 5) => {
   for (let left = seconds; left > 0; left -= step_s) {
@@ -52,7 +67,10 @@ page.on("websocket", (socket) =>
     if (message.op === "camera") ++cameras;
   }),
 );
-const eye = ({ view }) => [0, 1, 2].map((c) => -[0, 1, 2].reduce((sum, row) => sum + view[4 * c + row] * view[12 + row], 0));
+const eye = ({ view }) =>
+  [0, 1, 2].map(
+    (c) => -[0, 1, 2].reduce((sum, row) => sum + view[4 * c + row] * view[12 + row], 0),
+  );
 const apart = (a, b) => Math.hypot(...a.map((each, index) => each - b[index]));
 
 const cdp = await page.context().newCDPSession(page);
@@ -60,16 +78,23 @@ const cdp = await page.context().newCDPSession(page);
 async function touch(...paths) {
   const points = (at) => paths.map((path, id) => ({ id, x: path[at][0], y: path[at][1] }));
   await cdp.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: points(0) });
-  for (let at = 1; at < paths[0].length; ++at) await cdp.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: points(at) });
+  for (let at = 1; at < paths[0].length; ++at)
+    await cdp.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: points(at) });
   await cdp.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
 }
-const line = ([x0, y0], [x1, y1], steps = 8) => Array.from({ length: steps + 1 }, (_, n) => [x0 + ((x1 - x0) * n) / steps, y0 + ((y1 - y0) * n) / steps]);
+const line = ([x0, y0], [x1, y1], steps = 8) =>
+  Array.from({ length: steps + 1 }, (_, n) => [
+    x0 + ((x1 - x0) * n) / steps,
+    y0 + ((y1 - y0) * n) / steps,
+  ]);
 const middle = async (locator) => {
   const { x, y, width, height } = await locator.boundingBox();
   return [x + width / 2, y + height / 2];
 };
 
-/** On each screen, all that can be touched is large enough, in the lower half, and leads nowhere. */
+/**
+ * On each screen, all that can be touched is large enough, in the lower half, and leads nowhere.
+ */
 async function assert_within_reach(where) {
   for (const screen of kScreens) {
     await page.setViewportSize(screen);
@@ -79,12 +104,23 @@ async function assert_within_reach(where) {
 }
 async function assert_within_reach_on({ height }, where) {
   const found = await page.evaluate(() => {
-    const all = (root) => [...root.querySelectorAll("*")].flatMap((each) => [each, ...(each.shadowRoot ? all(each.shadowRoot) : [])]);
+    const all = (root) =>
+      [...root.querySelectorAll("*")].flatMap((each) => [
+        each,
+        ...(each.shadowRoot ? all(each.shadowRoot) : []),
+      ]);
     const seen = all(document).filter((each) => each.checkVisibility({ visibilityProperty: true }));
     return {
       links: seen.filter((each) => each.matches("a[href], form, iframe")).length,
-      buttons: seen.filter((each) => each.matches("button")).map((each) => ({ name: each.textContent.trim(), ...each.getBoundingClientRect().toJSON() })),
-      overflow: document.scrollingElement.scrollHeight > innerHeight || document.scrollingElement.scrollWidth > innerWidth,
+      buttons: seen
+        .filter((each) => each.matches("button"))
+        .map((each) => ({
+          name: each.textContent.trim(),
+          ...each.getBoundingClientRect().toJSON(),
+        })),
+      overflow:
+        document.scrollingElement.scrollHeight > innerHeight ||
+        document.scrollingElement.scrollWidth > innerWidth,
     };
   });
   assert.equal(found.links, 0, `${where}: something leads away`);
@@ -92,7 +128,10 @@ async function assert_within_reach_on({ height }, where) {
   assert.ok(found.buttons.length > 0, where);
   for (const { name, width, height: high, bottom, top } of found.buttons) {
     assert.ok(width >= kTarget_px && high >= kTarget_px, `${where}: ${name} is ${width} × ${high}`);
-    assert.ok(high > height * 0.9 || (top + bottom) / 2 > height / 2, `${where}: ${name} is not in the lower half`);
+    assert.ok(
+      high > height * 0.9 || (top + bottom) / 2 > height / 2,
+      `${where}: ${name} is not in the lower half`,
+    );
   }
 }
 const assert_accessible = async (where) => assert.deepEqual(await findings(page), [], where);
@@ -112,11 +151,23 @@ try {
   await shot("attract");
   await pass(13);
   await heading("Fourteen sherds").waitFor();
-  assert.equal((await page.context().cookies()).filter(({ name }) => name !== "strata_kiosk").length, 0);
+  assert.equal(
+    (await page.context().cookies()).filter(({ name }) => name !== "strata_kiosk").length,
+    0,
+  );
 
-  say("at rest the server is asked for nothing; the picture comes nearer by itself, but not for who wants less motion");
-  const comes_near = () => page.locator("strata-kiosk-stage canvas").evaluate((canvas) => canvas.getAnimations().some(({ animationName }) => animationName === "come-near"));
-  /** How often its camera was sent within a moment; null where the stop was another one at its end. */
+  say(
+    "at rest the server is asked for nothing; the picture comes nearer by itself, but not for who wants less motion",
+  );
+  const comes_near = () =>
+    page
+      .locator("strata-kiosk-stage canvas")
+      .evaluate((canvas) =>
+        canvas.getAnimations().some(({ animationName }) => animationName === "come-near"),
+      );
+  /**
+   * How often its camera was sent within a moment; null where the stop was another one at its end.
+   */
   const moves = async () => {
     const [title, seq] = [await page.locator("h1").textContent(), sent.camera.seq];
     await page.clock.runFor(1500);
@@ -141,22 +192,31 @@ try {
   await assert_accessible("first stop");
   await shot("first");
 
-  say("on an upright screen the object has most of the height, and its words no more than they need");
+  say(
+    "on an upright screen the object has most of the height, and its words no more than they need",
+  );
   const fits = async (where) => {
     const stage = await page.locator("strata-kiosk-stage").boundingBox();
-    assert.ok(stage.height >= 0.6 * kUpright.height, `${where}: the object has ${stage.height} of ${kUpright.height}`);
+    assert.ok(
+      stage.height >= 0.6 * kUpright.height,
+      `${where}: the object has ${stage.height} of ${kUpright.height}`,
+    );
     const words = page.locator(".panel > .words");
-    const [room, needed] = await words.evaluate((each) => [each.clientHeight, [...each.children].at(-1).getBoundingClientRect().bottom - each.getBoundingClientRect().top]);
+    const [room, needed] = await words.evaluate((each) => [
+      each.clientHeight,
+      [...each.children].at(-1).getBoundingClientRect().bottom - each.getBoundingClientRect().top,
+    ]);
     assert.ok(room - needed < 12, `${where}: words of ${needed} in ${room}`);
   };
   await fits("first stop");
 
   say("keys reach all of it: Tab goes to a button, Enter presses it, and the object has its own");
-  const focused = () => page.evaluate(() => {
-    let at = document.activeElement;
-    while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
-    return at.textContent.trim() || at.ariaLabel || at.tagName;
-  });
+  const focused = () =>
+    page.evaluate(() => {
+      let at = document.activeElement;
+      while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
+      return at.textContent.trim() || at.ariaLabel || at.tagName;
+    });
   const tab_to = async (name, key = "Tab") => {
     const passed = [];
     while (passed.at(-1) !== name) {
@@ -197,18 +257,52 @@ try {
   await wait_for(() => apart(eye(sent.camera), eye(after_turn)) > 60, "two fingers to come nearer");
   const near = sent.camera;
   await touch(line([x - 60, y], [x - 60, y + 150]), line([x + 60, y], [x + 60, y + 150]));
-  await wait_for(() => apart(eye(sent.camera), eye(near)) > 3 && Math.abs(sent.camera.view[0] - near.view[0]) < 1e-9, "two fingers to move it");
+  await wait_for(
+    () =>
+      apart(eye(sent.camera), eye(near)) > 3 && Math.abs(sent.camera.view[0] - near.view[0]) < 1e-9,
+    "two fingers to move it",
+  );
   const moved = sent.camera;
-  await touch([[x - 100, y], [x - 70, y - 70], [x, y - 100]], [[x + 100, y], [x + 70, y + 70], [x, y + 100]]); // prettier-ignore
-  await wait_for(() => Math.abs(sent.camera.view[0] - moved.view[0]) > 0.1, "two fingers to tilt it");
+  await touch(
+    [
+      [x - 100, y],
+      [x - 70, y - 70],
+      [x, y - 100],
+    ],
+    [
+      [x + 100, y],
+      [x + 70, y + 70],
+      [x, y + 100],
+    ],
+  );
+  await wait_for(
+    () => Math.abs(sent.camera.view[0] - moved.view[0]) > 0.1,
+    "two fingers to tilt it",
+  );
   assert.equal(await page.evaluate(() => visualViewport.scale), 1, "the page was zoomed");
   for (const name of ["contextmenu", "selectstart", "dragstart"])
-    assert.equal(await page.evaluate((event) => document.querySelector("strata-kiosk").dispatchEvent(new Event(event, { bubbles: true, cancelable: true, composed: true })), name), false, name);
+    assert.equal(
+      await page.evaluate(
+        (event) =>
+          document
+            .querySelector("strata-kiosk")
+            .dispatchEvent(new Event(event, { bubbles: true, cancelable: true, composed: true })),
+        name,
+      ),
+      false,
+      name,
+    );
 
-  say("the next stop is there where its view has it, whatever was turned before; buttons and swipes choose its layers");
+  say(
+    "the next stop is there where its view has it, whatever was turned before; buttons and swipes choose its layers",
+  );
   await button("Next").tap();
   await heading("Fourteen sherds").waitFor();
-  const is_shown = (name) => wait_for(async () => (await button(name).getAttribute("aria-pressed")) === "true", `the layer ${name}`);
+  const is_shown = (name) =>
+    wait_for(
+      async () => (await button(name).getAttribute("aria-pressed")) === "true",
+      `the layer ${name}`,
+    );
   await is_shown("Sherds");
   await live();
   await assert_within_reach("second stop");
@@ -243,7 +337,13 @@ try {
   await place.getByText(/^Sherd \d+$/).waitFor();
   await place.getByText("pieces", { exact: true }).waitFor();
   const bubble = await place.locator("p").boundingBox();
-  assert.ok(bubble.x >= 0 && bubble.x + bubble.width <= kUpright.width && Math.abs(bubble.x + bubble.width / 2 - x) < 250 && bubble.y + bubble.height < y, JSON.stringify(bubble));
+  assert.ok(
+    bubble.x >= 0 &&
+      bubble.x + bubble.width <= kUpright.width &&
+      Math.abs(bubble.x + bubble.width / 2 - x) < 250 &&
+      bubble.y + bubble.height < y,
+    JSON.stringify(bubble),
+  );
   await assert_accessible("class");
   await shot("class");
   await touch(line([x, y], [x + 120, y + 20]));
@@ -261,7 +361,10 @@ try {
   await shot("card");
   await card.getByRole("button", { name: /^Enlarge: sherd-\d+\.png$/ }).tap();
   const large = page.locator(".enlarged img");
-  await wait_for(() => large.evaluate(({ naturalWidth }) => naturalWidth > 0), "the enlarged picture");
+  await wait_for(
+    () => large.evaluate(({ naturalWidth }) => naturalWidth > 0),
+    "the enlarged picture",
+  );
   await assert_accessible("enlarged");
   await page.getByRole("dialog").getByRole("button", { name: "Close" }).tap();
   await card.getByRole("button", { name: "Close", exact: true }).tap();
@@ -274,14 +377,19 @@ try {
   await touch(line([on_card.x + 700, on_card.y + 100], [on_card.x + 300, on_card.y + 110]));
   // A browser takes the first tap after a fling for the end of it.
   const close = card.getByRole("button", { name: "Close", exact: true });
-  await wait_for(async () => (await card.count()) === 0 || (await close.tap({ timeout: 2000 }).catch(() => {}), false), "the card to be closed");
+  await wait_for(
+    async () =>
+      (await card.count()) === 0 || (await close.tap({ timeout: 2000 }).catch(() => {}), false),
+    "the card to be closed",
+  );
   await is_shown("Sherds");
   assert.equal(sent.layers, before_swipe, "a swipe over the card changed the layer behind it");
 
   say("its words are in the visitor's language");
   await button("Deutsch").tap();
   await heading("Vierzehn Scherben").waitFor();
-  for (const name of ["Scherben", "Risse", "pieces"]) await button(name).waitFor(); // of the last one nobody has written a German name
+  // of the last one nobody has written a German name
+  for (const name of ["Scherben", "Risse", "pieces"]) await button(name).waitFor();
   await button("Sherd 3").tap();
   await card.getByText("Wandstärke", { exact: true }).waitFor();
   await shot("german");
@@ -310,13 +418,28 @@ try {
   assert.equal(await page.evaluate(() => document.documentElement.lang), "en");
 
   say("it keeps what it shows");
-  const stored = () => page.evaluate(async () => (await (await caches.open("strata-kiosk")).keys()).map(({ url }) => new URL(url).pathname));
-  await wait_for(async () => {
-    await pass(31); // a heartbeat
-    const keys = await stored();
-    return keys.filter((key) => key.endsWith("/picture")).length === 3 && keys.includes("/api/v1/tables/sherds") && keys.filter((key) => key.startsWith("/api/v1/attachments/")).length >= 2 && keys.some((key) => key.startsWith("/kiosk/told/"));
-  }, "the store to be full", 300);
-  assert.ok((await stored()).every((key) => !key.includes(path.split("/").at(-1))), "the secret is stored");
+  const stored = () =>
+    page.evaluate(async () =>
+      (await (await caches.open("strata-kiosk")).keys()).map(({ url }) => new URL(url).pathname),
+    );
+  await wait_for(
+    async () => {
+      await pass(31); // a heartbeat
+      const keys = await stored();
+      return (
+        keys.filter((key) => key.endsWith("/picture")).length === 3 &&
+        keys.includes("/api/v1/tables/sherds") &&
+        keys.filter((key) => key.startsWith("/api/v1/attachments/")).length >= 2 &&
+        keys.some((key) => key.startsWith("/kiosk/told/"))
+      );
+    },
+    "the store to be full",
+    300,
+  );
+  assert.ok(
+    (await stored()).every((key) => !key.includes(path.split("/").at(-1))),
+    "the secret is stored",
+  );
   await page.evaluate(() => navigator.serviceWorker.ready);
 
   say("without its server the tour goes on with stored pictures");
@@ -326,7 +449,11 @@ try {
   const sign = page.getByText("Still pictures for a moment");
   await wait_for(async () => (await pass(2), await sign.count()), "the sign", 200);
   const picture = page.locator("strata-kiosk-stage img");
-  const is_loaded = () => wait_for(() => picture.evaluate(({ complete, naturalWidth }) => complete && naturalWidth > 0), "the stored picture");
+  const is_loaded = () =>
+    wait_for(
+      () => picture.evaluate(({ complete, naturalWidth }) => complete && naturalWidth > 0),
+      "the stored picture",
+    );
   await is_loaded();
   await assert_accessible("away");
   await shot("away");
@@ -335,7 +462,10 @@ try {
   await is_loaded();
   await button("Sherd 3").tap();
   await card.getByRole("heading", { name: "Sherd 3" }).waitFor();
-  await wait_for(() => card.locator("img").evaluate(({ naturalWidth }) => naturalWidth > 0), "the stored picture of the record");
+  await wait_for(
+    () => card.locator("img").evaluate(({ naturalWidth }) => naturalWidth > 0),
+    "the stored picture of the record",
+  );
   await shot("away_card");
   await card.getByRole("button", { name: "Close", exact: true }).tap();
 
@@ -349,7 +479,11 @@ try {
 
   say("and is live again by itself");
   await server.start();
-  await wait_for(async () => (await pass(10), await page.locator("strata-kiosk-stage canvas.live").count()), "live pictures", 300);
+  await wait_for(
+    async () => (await pass(10), await page.locator("strata-kiosk-stage canvas.live").count()),
+    "live pictures",
+    300,
+  );
   await wait_for(async () => (await sign.count()) === 0, "no sign");
   assert.equal(await picture.count(), 0);
 
@@ -357,28 +491,52 @@ try {
   const tour = await server.json("GET", kTour);
   tour.stops[0].title.en = "The vessel from the well";
   await server.json("PATCH", kTour, { stops: tour.stops });
-  await wait_for(async () => (await pass(10), await heading("The vessel from the well").count()), "the new title", 100);
+  await wait_for(
+    async () => (await pass(10), await heading("The vessel from the well").count()),
+    "the new title",
+    100,
+  );
 
   say("an administrator has it loaded anew");
   await page.evaluate(() => (globalThis.before = true));
   await server.json("POST", `/kiosks/${kiosk.id}/reload`);
   const is_new = () => page.evaluate(() => globalThis.before === undefined).catch(() => false);
-  await wait_for(async () => (await is_new()) || (await page.clock.fastForward(31_000).catch(() => {}), false), "the page to be loaded anew", 300);
+  await wait_for(
+    async () => (await is_new()) || (await page.clock.fastForward(31_000).catch(() => {}), false),
+    "the page to be loaded anew",
+    300,
+  );
   await begin.waitFor();
-  await wait_for(async () => (await server.json("GET", "/kiosks")).kiosks[0].wants_reload === false, "the wish to be gone");
+  await wait_for(
+    async () => (await server.json("GET", "/kiosks")).kiosks[0].wants_reload === false,
+    "the wish to be gone",
+  );
 
   say(`memory stays flat over ${kRounds} visitors`);
   await live();
-  const server_mb = () => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${server.process.pid}/status`, "utf8"))[1]) / 1024;
+  const server_mb = () =>
+    Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${server.process.pid}/status`, "utf8"))[1]) /
+    1024;
   const used = async () => {
     await cdp.send("HeapProfiler.collectGarbage");
     const { metrics } = await cdp.send("Performance.getMetrics");
     const of = (name) => metrics.find((metric) => metric.name === name).value;
-    return { heap_mb: of("JSHeapUsedSize") / 2 ** 20, nodes: of("Nodes"), listeners: of("JSEventListeners"), server_mb: server_mb() };
+    return {
+      heap_mb: of("JSHeapUsedSize") / 2 ** 20,
+      nodes: of("Nodes"),
+      listeners: of("JSEventListeners"),
+      server_mb: server_mb(),
+    };
   };
-  const told = ({ heap_mb, nodes, listeners, server_mb: rss }) => `page ${heap_mb.toFixed(2)} MB, ${nodes} nodes, ${listeners} listeners; server ${rss.toFixed(0)} MB`;
+  const told = ({ heap_mb, nodes, listeners, server_mb: rss }) =>
+    `page ${heap_mb.toFixed(2)} MB, ${nodes} nodes, ${listeners} listeners; server ${rss.toFixed(0)} MB`;
   await cdp.send("Performance.enable");
-  const kStops = [["The vessel from the well", 2], ["Fourteen sherds", 2], ["The rim", 1]]; // and how many cameras the way there has at least
+  // and how many cameras the way there has at least
+  const kStops = [
+    ["The vessel from the well", 2],
+    ["Fourteen sherds", 2],
+    ["The rim", 1],
+  ];
   const visit = async (tours) => {
     await begin.tap();
     await button("Deutsch").tap();
@@ -386,22 +544,29 @@ try {
     await button("Sherd 3").tap();
     await card.getByRole("heading", { name: "Sherd 3" }).waitFor();
     await wait_for(async () => (await pass(15), await begin.count()), "the visitor to be gone", 20);
-    for (const title of ["Fourteen sherds", "The rim"]) await wait_for(async () => (await pass(3), await heading(title).count()), title, 20);
+    for (const title of ["Fourteen sherds", "The rim"])
+      await wait_for(async () => (await pass(3), await heading(title).count()), title, 20);
     await page.emulateMedia({ reducedMotion: tours > 0 ? "no-preference" : "reduce" });
     for (let tour = 0; tour < tours; ++tour)
       for (const [title, fewest] of kStops) {
         const before = cameras;
         await pass(9, 3);
         await wait_for(async () => (await pass(1), await heading(title).count()), title, 20);
-        await wait_for(() => cameras >= before + fewest && !sent.camera.moving, `the end of the way to ${title}`);
+        await wait_for(
+          () => cameras >= before + fewest && !sent.camera.moving,
+          `the end of the way to ${title}`,
+        );
         await live();
       }
     await page.emulateMedia({ reducedMotion: "reduce" });
     await pass(kAlone_min * 60, kStep_s);
   };
-  for (let round = 0; round < 8; ++round) await visit(round === 0 ? kTours : 0); // until all is loaded and compiled
+  // until all is loaded and compiled
+  for (let round = 0; round < 8; ++round) await visit(round === 0 ? kTours : 0);
   const first = await used();
-  let settled = first; // of many visitors, after half of them: allocators go on taking their fill for a while, and what leaks does not end
+  // of many visitors, after half of them: allocators go on taking their fill for a while, and what
+  // leaks does not end
+  let settled = first;
   const clock = () => page.evaluate(() => performance.now());
   const from_ms = await clock();
   const cameras_before = cameras;
@@ -412,9 +577,15 @@ try {
   }
   const after = await used();
   const hours = ((await clock()) - from_ms) / 3600_000;
-  console.log(`  before: ${told(first)}\n  after ${kRounds} visitors in ${hours.toFixed(1)} h of the page's clock, with ${kRounds * kTours * 2} ways of ${cameras - cameras_before} cameras: ${told(after)}`);
+  console.log(
+    `  before: ${told(first)}\n  after ${kRounds} visitors in ${hours.toFixed(1)} h of the page's clock, with ${kRounds * kTours * 2} ways of ${cameras - cameras_before} cameras: ${told(after)}`,
+  );
   assert.ok(after.heap_mb - settled.heap_mb < kMostHeapGrowth, "the page's memory grows");
-  assert.ok(after.nodes - settled.nodes < kMostNodeGrowth && after.listeners - settled.listeners < kMostNodeGrowth, "the page holds on to what is gone");
+  assert.ok(
+    after.nodes - settled.nodes < kMostNodeGrowth &&
+      after.listeners - settled.listeners < kMostNodeGrowth,
+    "the page holds on to what is gone",
+  );
   assert.ok(after.server_mb - settled.server_mb < kMostServerGrowth, "the server's memory grows");
 
   say("revoked, it says so in plain words, and keeps nothing");
@@ -427,14 +598,20 @@ try {
   await page.getByRole("heading", { name: "This screen has no tour any more" }).waitFor();
   assert.equal(new URL(page.url()).pathname, "/kiosk/nothing");
 
-  browser.assert_no_complaints([...kOfLostServer, "status of 401", "status of 503"]); // a server that stops says so, for as long as it still answers
+  // a server that stops says so, for as long as it still answers
+  browser.assert_no_complaints([...kOfLostServer, "status of 401", "status of 503"]);
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
-  assert.ok(server.log.every((entry) => !entry.includes(path)), "the secret is in the log");
+  assert.ok(
+    server.log.every((entry) => !entry.includes(path)),
+    "the secret is in the log",
+  );
   console.log("ok");
 } catch (error) {
   await shot("failed");
-  console.error(`failed at: ${step} (${kModel})\n${error.stack}\n${browser.complaints.join("\n")}\nserver log:\n${server.log.slice(-20).join("\n")}`);
+  console.error(
+    `failed at: ${step} (${kModel})\n${error.stack}\n${browser.complaints.join("\n")}\nserver log:\n${server.log.slice(-20).join("\n")}`,
+  );
   process.exitCode = 1;
 } finally {
   await browser.close();

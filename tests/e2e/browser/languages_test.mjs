@@ -1,10 +1,14 @@
-// The page in the language of the browser or the one that was chosen: words, numbers and names of data, and what is loaded for it.
+// The page in the language of the browser or the one that was chosen: words, numbers and names of
+// data, and what is loaded for it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/browser.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const [german, french] = [await Browser.open({ locale: "de-DE" }), await Browser.open({ locale: "fr-FR" })];
+const [german, french] = [
+  await Browser.open({ locale: "de-DE" }),
+  await Browser.open({ locale: "fr-FR" }),
+];
 const server = new StrataServer({ demo: true });
 let step = "start";
 const say = (text) => console.log((step = text));
@@ -44,10 +48,25 @@ try {
   await heading(german, "Anmelden");
 
   say("numbers are written and read with a comma");
-  await german.page.context().request.post(`${server.url}/api/v1/login`, { data: { token: server.token }, headers: { Origin: server.url } });
+  await german.page.context().request.post(`${server.url}/api/v1/login`, {
+    data: { token: server.token },
+    headers: { Origin: server.url },
+  });
   const wet = await server.json("POST", `/models/${model}/layers`, {
-    name: "Feuchte", kind: "numeric", type: "f32", resolution: 2048, unit: "%",
-    palette: { mode: "linear", min: 0, max: 5, points: [{ at: 0, color: "#ffffffff" }, { at: 5, color: "#0000ffff" }] },
+    name: "Feuchte",
+    kind: "numeric",
+    type: "f32",
+    resolution: 2048,
+    unit: "%",
+    palette: {
+      mode: "linear",
+      min: 0,
+      max: 5,
+      points: [
+        { at: 0, color: "#ffffffff" },
+        { at: 5, color: "#0000ffff" },
+      ],
+    },
   });
   await german.page.goto(`${server.url}/models/${model}`);
   await german.drawn();
@@ -58,17 +77,30 @@ try {
   await value.fill("");
   await value.pressSequentially("1,25");
   await value.press("Enter");
-  await german.drag([[0.46, 0.5], [0.56, 0.52]]);
+  await german.drag([
+    [0.46, 0.5],
+    [0.56, 0.52],
+  ]);
   await german.saved();
-  const highest = async () => (await server.json("GET", `/models/${model}/layers/${wet.id}/statistics`)).max;
+  const highest = async () =>
+    (await server.json("GET", `/models/${model}/layers/${wet.id}/statistics`)).max;
   assert.equal(await wait_for(highest, "something painted"), 1.25);
   await value.fill("1.250"); // which may be either
   await value.press("Enter");
   await german.page.getByText("ohne Tausenderpunkte").waitFor();
 
   say("data are called by the chosen language first");
-  const finds = await server.json("POST", `/projects/${project}/tables`, { name: "Finds", columns: [{ name: "Material", kind: "text", labels: { de: "Werkstoff", es: "Materia" } }] });
-  await server.json("POST", `/models/${model}/layers`, { name: "Funde", kind: "database", type: "u16", resolution: 2048, table: finds.slug });
+  const finds = await server.json("POST", `/projects/${project}/tables`, {
+    name: "Finds",
+    columns: [{ name: "Material", kind: "text", labels: { de: "Werkstoff", es: "Materia" } }],
+  });
+  await server.json("POST", `/models/${model}/layers`, {
+    name: "Funde",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    table: finds.slug,
+  });
   await german.page.reload();
   await german.drawn();
   await german.page.getByRole("button", { name: "Auf Funde malen" }).click();
@@ -81,14 +113,20 @@ try {
   await value.fill("3");
   await value.press("Enter");
   await server.signal("SIGSTOP");
-  await german.drag([[0.4, 0.45], [0.5, 0.47]]);
+  await german.drag([
+    [0.4, 0.45],
+    [0.5, 0.47],
+  ]);
   await german.page.locator('.saving:not([data-state="saved"])').waitFor();
   await german.page.getByRole("button", { name: /^Konto von/ }).click();
   await german.page.getByRole("menuitem", { name: /^Sprache/ }).click();
   await german.page.getByRole("combobox", { name: "Sprache" }).selectOption("es");
   await german.page.getByText("noch nicht gespeichert").last().waitFor();
   await german.page.getByRole("button", { name: "Abbrechen" }).click();
-  await wait_for(async () => (await german.page.getByRole("combobox", { name: "Sprache" }).inputValue()) === "", "the choice to be as it was");
+  await wait_for(
+    async () => (await german.page.getByRole("combobox", { name: "Sprache" }).inputValue()) === "",
+    "the choice to be as it was",
+  );
   assert.equal(await language_of(german), "de");
   await german.page.keyboard.press("Escape");
   await server.signal("SIGCONT");
@@ -110,7 +148,10 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  if (process.env.STRATA_TEST_OUTPUT) await german.page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "languages.png") }).catch(() => {});
+  if (process.env.STRATA_TEST_OUTPUT)
+    await german.page
+      .screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "languages.png") })
+      .catch(() => {});
   throw error;
 } finally {
   for (const who of [german, french]) await who.close();

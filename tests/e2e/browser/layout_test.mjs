@@ -1,5 +1,6 @@
-// Where things stand in windows of phones, tablets, desks and walls: what is chosen comes into sight, menus stay inside, rows that scroll say so,
-// words are about the pointers that there are, and on walls they can be read.
+// Where things stand in windows of phones, tablets, desks and walls: what is chosen comes into
+// sight, menus stay inside, rows that scroll say so, words are about the pointers that there are,
+// and on walls they can be read.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -21,23 +22,36 @@ const server = new StrataServer({ demo: true });
 const { page } = desk;
 let step = "start";
 const say = (text) => console.log((step = text));
-const shoot = async (who, name) => output && (await who.page.screenshot({ path: join(output, `layout_${name}.png`) }));
+const shoot = async (who, name) =>
+  output && (await who.page.screenshot({ path: join(output, `layout_${name}.png`) }));
 const button = (name) => page.getByRole("button", { name, exact: true });
-const root_font_px = () => page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize));
+const root_font_px = () =>
+  page.evaluate(() => parseFloat(getComputedStyle(document.documentElement).fontSize));
 
 try {
   await server.start();
   const [model] = (await server.json("GET", "/models")).models;
   await server.json("POST", "/projects", { name: "Empty" });
-  const finds = await server.json("POST", `/projects/${model.project}/tables`, { name: "Finds", columns: [{ name: "Name" }] });
+  const finds = await server.json("POST", `/projects/${model.project}/tables`, {
+    name: "Finds",
+    columns: [{ name: "Name" }],
+  });
   await server.json("POST", `/tables/${finds.id}/records`, { values: { name: "Handle" } });
-  await server.json("POST", `/models/${model.id}/layers`, { name: "Finds", kind: "database", type: "u16", resolution: 2048, table: finds.slug });
+  await server.json("POST", `/models/${model.id}/layers`, {
+    name: "Finds",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    table: finds.slug,
+  });
 
   say("a project without models asks for one thing");
   await desk.sign_in(server, server.token);
   await page.goto(`${server.url}/projects/empty`);
   await button("Choose a file").waitFor();
-  assert.deepEqual(await page.locator("strata-home-page button.primary").allInnerTexts(), ["Choose a file"]);
+  assert.deepEqual(await page.locator("strata-home-page button.primary").allInnerTexts(), [
+    "Choose a file",
+  ]);
 
   say("the options of a tool come into sight with it, and stay away when only the layer changes");
   await page.goto(`${server.url}/models/${model.id}`);
@@ -47,7 +61,8 @@ try {
   await page.keyboard.press("b");
   const scroller = page.locator("strata-model-page aside .scroll");
   const scrolled = () => scroller.evaluate((each) => each.scrollTop);
-  const is_seen = (what) => wait_for(async () => (await scrolled()) === 0, `the options of ${what}`);
+  const is_seen = (what) =>
+    wait_for(async () => (await scrolled()) === 0, `the options of ${what}`);
   const scroll_down = () => scroller.evaluate((each) => (each.scrollTop = each.scrollHeight));
   for (const view of [kDesk, kTablet]) {
     await page.setViewportSize(view);
@@ -71,7 +86,10 @@ try {
   await button("Options for cracks").click();
   await page.getByRole("menuitem", { name: "Delete…" }).click();
   await page.locator("strata-question dialog[open]").waitFor();
-  await wait_for(async () => (await active(page)) === "button.way-out “Cancel”", "the keyboard at Cancel");
+  await wait_for(
+    async () => (await active(page)) === "button.way-out “Cancel”",
+    "the keyboard at Cancel",
+  );
   await page.keyboard.press("Enter");
   await page.locator("strata-question").waitFor({ state: "detached" });
   assert.equal(await button("Options for cracks").count(), 1, "Enter deleted the layer");
@@ -86,14 +104,22 @@ try {
   const items = () => page.getByRole("menuitem").count();
   const before = await items();
   await page.setViewportSize(kTablet);
-  await wait_for(async () => (await items()) > before, "the menu to take up what has no room beside it");
+  await wait_for(
+    async () => (await items()) > before,
+    "the menu to take up what has no room beside it",
+  );
   const is_inside = async () => {
     const box = await list.boundingBox();
     return box.x >= 0 && box.x + box.width <= kTablet.width;
   };
   await wait_for(is_inside, "the menu to lie inside the window");
   const { width: narrow } = await list.boundingBox();
-  await page.getByRole("menuitem").first().evaluate((item) => item.append(" and everything else that was written into the records meanwhile"));
+  await page
+    .getByRole("menuitem")
+    .first()
+    .evaluate((item) =>
+      item.append(" and everything else that was written into the records meanwhile"),
+    );
   assert.ok((await list.boundingBox()).width > narrow + 40, "the menu does not grow");
   await wait_for(is_inside, "the menu that has grown to lie inside the window");
   await page.keyboard.press("Escape");
@@ -104,16 +130,27 @@ try {
   await phone.sign_in(server, server.token);
   await phone.page.goto(`${server.url}/models/${model.id}`);
   await phone.drawn();
-  const ends = (who) => who.page.locator("strata-tool-rail").evaluate((rail) => ["more-before", "more-after"].filter((name) => rail.hasAttribute(name)).join());
-  const has_ends = (who, wanted) => wait_for(async () => (await ends(who)) === wanted, `the ends “${wanted}” of the tools`);
+  const ends = (who) =>
+    who.page
+      .locator("strata-tool-rail")
+      .evaluate((rail) =>
+        ["more-before", "more-after"].filter((name) => rail.hasAttribute(name)).join(),
+      );
+  const has_ends = (who, wanted) =>
+    wait_for(async () => (await ends(who)) === wanted, `the ends “${wanted}” of the tools`);
   await has_ends(phone, "more-after");
   await shoot(phone, "rail");
   await phone.page.locator("strata-tool-rail").evaluate((rail) => (rail.scrollLeft = 40));
   await has_ends(phone, "more-before,more-after");
-  await phone.page.locator("strata-tool-rail").evaluate((rail) => (rail.scrollLeft = rail.scrollWidth));
+  await phone.page
+    .locator("strata-tool-rail")
+    .evaluate((rail) => (rail.scrollLeft = rail.scrollWidth));
   await has_ends(phone, "more-before");
   await has_ends(desk, "");
-  assert.equal(await page.locator("strata-tool-rail").evaluate((rail) => getComputedStyle(rail).maskImage), "none");
+  assert.equal(
+    await page.locator("strata-tool-rail").evaluate((rail) => getComputedStyle(rail).maskImage),
+    "none",
+  );
 
   say("the help speaks of the pointers that there are");
   const parts = (who) => who.page.locator("strata-help-sheet h3").allInnerTexts();
@@ -129,7 +166,11 @@ try {
   assert.equal(await root_font_px(), 16);
   await page.setViewportSize(kWall);
   assert.equal(await root_font_px(), 24);
-  const columns = await page.locator("strata-help-sheet h3").evaluateAll((heads) => [...new Set(heads.map((head) => Math.round(head.getBoundingClientRect().left)))]);
+  const columns = await page
+    .locator("strata-help-sheet h3")
+    .evaluateAll((heads) => [
+      ...new Set(heads.map((head) => Math.round(head.getBoundingClientRect().left))),
+    ]);
   assert.equal(columns.length, 2);
   await shoot(desk, "wall_help");
   await page.keyboard.press("Escape");
@@ -138,15 +179,21 @@ try {
   await page.setViewportSize(kLarge);
   assert.equal(await root_font_px(), 20);
   await page.keyboard.press("b");
-  await wait_for(async () => {
-    const box = await desk.stage_box();
-    await desk.point(0.4, 0.5);
-    await desk.point(0.5, 0.55);
-    const circle = page.locator("strata-stage svg.over circle").first();
-    if ((await circle.count()) === 0) return false;
-    const [x, y] = await circle.evaluate((each) => ["cx", "cy"].map((name) => Number(each.getAttribute(name))));
-    return Math.abs(x - 0.5 * box.width) < 2 && Math.abs(y - 0.55 * box.height) < 2;
-  }, "the circle of the brush around the pointer", 150);
+  await wait_for(
+    async () => {
+      const box = await desk.stage_box();
+      await desk.point(0.4, 0.5);
+      await desk.point(0.5, 0.55);
+      const circle = page.locator("strata-stage svg.over circle").first();
+      if ((await circle.count()) === 0) return false;
+      const [x, y] = await circle.evaluate((each) =>
+        ["cx", "cy"].map((name) => Number(each.getAttribute(name))),
+      );
+      return Math.abs(x - 0.5 * box.width) < 2 && Math.abs(y - 0.55 * box.height) < 2;
+    },
+    "the circle of the brush around the pointer",
+    150,
+  );
 
   say("the panel is as wide as it is drawn, and grows with the words in it");
   const panel = page.locator("strata-model-page aside");
@@ -156,7 +203,10 @@ try {
   await page.mouse.down();
   await page.mouse.move(kLarge.width - 600, 400, { steps: 4 });
   await page.mouse.up();
-  await wait_for(async () => Math.abs((await panel.boundingBox()).width - 600) < 2, "the panel to follow the pointer");
+  await wait_for(
+    async () => Math.abs((await panel.boundingBox()).width - 600) < 2,
+    "the panel to follow the pointer",
+  );
 
   say("the gallery takes the width of a wall");
   await page.goto(server.url);
@@ -172,7 +222,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-30).join("\n")}`);
-  for (const [name, who] of Object.entries({ desk, phone })) await shoot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ desk, phone }))
+    await shoot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const browser of [desk, phone]) await browser.close();

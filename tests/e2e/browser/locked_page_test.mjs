@@ -1,4 +1,5 @@
-// A curator locks a layer while somebody paints on it: she sees it at once, nothing more of hers is sent, and it goes on once it is unlocked.
+// A curator locks a layer while somebody paints on it: she sees it at once, nothing more of hers is
+// sent, and it goes on once it is unlocked.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
@@ -6,29 +7,42 @@ import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kEnough = 150; // pixels of a stroke that is there
 
-const [carl, ada, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
+const [carl, ada, phone] = [
+  await Browser.open(),
+  await Browser.open(),
+  await Browser.open({ viewport: { width: 390, height: 844 } }),
+];
 const server = new StrataServer({ demo: true });
 let step = "start";
 const say = (text) => console.log((step = text));
 
 async function shoot({ page }, name) {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `locked_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `locked_${name}.png`) });
 }
 async function choose_for({ page }, name, command) {
   await page.getByRole("button", { name: `Options for ${name}` }).click();
   await page.getByRole("menuitem", { name: command, exact: true }).click();
 }
-const cursor = ({ page }) => page.locator("strata-stage .surface").evaluate((surface) => getComputedStyle(surface).cursor);
-const notice = ({ page }) => page.locator("strata-notices").getByText("The layer Finds is locked: a curator can unlock it.");
-const told_in_panel = ({ page }) => page.locator("strata-brush-panel").getByText("The layer Finds is locked: a curator can unlock it.");
-const lock_of = ({ page }, says) => page.locator("strata-layer-panel").getByRole("img", { name: says });
+const cursor = ({ page }) =>
+  page.locator("strata-stage .surface").evaluate((surface) => getComputedStyle(surface).cursor);
+const notice = ({ page }) =>
+  page.locator("strata-notices").getByText("The layer Finds is locked: a curator can unlock it.");
+const told_in_panel = ({ page }) =>
+  page
+    .locator("strata-brush-panel")
+    .getByText("The layer Finds is locked: a curator can unlock it.");
+const lock_of = ({ page }, says) =>
+  page.locator("strata-layer-panel").getByRole("img", { name: says });
 /** What this page sends from now on that would change something. */
 function changes_sent({ page }) {
   const sent = [];
-  page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => {
-    const { op } = JSON.parse(payload);
-    if (/^(stroke|edit|undo|redo)/.test(op)) sent.push(op);
-  }));
+  page.on("websocket", (socket) =>
+    socket.on("framesent", ({ payload }) => {
+      const { op } = JSON.parse(payload);
+      if (/^(stroke|edit|undo|redo)/.test(op)) sent.push(op);
+    }),
+  );
   return sent;
 }
 
@@ -36,7 +50,8 @@ try {
   await server.start();
   const model = (await server.json("GET", "/models")).models[0];
   const layers = `/models/${model.id}/layers`;
-  for (const other of (await server.json("GET", layers)).layers) await server.json("PATCH", `${layers}/${other.id}`, { visible: false });
+  for (const other of (await server.json("GET", layers)).layers)
+    await server.json("PATCH", `${layers}/${other.id}`, { visible: false });
   const palette = { mode: "categorical", points: [{ at: 1, color: "#d55e00", label: "Bone" }] };
   await server.json("POST", layers, { name: "Finds", type: "u8", palette });
   const finds = `${layers}/finds`;
@@ -54,14 +69,25 @@ try {
   }
   await ada.page.getByRole("button", { name: "Paint on Finds" }).click();
   await ada.page.keyboard.press("b");
-  await ada.drag([[0.46, 0.5], [0.56, 0.52]]);
+  await ada.drag([
+    [0.46, 0.5],
+    [0.56, 0.52],
+  ]);
   await ada.saved();
   await wait_for(async () => (await ada.count(bone)) > kEnough, "the stroke", 150);
   assert.equal(await cursor(ada), "none");
   assert.equal(await ada.page.getByRole("button", { name: "Options for Finds" }).count(), 1);
   await ada.page.getByRole("button", { name: "Options for Finds" }).click();
-  assert.equal(await ada.page.getByRole("menuitem", { name: "Lock", exact: true }).count(), 0, "an annotator is offered to lock");
-  assert.ok((await ada.page.getByRole("menuitem", { name: /^(Paint from a file|Replace from a raster)/ }).count()) > 0);
+  assert.equal(
+    await ada.page.getByRole("menuitem", { name: "Lock", exact: true }).count(),
+    0,
+    "an annotator is offered to lock",
+  );
+  assert.ok(
+    (await ada.page
+      .getByRole("menuitem", { name: /^(Paint from a file|Replace from a raster)/ })
+      .count()) > 0,
+  );
   await ada.page.keyboard.press("Escape");
 
   say("the lock falls while her button is down: what she painted stays, and nothing more is sent");
@@ -89,26 +115,45 @@ try {
     await ada.page.keyboard.press(key);
     assert.equal(await cursor(ada), "not-allowed", key);
     await told_in_panel(ada).waitFor();
-    await ada.drag([[0.5, 0.6], [0.55, 0.6], [0.55, 0.65]]);
+    await ada.drag([
+      [0.5, 0.6],
+      [0.55, 0.6],
+      [0.55, 0.65],
+    ]);
   }
   await ada.page.keyboard.press("Control+z");
   await ada.page.keyboard.press("Control+Shift+z");
   await notice(ada).waitFor();
-  assert.equal(await ada.page.locator("strata-notices").getByText("Layer locked").count(), 1, "one notice is enough");
+  assert.equal(
+    await ada.page.locator("strata-notices").getByText("Layer locked").count(),
+    1,
+    "one notice is enough",
+  );
   assert.equal(await ada.page.getByRole("button", { name: "Fill the whole surface" }).count(), 0);
   await ada.page.getByRole("button", { name: "Options for Finds" }).click();
-  assert.equal(await ada.page.getByRole("menuitem", { name: /^(Paint from a file|Replace from a raster)/ }).count(), 0);
+  assert.equal(
+    await ada.page
+      .getByRole("menuitem", { name: /^(Paint from a file|Replace from a raster)/ })
+      .count(),
+    0,
+  );
   await shoot(ada, "menu");
   await ada.page.keyboard.press("Escape");
   assert.deepEqual(sent.slice(known), [], "changes were sent");
-  assert.deepEqual([await edits(), (await server.json("GET", `${finds}/statistics`)).texels], [saved, texels]);
+  assert.deepEqual(
+    [await edits(), (await server.json("GET", `${finds}/statistics`)).texels],
+    [saved, texels],
+  );
 
   say("another layer is painted as before, and coming back to the locked one says so again");
   await server.json("POST", layers, { name: "Open", type: "u8", palette });
   await ada.page.getByRole("button", { name: "Paint on Open" }).click();
   await ada.page.keyboard.press("b");
   assert.equal(await cursor(ada), "none");
-  await ada.drag([[0.46, 0.6], [0.56, 0.62]]);
+  await ada.drag([
+    [0.46, 0.6],
+    [0.56, 0.62],
+  ]);
   await ada.saved();
   assert.ok(sent.length > known);
   const close = ada.page.locator("strata-notices").getByRole("button", { name: "Close" });
@@ -130,7 +175,10 @@ try {
   await carl.page.getByRole("button", { name: "Paint on Finds" }).click();
   await carl.page.keyboard.press("b");
   assert.equal(await cursor(carl), "none");
-  await carl.drag([[0.46, 0.7], [0.56, 0.72]]);
+  await carl.drag([
+    [0.46, 0.7],
+    [0.56, 0.72],
+  ]);
   await carl.saved();
   await wait_for(async () => (await edits()) > saved, "the curator's stroke");
   await carl.page.locator("strata-layer-panel").getByText("Locked for annotators.").waitFor();
@@ -139,7 +187,10 @@ try {
   await lock_of(ada, "Locked: a curator can unlock it.").waitFor({ state: "detached" });
   await wait_for(async () => (await cursor(ada)) === "none", "her brush to come back");
   const now = await edits();
-  await ada.drag([[0.44, 0.35], [0.52, 0.36]]);
+  await ada.drag([
+    [0.44, 0.35],
+    [0.52, 0.36],
+  ]);
   await wait_for(async () => (await edits()) > now, "her stroke on the unlocked layer");
   await shoot(ada, "unlocked");
 
@@ -148,7 +199,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries({ carl, ada, phone })) await shoot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ carl, ada, phone }))
+    await shoot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of [carl, ada, phone]) await who.close();

@@ -1,5 +1,6 @@
-// Maps from files in the page: a shapefile with names, a scanned map by its colours, a raster of numbers, an orthophoto as a look, which
-// is then renamed and moved. What the dialogs say of the files, and what is refused.
+// Maps from files in the page: a shapefile with names, a scanned map by its colours, a raster of
+// numbers, an orthophoto as a look, which is then renamed and moved. What the dialogs say of the
+// files, and what is refused.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -27,7 +28,8 @@ const statistics = (name) => server.json("GET", `${base}/layers/${name}/statisti
 const button = (name) => page.getByRole("button", { name, exact: true });
 const dialog = page.locator("strata-map-dialog, strata-orthophoto-dialog");
 const shot = async (name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 async function open_dialog(name) {
   await button(`Options for ${name}`).click();
@@ -41,7 +43,10 @@ async function seen_from_front() {
 }
 async function paint() {
   await button("Paint").click();
-  await page.getByText(/m² changed\./).first().waitFor();
+  await page
+    .getByText(/m² changed\./)
+    .first()
+    .waitFor();
   await dialog.waitFor({ state: "detached" });
 }
 
@@ -66,7 +71,9 @@ put("utm.tif", tiff(16, 16, lambda u, v: 100 + u, kind="B", scale=size / 16, ori
 put("photo.png", png(32, 32, lambda u, v: (255, 0, 255)))
 put("photo.pgw", place(32).encode())
 `;
-  execFileSync("python3", ["-c", code, folder, String(x), String(z), String(size)], { env: { ...process.env, PYTHONPATH: kSupport } });
+  execFileSync("python3", ["-c", code, folder, String(x), String(z), String(size)], {
+    env: { ...process.env, PYTHONPATH: kSupport },
+  });
   writeFileSync(file("values.csv"), "0.5\n0.25\n");
   writeFileSync(file("notes.doc"), "?");
 }
@@ -74,9 +81,18 @@ put("photo.pgw", place(32).encode())
 try {
   await server.start();
   make_files((await server.json("GET", base)).bounds);
-  await server.json("POST", `${base}/layers`, { name: "States", type: "u8", resolution: 2048, palette: { mode: "categorical", points: [{ at: 4, color: kMagenta, label: "Moss" }] } });
+  await server.json("POST", `${base}/layers`, {
+    name: "States",
+    type: "u8",
+    resolution: 2048,
+    palette: { mode: "categorical", points: [{ at: 4, color: kMagenta, label: "Moss" }] },
+  });
   await server.json("POST", `${base}/layers`, { name: "Depth", type: "f32", resolution: 2048 });
-  const look = await fetch(`${server.url}/api/v1${base}/looks?name=Infrared`, { method: "POST", headers: { Authorization: `Bearer ${server.token}` }, body: readFileSync(file("plan.png")) });
+  const look = await fetch(`${server.url}/api/v1${base}/looks?name=Infrared`, {
+    method: "POST",
+    headers: { Authorization: `Bearer ${server.token}` },
+    body: readFileSync(file("plan.png")),
+  });
   assert.equal(look.status, 201, await look.clone().text());
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
@@ -97,9 +113,19 @@ try {
   await paint();
   const states = await statistics("states");
   assert.deepEqual(states.keys.map(({ key }) => key).sort(), [1, 4]);
-  assert.deepEqual((await layer("states")).palette.points.map(({ at, label }) => [at, label]), [[1, "Salt"], [4, "Moss"]]);
+  assert.deepEqual(
+    (await layer("states")).palette.points.map(({ at, label }) => [at, label]),
+    [
+      [1, "Salt"],
+      [4, "Moss"],
+    ],
+  );
   await browser.saved();
-  await wait_for(async () => (await browser.count(rgb(kMagenta))) > 500, "the moss on the pot", 150);
+  await wait_for(
+    async () => (await browser.count(rgb(kMagenta))) > 500,
+    "the moss on the pot",
+    150,
+  );
 
   say("numbers with the names of another attribute");
   await open_dialog("States");
@@ -116,7 +142,11 @@ try {
   await page.getByText("The file says where it lies.").waitFor();
   const values = page.locator("strata-map-colors input[type=text]");
   await wait_for(async () => (await values.count()) === 3, "the three colours");
-  assert.deepEqual(await Promise.all([0, 1, 2].map((i) => values.nth(i).isDisabled())), [true, false, false]);
+  assert.deepEqual(await Promise.all([0, 1, 2].map((i) => values.nth(i).isDisabled())), [
+    true,
+    false,
+    false,
+  ]);
   await values.nth(1).fill("");
   await seen_from_front();
   await button("Paint").click();
@@ -125,7 +155,13 @@ try {
   await values.nth(2).fill("11");
   await shot("maps-colours");
   await paint();
-  assert.deepEqual((await statistics("states")).keys.map(({ key }) => key).sort((a, b) => a - b).filter((key) => key === 4 || key === 11), [4, 11]);
+  assert.deepEqual(
+    (await statistics("states")).keys
+      .map(({ key }) => key)
+      .sort((a, b) => a - b)
+      .filter((key) => key === 4 || key === 11),
+    [4, 11],
+  );
 
   say("a raster of numbers lies where it says");
   await open_dialog("Depth");
@@ -136,7 +172,10 @@ try {
   await shot("maps-raster");
   await paint();
   const depth = await statistics("depth");
-  assert.ok(depth.texels > 1000 && depth.min >= 0 && depth.max <= 7.5, JSON.stringify(depth).slice(0, 200));
+  assert.ok(
+    depth.texels > 1000 && depth.min >= 0 && depth.max <= 7.5,
+    JSON.stringify(depth).slice(0, 200),
+  );
 
   say("a map with a coordinate system on a model without one is asked about");
   await open_dialog("Depth");
@@ -144,9 +183,17 @@ try {
   await page.getByText("16 × 16 px · 1 band · EPSG:25830").waitFor();
   await seen_from_front();
   await button("Paint").click();
-  const question = page.getByRole("alertdialog", { name: /The map lies in EPSG:25830, and this model has no coordinate system/ });
+  const question = page.getByRole("alertdialog", {
+    name: /The map lies in EPSG:25830, and this model has no coordinate system/,
+  });
   await question.waitFor();
-  await wait_for(() => question.getByRole("button", { name: "No", exact: true }).evaluate((each) => each.matches(":focus")), "the keyboard in the question");
+  await wait_for(
+    () =>
+      question
+        .getByRole("button", { name: "No", exact: true })
+        .evaluate((each) => each.matches(":focus")),
+    "the keyboard in the question",
+  );
   assert.ok(await button("Paint").isDisabled());
   assert.deepEqual(await findings(page), []);
   await shot("maps-coordinate-system");
@@ -162,10 +209,20 @@ try {
   const annotator = (await server.add_person("ann", "annotator")).token;
   const as_annotator = (query) => {
     const form = new FormData();
-    for (const name of ["walls.shp", "walls.dbf"]) form.append("files", new Blob([readFileSync(file(name))]), name);
-    return fetch(`${server.url}/api/v1${base}/layers/few/polygons?along=%2By&${query}`, { method: "POST", headers: { Authorization: `Bearer ${annotator}` }, body: form });
+    for (const name of ["walls.shp", "walls.dbf"])
+      form.append("files", new Blob([readFileSync(file(name))]), name);
+    return fetch(`${server.url}/api/v1${base}/layers/few/polygons?along=%2By&${query}`, {
+      method: "POST",
+      headers: { Authorization: `Bearer ${annotator}` },
+      body: form,
+    });
   };
-  await server.json("POST", `${base}/layers`, { name: "Few", type: "u8", visible: false, palette: { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Salt" }] } });
+  await server.json("POST", `${base}/layers`, {
+    name: "Few",
+    type: "u8",
+    visible: false,
+    palette: { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Salt" }] },
+  });
   const refused = await as_annotator("attribute=STATE");
   assert.equal(refused.status, 403);
   assert.match((await refused.json()).detail, /lacks: Moss/);
@@ -190,23 +247,41 @@ try {
   const saved = async (command) => {
     await button("Options for pieces").click();
     if (command === "Save outlines as GeoJSON") await shot("maps-outlines");
-    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("menuitem", { name: command, exact: true }).click()]);
+    const [download] = await Promise.all([
+      page.waitForEvent("download"),
+      page.getByRole("menuitem", { name: command, exact: true }).click(),
+    ]);
     return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
   };
-  const pieces = (await server.json("GET", `${base}/layers`)).layers.find(({ name }) => name === "pieces");
+  const pieces = (await server.json("GET", `${base}/layers`)).layers.find(
+    ({ name }) => name === "pieces",
+  );
   const json = await saved("Save outlines as GeoJSON");
   const outlines = JSON.parse(json.bytes.toString());
-  assert.deepEqual([json.name, outlines.name], [`demo-pot-${pieces.slug}.geojson`, `demo-pot-${pieces.slug}`]);
+  assert.deepEqual(
+    [json.name, outlines.name],
+    [`demo-pot-${pieces.slug}.geojson`, `demo-pot-${pieces.slug}`],
+  );
   const painted = (await statistics(pieces.slug)).keys.map(({ key }) => key);
   const areas = outlines.features.filter(({ properties }) => properties.kind === "areas");
-  assert.deepEqual(areas.map(({ properties }) => properties.key ?? properties.value), painted);
+  assert.deepEqual(
+    areas.map(({ properties }) => properties.key ?? properties.value),
+    painted,
+  );
   assert.ok(areas.some(({ geometry }) => geometry.coordinates.length > 0));
   const gpkg = await saved("Save outlines as GeoPackage");
-  assert.deepEqual([gpkg.name, gpkg.bytes.subarray(0, 15).toString()], [`demo-pot-${pieces.slug}.gpkg`, "SQLite format 3"]);
+  assert.deepEqual(
+    [gpkg.name, gpkg.bytes.subarray(0, 15).toString()],
+    [`demo-pot-${pieces.slug}.gpkg`, "SQLite format 3"],
+  );
 
   say("an orthophoto becomes a look");
-  for (const { id } of (await server.json("GET", `${base}/layers`)).layers) await server.json("PATCH", `${base}/layers/${id}`, { visible: false });
-  await page.locator("strata-view-panel").getByRole("button", { name: "View", exact: true }).click();
+  for (const { id } of (await server.json("GET", `${base}/layers`)).layers)
+    await server.json("PATCH", `${base}/layers/${id}`, { visible: false });
+  await page
+    .locator("strata-view-panel")
+    .getByRole("button", { name: "View", exact: true })
+    .click();
   await button("More about looks").click();
   await page.getByRole("menuitem", { name: "Add an orthophoto…" }).click();
   await give("photo.png", "photo.pgw");
@@ -218,7 +293,11 @@ try {
   await button("Add").click();
   await dialog.waitFor({ state: "detached" });
   await button("Hide Ortho").waitFor();
-  await wait_for(async () => (await browser.count(rgb(kMagenta))) > 5000, "the orthophoto on the pot", 300);
+  await wait_for(
+    async () => (await browser.count(rgb(kMagenta))) > 5000,
+    "the orthophoto on the pot",
+    300,
+  );
   await shot("maps-look");
 
   say("it is renamed and moved");
@@ -232,7 +311,10 @@ try {
   await button("Options for Front 2024").click();
   await page.getByRole("menuitem", { name: "Move down" }).click();
   await wait_for(async () => (await names())[1] === "Front 2024", "the look below the other");
-  await wait_for(async () => (await server.json("GET", `${base}/looks`)).looks.at(-1).name === "Infrared", "the server to know");
+  await wait_for(
+    async () => (await server.json("GET", `${base}/looks`)).looks.at(-1).name === "Infrared",
+    "the server to know",
+  );
   await shot("maps-looks");
 
   say("the end");

@@ -1,5 +1,6 @@
-// Lines and points on the surface: columns of them are made on the page, a crack is drawn by a drag and by clicks, a sample by a click; the
-// table measures them, the picture shows them, undo takes them away, and the form of a record takes one out and leads to drawing more.
+// Lines and points on the surface: columns of them are made on the page, a crack is drawn by a drag
+// and by clicks, a sample by a click; the table measures them, the picture shows them, undo takes
+// them away, and the form of a record takes one out and leads to drawing more.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
@@ -22,14 +23,18 @@ const form = page.locator("strata-record-dialog");
 const notice = (text) => page.locator("strata-notices").getByText(text).last().waitFor();
 const row = (text) => panel.locator(".line", { hasText: text });
 const shot = async (name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 const record = (key) => server.json("GET", `${L}/records/${key}`);
 const marks = async (key, column) => (await record(key)).values[column] ?? [];
-const shows = (color, what) => wait_for(async () => (await browser.count(rgb(color))) > 40, what, 150);
-const hides = (color, what) => wait_for(async () => (await browser.count(rgb(color))) === 0, what, 150);
+const shows = (color, what) =>
+  wait_for(async () => (await browser.count(rgb(color))) > 40, what, 150);
+const hides = (color, what) =>
+  wait_for(async () => (await browser.count(rgb(color))) === 0, what, 150);
 const distance = (a, b) => Math.hypot(...a.map((value, axis) => value - b[axis]));
-const length_of = ({ coordinates }) => coordinates.slice(1).reduce((sum, place, at) => sum + distance(place, coordinates[at]), 0);
+const length_of = ({ coordinates }) =>
+  coordinates.slice(1).reduce((sum, place, at) => sum + distance(place, coordinates[at]), 0);
 /** What a pixel of the page is on the object, as the scale bar tells it. */
 async function metres_per_pixel() {
   const { width } = await page.locator("strata-stage .scale i").boundingBox();
@@ -57,11 +62,23 @@ async function make_column(name, kind) {
 try {
   await server.start();
   await server.json("POST", `${base}/layers`, {
-    name: "Damages", kind: "database", type: "u16", resolution: 2048, columns: [{ name: "Name", required: true, unique: true }],
-    palette: { mode: "categorical", points: [{ at: 1, color: kCrack }, { at: 2, color: kSample }] },
+    name: "Damages",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    columns: [{ name: "Name", required: true, unique: true }],
+    palette: {
+      mode: "categorical",
+      points: [
+        { at: 1, color: kCrack },
+        { at: 2, color: kSample },
+      ],
+    },
   });
-  for (const name of ["North crack", "Sample A"]) await server.json("POST", "/tables/damages/records", { values: { name } });
-  for (const other of ["pieces", "cracks"]) await server.json("PATCH", `${base}/layers/${other}`, { visible: false });
+  for (const name of ["North crack", "Sample A"])
+    await server.json("POST", "/tables/damages/records", { values: { name } });
+  for (const other of ["pieces", "cracks"])
+    await server.json("PATCH", `${base}/layers/${other}`, { visible: false });
   const metres_per = { mm: 0.001, cm: 0.01, m: 1 }[(await server.json("GET", base)).unit];
 
   await page.goto(server.link);
@@ -83,17 +100,30 @@ try {
 
   say("a drag across the pot is a line, as long as it looks, in the record's colour");
   await hides(kCrack, "nothing drawn yet");
-  await browser.drag([[0.42, 0.57], [0.5, 0.55], [0.58, 0.57]]);
+  await browser.drag([
+    [0.42, 0.57],
+    [0.5, 0.55],
+    [0.58, 0.57],
+  ]);
   await notice(/drawn for “North crack”\./);
   await shows(kCrack, "the line on the pot");
   const [crack] = await marks(1, "cracks");
   const box = await browser.stage_box();
   const drawn_m = 2 * Math.hypot(0.08 * box.width, 0.02 * box.height) * (await metres_per_pixel());
   const length_m = length_of(crack) * metres_per;
-  assert.ok(length_m > 0.75 * drawn_m && length_m < 1.6 * drawn_m, `${length_m} m where ${drawn_m} m were drawn`);
-  assert.ok(crack.coordinates.length > 3 && crack.coordinates.length < 200, `${crack.coordinates.length} places`);
+  assert.ok(
+    length_m > 0.75 * drawn_m && length_m < 1.6 * drawn_m,
+    `${length_m} m where ${drawn_m} m were drawn`,
+  );
+  assert.ok(
+    crack.coordinates.length > 3 && crack.coordinates.length < 200,
+    `${crack.coordinates.length} places`,
+  );
   assert.ok(Math.abs((await record(1)).length_m - length_m) < 1e-9);
-  await wait_for(async () => /1 line · ([\d.]+ [mc]?m)[\s\S]*\1/.test(await row("North crack").innerText()), "the length beside the area");
+  await wait_for(
+    async () => /1 line · ([\d.]+ [mc]?m)[\s\S]*\1/.test(await row("North crack").innerText()),
+    "the length beside the area",
+  );
   await shot("mark-line");
 
   say("what was drawn is taken back by the notice, and by keys");
@@ -105,7 +135,9 @@ try {
   await page.keyboard.press("Control+Z");
   await hides(kCrack, "and gone");
 
-  say("clicks are its places; a double click ends it, Escape gives it up; how long it is so far stands at the pointer");
+  say(
+    "clicks are its places; a double click ends it, Escape gives it up; how long it is so far stands at the pointer",
+  );
   await click_at(0.42, 0.56);
   await click_at(0.5, 0.6);
   await browser.point(0.52, 0.58);
@@ -118,7 +150,10 @@ try {
   await so_far.waitFor();
   const short = metres_of(await so_far.innerText());
   await browser.point(0.56, 0.56);
-  await wait_for(async () => metres_of(await so_far.innerText()) > short, "the length to grow with the line");
+  await wait_for(
+    async () => metres_of(await so_far.innerText()) > short,
+    "the length to grow with the line",
+  );
   await shot("mark-line-by-clicks");
   await click_at(0.56, 0.56, 2);
   await shows(kCrack, "the line of clicks");
@@ -130,11 +165,17 @@ try {
   await click_at(0.5, 0.6);
   await browser.point(0.56, 0.56);
   const made_m = length_of(by_clicks) * metres_per;
-  await wait_for(async () => Math.abs(metres_of(await so_far.innerText()) / made_m - 1) < 0.02, `the length to be ${made_m} m`);
+  await wait_for(
+    async () => Math.abs(metres_of(await so_far.innerText()) / made_m - 1) < 0.02,
+    `the length to be ${made_m} m`,
+  );
   await page.keyboard.press("Escape");
 
   say("where there is no surface there is no line, and a notice says so");
-  await browser.drag([[0.02, 0.1], [0.1, 0.12]]);
+  await browser.drag([
+    [0.02, 0.1],
+    [0.1, 0.12],
+  ]);
   await notice("There is no surface there.");
 
   say("a click sets a point, for the record that is chosen");
@@ -146,18 +187,27 @@ try {
   await button("Choose none").click();
   await shows(kSample, "the point on the pot");
   await row("Sample A").getByText("1 point", { exact: true }).waitFor();
-  await wait_for(async () => (await row("Sample A").getByRole("gridcell").last().innerText()).trim() === "1", "the number of points");
+  await wait_for(
+    async () => (await row("Sample A").getByRole("gridcell").last().innerText()).trim() === "1",
+    "the number of points",
+  );
   await shot("mark-point");
 
   say("a record that has a line or a point alone is gone to, also after the page was loaded again");
-  const view_of = async () => new URL(page.url()).searchParams.toString() + (await page.locator("strata-stage .scale").innerText());
+  const view_of = async () =>
+    new URL(page.url()).searchParams.toString() +
+    (await page.locator("strata-stage .scale").innerText());
   const goes_to = async (name) => {
     await page.keyboard.press("v");
     await page.locator("strata-stage .surface").focus();
     await page.keyboard.press("Home");
     await row(name).getByRole("rowheader").click();
     const go = panel.getByRole("button", { name: "Go to where they are" });
-    await wait_for(async () => (await go.isEnabled()) && (await go.getAttribute("title")) === "Go to where they are", "the way there");
+    await wait_for(
+      async () =>
+        (await go.isEnabled()) && (await go.getAttribute("title")) === "Go to where they are",
+      "the way there",
+    );
     const before = await view_of();
     await go.click();
     await wait_for(async () => (await view_of()) !== before, "the camera to be there");
@@ -171,9 +221,14 @@ try {
   if (!(await panel.count())) await page.keyboard.press("t");
   await goes_to("Sample A");
   await goes_to("North crack");
-  const bare = await server.json("POST", "/tables/damages/records", { values: { name: "Nothing" } });
+  const bare = await server.json("POST", "/tables/damages/records", {
+    values: { name: "Nothing" },
+  });
   await row("Nothing").getByRole("rowheader").click();
-  await panel.getByRole("button", { name: "Go to where they are" }).and(page.locator("[title='None of them has an area, a line or a point on this model']")).waitFor();
+  await panel
+    .getByRole("button", { name: "Go to where they are" })
+    .and(page.locator("[title='None of them has an area, a line or a point on this model']"))
+    .waitFor();
   await server.request("DELETE", `/tables/damages/records/${bare.key}`);
   await wait_for(async () => (await row("Nothing").count()) === 0, "the record to be gone");
   await page.locator("strata-stage .surface").focus();
@@ -187,7 +242,8 @@ try {
   const kept = (await marks(1, "cracks")).length;
   let camera = null;
   page.on("request", (request) => {
-    if (request.method() === "POST" && request.url().endsWith("/profile")) camera = request.postDataJSON().camera ?? camera;
+    if (request.method() === "POST" && request.url().endsWith("/profile"))
+      camera = request.postDataJSON().camera ?? camera;
   });
   await click_at(0.42, 0.56);
   await browser.point(0.46, 0.58);
@@ -197,18 +253,23 @@ try {
   const scale = camera.width / frame.width;
   /** Where the pot begins in a row of the picture, in pixels of the page. */
   const edge_at = async (y) => {
-    const path = [[1, y * scale], [camera.width / 2, y * scale]];
+    const path = [
+      [1, y * scale],
+      [camera.width / 2, y * scale],
+    ];
     const { samples } = await server.json("POST", `${base}/profile`, { camera, path, layers: [] });
     const at = samples.findIndex(({ point }) => point.hit);
     return ((at / (samples.length - 1)) * (camera.width / 2 - 1) + 1) / scale;
   };
   const [top, bottom] = [0.5 * frame.height, 0.62 * frame.height];
   const way = [];
-  for (let y = top; y <= bottom; y += 3) way.push([(await edge_at(y)) + 3 + 7 * Math.sin((y - top) / 6), y]);
+  for (let y = top; y <= bottom; y += 3)
+    way.push([(await edge_at(y)) + 3 + 7 * Math.sin((y - top) / 6), y]);
   const draw = async (points) => {
     await page.mouse.move(frame.x + points[0][0], frame.y + points[0][1]);
     await page.mouse.down();
-    for (const [x, y] of points.slice(1)) await page.mouse.move(frame.x + x, frame.y + y, { steps: 2 });
+    for (const [x, y] of points.slice(1))
+      await page.mouse.move(frame.x + x, frame.y + y, { steps: 2 });
     await page.mouse.up();
   };
   await draw(way);
@@ -216,31 +277,61 @@ try {
   const along = (await marks(1, "cracks")).slice(kept);
   await shot("mark-along-the-edge");
   assert.equal(along.length, 1, `${along.length} lines of one drag`);
-  assert.equal(await page.locator("strata-notices").getByText(/was cut into/).count(), 0);
-  const way_m = way.slice(1).reduce((sum, at, index) => sum + distance(at, way[index]), 0) * (await metres_per_pixel());
+  assert.equal(
+    await page
+      .locator("strata-notices")
+      .getByText(/was cut into/)
+      .count(),
+    0,
+  );
+  const way_m =
+    way.slice(1).reduce((sum, at, index) => sum + distance(at, way[index]), 0) *
+    (await metres_per_pixel());
   const along_m = length_of(along[0]) * metres_per;
-  assert.ok(along_m > 0.5 * way_m && along_m < 2.5 * way_m, `${along_m} m where ${way_m} m were drawn`);
-  // From place to place it goes along the surface, which is seen at a slant: a step may be long, but leads neither through the pot nor to what lies behind.
+  assert.ok(
+    along_m > 0.5 * way_m && along_m < 2.5 * way_m,
+    `${along_m} m where ${way_m} m were drawn`,
+  );
+  // From place to place it goes along the surface, which is seen at a slant: a step may be long,
+  // but leads neither through the pot nor to what lies behind.
   const places = along[0].coordinates;
   const radius = ([x, y]) => Math.hypot(x, y) * metres_per; // the pot stands on the axis of z
   const steps = places.slice(1).map((place, at) => [places[at], place]);
   const longest = Math.max(...steps.map(([from, to]) => distance(from, to))) * metres_per;
   assert.ok(longest < 80 * (await metres_per_pixel()), `a step of ${longest} m`);
-  const deepest = Math.max(...steps.map(([from, to]) => (radius(from) + radius(to)) / 2 - radius([(from[0] + to[0]) / 2, (from[1] + to[1]) / 2])));
+  const deepest = Math.max(
+    ...steps.map(
+      ([from, to]) =>
+        (radius(from) + radius(to)) / 2 - radius([(from[0] + to[0]) / 2, (from[1] + to[1]) / 2]),
+    ),
+  );
   assert.ok(deepest < 0.0015, `a step that leads ${deepest} m below the surface`);
   await page.locator("strata-notices").getByRole("button", { name: "Undo" }).last().click();
   await wait_for(async () => (await marks(1, "cracks")).length === kept, "the line to be gone");
 
   say("a line that crosses an edge for good is cut, says so, and is taken back as a whole");
   const middle = 0.5 * frame.width;
-  await draw([[middle, 0.6 * frame.height], [middle, 0.45 * frame.height], [middle, 0.3 * frame.height], [middle, 0.24 * frame.height]]);
-  const cut = page.locator("strata-notices .notice", { hasText: /The line crossed an edge and was cut into \d pieces\./ });
+  await draw([
+    [middle, 0.6 * frame.height],
+    [middle, 0.45 * frame.height],
+    [middle, 0.3 * frame.height],
+    [middle, 0.24 * frame.height],
+  ]);
+  const cut = page.locator("strata-notices .notice", {
+    hasText: /The line crossed an edge and was cut into \d pieces\./,
+  });
   await cut.waitFor();
   const pieces = (await marks(1, "cracks")).length - kept;
-  assert.match(await cut.innerText(), new RegExp(`cut into ${pieces} pieces[^]*drawn for “North crack”`));
+  assert.match(
+    await cut.innerText(),
+    new RegExp(`cut into ${pieces} pieces[^]*drawn for “North crack”`),
+  );
   await shot("mark-cut");
   await cut.getByRole("button", { name: "Undo" }).click();
-  await wait_for(async () => (await marks(1, "cracks")).length === kept, "all of its pieces to be gone");
+  await wait_for(
+    async () => (await marks(1, "cracks")).length === kept,
+    "all of its pieces to be gone",
+  );
   await page.keyboard.press("v");
 
   say("the form lists what the record has, and takes one out");
@@ -252,7 +343,10 @@ try {
   await cracks.getByRole("button", { name: /^Take out / }).click();
   await button("Save").click();
   await hides(kCrack, "the line to be gone");
-  await wait_for(async () => !/ m/.test(await row("North crack").innerText()), "the length to be gone, too");
+  await wait_for(
+    async () => !/ m/.test(await row("North crack").innerText()),
+    "the length to be gone, too",
+  );
 
   say("and leads to drawing more, after it has kept what was written");
   await button("Edit the record").click();
@@ -260,7 +354,10 @@ try {
   await cracks.getByRole("button", { name: "Draw…" }).click();
   await wait_for(async () => (await form.count()) === 0, "the form to close");
   assert.equal(await button("Line").getAttribute("aria-pressed"), "true");
-  await browser.drag([[0.54, 0.56], [0.62, 0.57]]);
+  await browser.drag([
+    [0.54, 0.56],
+    [0.62, 0.57],
+  ]);
   await notice(/drawn for “Long crack”\./);
   await shows(kCrack, "the next line");
   await button("Choose none").click();
@@ -272,7 +369,9 @@ try {
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 } catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`);
+  console.log(
+    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
+  );
   await shot("marks-failure");
   throw error;
 } finally {

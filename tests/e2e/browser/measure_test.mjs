@@ -1,5 +1,6 @@
-// Measuring on a surface whose shape is known: a ridge like a roof. Straight lengths, lengths along the surface, heights, areas and the profile are
-// those of the roof, by mouse, keys and fingers, for people who may only look.
+// Measuring on a surface whose shape is known: a ridge like a roof. Straight lengths, lengths along
+// the surface, heights, areas and the profile are those of the roof, by mouse, keys and fingers,
+// for people who may only look.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -7,27 +8,58 @@ import { Browser, rgb } from "../support/browser.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const browser = await Browser.open();
-const phone = await Browser.open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 });
+const phone = await Browser.open({
+  viewport: { width: 390, height: 844 },
+  hasTouch: true,
+  isMobile: true,
+  deviceScaleFactor: 2,
+});
 const server = new StrataServer();
 const { page } = browser;
 let step = "start";
 const say = (text) => console.log((step = text));
 const shot = async (name, of = page) => {
-  if (process.env.STRATA_TEST_OUTPUT) await of.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `measure_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await of.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `measure_${name}.png`) });
 };
 
-// A roof of 200 mm × 120 mm seen from above: it rises from y = 0 to a ridge of 45 mm along y = 60, and falls to y = 120.
+// A roof of 200 mm × 120 mm seen from above: it rises from y = 0 to a ridge of 45 mm along y = 60,
+// and falls to y = 120.
 const kRidge_mm = 45;
 const kSlope = kRidge_mm / 60;
 const kAlong = Math.hypot(1, kSlope); // of a way up the roof to its shadow
 const height_at = (y) => kRidge_mm - kSlope * Math.abs(y - 60);
-const roof = ["ply", "format ascii 1.0", "element vertex 6", "property float x", "property float y", "property float z", "element face 4",
-  "property list uchar int vertex_indices", "end_header", "0 0 0", "200 0 0", `200 60 ${kRidge_mm}`, `0 60 ${kRidge_mm}`, "200 120 0", "0 120 0",
-  "3 0 1 2", "3 0 2 3", "3 3 2 4", "3 3 4 5", ""].join("\n");
+const roof = [
+  "ply",
+  "format ascii 1.0",
+  "element vertex 6",
+  "property float x",
+  "property float y",
+  "property float z",
+  "element face 4",
+  "property list uchar int vertex_indices",
+  "end_header",
+  "0 0 0",
+  "200 0 0",
+  `200 60 ${kRidge_mm}`,
+  `0 60 ${kRidge_mm}`,
+  "200 120 0",
+  "0 120 0",
+  "3 0 1 2",
+  "3 0 2 3",
+  "3 3 2 4",
+  "3 3 4 5",
+  "",
+].join("\n");
 
 async function import_roof() {
   const started = await fetch(`${server.url}/api/v1/models?filename=roof.ply&name=Roof&unit=mm`, {
-    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: roof,
+    method: "POST",
+    headers: {
+      Authorization: `Bearer ${server.token}`,
+      "Content-Type": "application/octet-stream",
+    },
+    body: roof,
   });
   assert.equal(started.status, 202, await started.clone().text());
   const { id } = await started.json();
@@ -45,23 +77,41 @@ const of = (where) => {
   /** In millimetres, or square millimetres. */
   const told = async (name) => {
     const text = await figure(name).innerText();
-    const [, number, unit] = /^([+-]?[\d.,]+) (µm|mm|cm|m|km|mm²|cm²|m²)$/.exec(text) ?? assert.fail(`${name}: ${text}`);
-    return Number(number.replaceAll(",", "")) * { "µm": 0.001, mm: 1, cm: 10, m: 1000, km: 1e6, "mm²": 1, "cm²": 100, "m²": 1e6 }[unit];
+    const [, number, unit] =
+      /^([+-]?[\d.,]+) (µm|mm|cm|m|km|mm²|cm²|m²)$/.exec(text) ?? assert.fail(`${name}: ${text}`);
+    return (
+      Number(number.replaceAll(",", "")) *
+      { µm: 0.001, mm: 1, cm: 10, m: 1000, km: 1e6, "mm²": 1, "cm²": 100, "m²": 1e6 }[unit]
+    );
   };
   const is_about = async (name, wanted, tolerance, why = "") => {
     await wait_for(async () => (await figure(name).count()) === 1, `the figure ${name}`);
     let last = NaN;
-    await wait_for(async () => Math.abs((last = await told(name)) - wanted) <= tolerance, `${name} to be ${wanted}${why}`).catch((error) => {
+    await wait_for(
+      async () => Math.abs((last = await told(name)) - wanted) <= tolerance,
+      `${name} to be ${wanted}${why}`,
+    ).catch((error) => {
       throw new Error(`${error.message}; it is ${last}`);
     });
   };
-  const places = (count) => panel.locator('[role="status"]').getByText(new RegExp(`^${count} places?\\b`)).waitFor({ state: "attached" });
-  const none = () => wait_for(async () => (await panel.locator('[role="status"]').textContent()).trim() === "", "nothing to be measured");
+  const places = (count) =>
+    panel
+      .locator('[role="status"]')
+      .getByText(new RegExp(`^${count} places?\\b`))
+      .waitFor({ state: "attached" });
+  const none = () =>
+    wait_for(
+      async () => (await panel.locator('[role="status"]').textContent()).trim() === "",
+      "nothing to be measured",
+    );
   return { panel, button, figure, told, is_about, places, none };
 };
 const desk = of(browser);
 
-/** Seen from above in parallel: what a place of the roof is on the page, by what the server sees at two pixels of the page. */
+/**
+ * Seen from above in parallel: what a place of the roof is on the page, by what the server sees at
+ * two pixels of the page.
+ */
 async function from_above({ page: on }) {
   await on.locator("strata-stage .surface").focus();
   await on.keyboard.press("o");
@@ -72,31 +122,74 @@ async function from_above({ page: on }) {
     const position = on.locator("strata-value-readout .position");
     await position.waitFor();
     let last = "";
-    const text = await wait_for(async () => {
-      const now = await position.innerText();
-      const same = now === last;
-      last = now;
-      return same && now;
-    }, "the place under the pointer to be known", 300);
+    const text = await wait_for(
+      async () => {
+        const now = await position.innerText();
+        const same = now === last;
+        last = now;
+        return same && now;
+      },
+      "the place under the pointer to be known",
+      300,
+    );
     return /([-\d.]+), ([-\d.]+), ([-\d.]+)/.exec(text).slice(1).map(Number);
   };
   const [x0, y0] = [box.width / 2, box.height / 2];
   const [a, b] = [await place_at(x0 - 100, y0 - 60), await place_at(x0 + 100, y0 + 60)];
   const mm_per_px = (b[0] - a[0]) / 200;
-  assert.ok(Math.abs((a[1] - b[1]) / 120 - mm_per_px) < 0.02 * mm_per_px, `seen from above: ${a} ${b}`);
-  const page_of = (x, y) => [box.x + x0 - 100 + (x - a[0]) / mm_per_px, box.y + y0 - 60 - (y - a[1]) / mm_per_px];
-  return { mm_per_px, page_of, click: async (x, y, count = 1) => on.mouse.click(...page_of(x, y), { clickCount: count }) };
+  assert.ok(
+    Math.abs((a[1] - b[1]) / 120 - mm_per_px) < 0.02 * mm_per_px,
+    `seen from above: ${a} ${b}`,
+  );
+  const page_of = (x, y) => [
+    box.x + x0 - 100 + (x - a[0]) / mm_per_px,
+    box.y + y0 - 60 - (y - a[1]) / mm_per_px,
+  ];
+  return {
+    mm_per_px,
+    page_of,
+    click: async (x, y, count = 1) => on.mouse.click(...page_of(x, y), { clickCount: count }),
+  };
 }
 
 try {
   await server.start();
   const model = await import_roof();
   const viewer = await server.add_person("vera", "viewer");
-  await server.json("POST", `/models/${model}/layers`, { name: "Moisture", type: "f32", unit: "%", resolution: 2048,
-    palette: { mode: "linear", min: 0, max: 10, points: [{ at: 0, color: "#440154ff" }, { at: 10, color: "#fde725ff" }] } }); // prettier-ignore
-  await server.json("POST", `/models/${model}/layers`, { name: "Units", kind: "database", type: "u16", resolution: 2048, columns: [{ name: "Name" }] });
-  await server.json("POST", `/models/${model}/layers/moisture/edits`, { op: "fill", mode: "where", where: "x < 100", value: 4 });
-  await server.json("POST", `/models/${model}/layers/moisture/edits`, { op: "fill", mode: "where", where: "x < 50", value: 7 });
+  await server.json("POST", `/models/${model}/layers`, {
+    name: "Moisture",
+    type: "f32",
+    unit: "%",
+    resolution: 2048,
+    palette: {
+      mode: "linear",
+      min: 0,
+      max: 10,
+      points: [
+        { at: 0, color: "#440154ff" },
+        { at: 10, color: "#fde725ff" },
+      ],
+    },
+  });
+  await server.json("POST", `/models/${model}/layers`, {
+    name: "Units",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    columns: [{ name: "Name" }],
+  });
+  await server.json("POST", `/models/${model}/layers/moisture/edits`, {
+    op: "fill",
+    mode: "where",
+    where: "x < 100",
+    value: 4,
+  });
+  await server.json("POST", `/models/${model}/layers/moisture/edits`, {
+    op: "fill",
+    mode: "where",
+    where: "x < 50",
+    value: 7,
+  });
 
   say("who may only look has the tool, by its key, with no layer chosen");
   await browser.sign_in(server, viewer);
@@ -106,14 +199,19 @@ try {
   const { mm_per_px, click } = roof_from_above;
   const near = 2.5 * mm_per_px; // two ends, each within a pixel and a bit
   await page.keyboard.press("m");
-  assert.equal(await page.getByRole("button", { name: "Measure", exact: true }).getAttribute("aria-pressed"), "true");
+  assert.equal(
+    await page.getByRole("button", { name: "Measure", exact: true }).getAttribute("aria-pressed"),
+    "true",
+  );
   await desk.panel.getByText(/Click or tap places/).waitFor();
   const unconfirmed = desk.panel.getByText("Size not confirmed.");
   await unconfirmed.waitFor();
   await server.json("PATCH", `/models/${model}`, { scale_verified: true });
   await unconfirmed.waitFor({ state: "detached" });
 
-  say("up and down the roof: straight it is its shadow, along the surface it is longer by the slope");
+  say(
+    "up and down the roof: straight it is its shadow, along the surface it is longer by the slope",
+  );
   await click(40, 10);
   await desk.places(1);
   await click(40, 110);
@@ -146,7 +244,13 @@ try {
   say("a second click on the last place ends; a rectangle on one side of the roof has its area");
   await page.keyboard.press("Escape");
   await desk.none();
-  for (const [x, y] of [[30, 10], [150, 10], [150, 50], [30, 50]]) await click(x, y); // prettier-ignore
+  for (const [x, y] of [
+    [30, 10],
+    [150, 10],
+    [150, 50],
+    [30, 50],
+  ])
+    await click(x, y);
   await desk.places(4);
   await click(30, 50);
   await desk.panel.getByRole("heading", { name: "Profile" }).waitFor();
@@ -156,7 +260,11 @@ try {
   await desk.is_about("perimeter", 2 * (wide + deep), 4 * near);
   await desk.is_about("straight", 2 * wide + deep, 3 * near);
   await desk.is_about("ends", deep, near * kAlong);
-  assert.equal(await desk.panel.getByText(/off its plane/).count(), 0, "one side of a roof is flat");
+  assert.equal(
+    await desk.panel.getByText(/off its plane/).count(),
+    0,
+    "one side of a roof is flat",
+  );
   await shot("area");
 
   say("the next click begins anew; what is measured stays when the camera moves");
@@ -167,7 +275,10 @@ try {
   await page.keyboard.press("Enter");
   const plot = desk.panel.getByRole("slider", { name: "Place along the profile" });
   await plot.locator("path.curve").waitFor();
-  const drawn = async () => page.locator("strata-stage svg.measured path").evaluateAll((all) => all.map((each) => each.getAttribute("d")).join(" "));
+  const drawn = async () =>
+    page
+      .locator("strata-stage svg.measured path")
+      .evaluateAll((all) => all.map((each) => each.getAttribute("d")).join(" "));
   const before = await drawn();
   for (let n = 0; n < 4; ++n) await page.keyboard.press("ArrowRight");
   await wait_for(async () => (await drawn()) !== before, "the line to move with the model");
@@ -177,10 +288,14 @@ try {
 
   say("arrow keys go along the curve: in its middle is the ridge, marked on the model");
   const readout = desk.panel.locator("strata-profile-plot output");
-  const in_mm = (number, unit) => Number(number) * { "µm": 0.001, mm: 1, cm: 10 }[unit];
+  const in_mm = (number, unit) => Number(number) * { µm: 0.001, mm: 1, cm: 10 }[unit];
   const sample = async () => {
-    const found = /At ([\d.]+) (µm|mm|cm) · Height \(z\) ([\d.]+) (µm|mm|cm)/.exec(await readout.innerText());
-    return found ? { along_mm: in_mm(found[1], found[2]), height_mm: in_mm(found[3], found[4]) } : { along_mm: NaN, height_mm: NaN };
+    const found = /At ([\d.]+) (µm|mm|cm) · Height \(z\) ([\d.]+) (µm|mm|cm)/.exec(
+      await readout.innerText(),
+    );
+    return found
+      ? { along_mm: in_mm(found[1], found[2]), height_mm: in_mm(found[3], found[4]) }
+      : { along_mm: NaN, height_mm: NaN };
   };
   await plot.focus();
   await page.keyboard.press("Home");
@@ -188,9 +303,16 @@ try {
   for (let n = 0; n < 5; ++n) await page.keyboard.press("PageUp");
   await wait_for(async () => Math.abs((await sample()).along_mm - 50 * kAlong) < 3, "the middle");
   const { along_mm, height_mm } = await sample();
-  assert.ok(Math.abs(height_mm - height_at(10 + along_mm / kAlong)) < 2 * near, `${height_mm} mm at ${along_mm} mm`);
+  assert.ok(
+    Math.abs(height_mm - height_at(10 + along_mm / kAlong)) < 2 * near,
+    `${height_mm} mm at ${along_mm} mm`,
+  );
   assert.match(await plot.getAttribute("aria-valuetext"), /^At [\d.]+ cm · Height \(z\)/);
-  assert.equal(await page.locator('strata-stage svg.measured circle[r="8"]').count(), 2, "the mark on the model");
+  assert.equal(
+    await page.locator('strata-stage svg.measured circle[r="8"]').count(),
+    2,
+    "the mark on the model",
+  );
   await shot("plot_by_keys");
   const box = await plot.boundingBox();
   await page.mouse.move(box.x + box.width - 20, box.y + box.height / 2);
@@ -199,7 +321,10 @@ try {
   say("at one scale for both the roof is as steep as it is");
   const slope = async () => {
     const d = await plot.locator("path.curve").getAttribute("d");
-    const points = d.slice(1).split("L").map((each) => each.split(" ").map(Number)); // prettier-ignore
+    const points = d
+      .slice(1)
+      .split("L")
+      .map((each) => each.split(" ").map(Number));
     const [[x0, y0], [x1, y1]] = [points[0], points[Math.floor(points.length * 0.4)]];
     return (y0 - y1) / (x1 - x0);
   };
@@ -218,11 +343,21 @@ try {
   await desk.places(2);
   await page.keyboard.press("Enter");
   await desk.panel.getByLabel("Shows").waitFor(); // with the profile, which the server answers
-  assert.deepEqual(await desk.panel.getByLabel("Shows").locator("option").allInnerTexts(), ["Height (z)", "Moisture (%)"]);
+  assert.deepEqual(await desk.panel.getByLabel("Shows").locator("option").allInnerTexts(), [
+    "Height (z)",
+    "Moisture (%)",
+  ]);
   await desk.panel.getByLabel("Shows").selectOption("Moisture (%)");
   await wait_for(async () => {
-    const d = (await plot.locator("path.curve").count()) === 1 && (await plot.locator("path.curve").getAttribute("d"));
-    const xs = d ? d.slice(1).split("L").map((each) => parseFloat(each)) : []; // prettier-ignore
+    const d =
+      (await plot.locator("path.curve").count()) === 1 &&
+      (await plot.locator("path.curve").getAttribute("d"));
+    const xs = d
+      ? d
+          .slice(1)
+          .split("L")
+          .map((each) => parseFloat(each))
+      : [];
     const width = (await plot.boundingBox()).width;
     return xs.length > 2 && Math.max(...xs) < 0.65 * width;
   }, "the curve of the painted half");
@@ -232,32 +367,54 @@ try {
   await page.keyboard.press("End");
   await readout.getByText("Moisture no value").waitFor();
   await shot("layer");
-  await server.json("POST", `/models/${model}/layers/moisture/edits`, { op: "fill", mode: "where", where: "x > 150", value: 2 });
+  await server.json("POST", `/models/${model}/layers/moisture/edits`, {
+    op: "fill",
+    mode: "where",
+    where: "x > 150",
+    value: 2,
+  });
   await readout.getByText("Moisture 2 %").waitFor(); // what others paint meanwhile
 
   say("the profile is saved as the server's CSV and as a picture");
   const save = async (name) => {
-    const [download] = await Promise.all([page.waitForEvent("download"), desk.button(name).click()]);
-    return { name: download.suggestedFilename(), text: readFileSync(await download.path(), "utf8") };
+    const [download] = await Promise.all([
+      page.waitForEvent("download"),
+      desk.button(name).click(),
+    ]);
+    return {
+      name: download.suggestedFilename(),
+      text: readFileSync(await download.path(), "utf8"),
+    };
   };
   const csv = await save("Save as CSV");
   assert.equal(csv.name, "roof-profile.csv");
-  const [head, ...lines] = csv.text.trim().split(/\r?\n/).map((line) => line.split(","));
+  const [head, ...lines] = csv.text
+    .trim()
+    .split(/\r?\n/)
+    .map((line) => line.split(","));
   assert.equal(head[0], "along_mm");
   assert.ok(head.includes("moisture") && head.includes("units"), `${head}`);
   const [x, y, z, moisture] = ["x", "y", "z", "moisture"].map((name) => head.indexOf(name));
   assert.ok(Math.abs(Number(lines.at(-1)[0]) - 180) < near, lines.at(-1).join());
-  for (const line of lines) assert.ok(Math.abs(Number(line[z]) - height_at(Number(line[y]))) < 0.01, line.join());
+  for (const line of lines)
+    assert.ok(Math.abs(Number(line[z]) - height_at(Number(line[y]))) < 0.01, line.join());
   assert.deepEqual([Number(lines[0][moisture]), Number(lines.at(-1)[moisture])], [7, 2]);
   assert.ok(Math.abs(Number(lines[0][x]) - 10) < near);
   const picture = await save("Save as SVG");
   assert.equal(picture.name, "roof-profile.svg");
   const drawing = await page.evaluate((text) => {
     const { documentElement: root } = new DOMParser().parseFromString(text, "image/svg+xml");
-    return { name: root.localName, texts: [...root.querySelectorAll("text")].map((each) => each.textContent), curves: root.querySelectorAll("path.curve").length };
+    return {
+      name: root.localName,
+      texts: [...root.querySelectorAll("text")].map((each) => each.textContent),
+      curves: root.querySelectorAll("path.curve").length,
+    };
   }, picture.text);
   assert.equal(drawing.name, "svg");
-  assert.ok(drawing.texts.includes("Moisture, %") && drawing.texts.includes("Along the surface, cm"), `${drawing.texts}`);
+  assert.ok(
+    drawing.texts.includes("Moisture, %") && drawing.texts.includes("Along the surface, cm"),
+    `${drawing.texts}`,
+  );
   assert.equal(drawing.curves, 2);
   assert.ok(!picture.text.includes("var(") && !picture.text.includes("lit$"), "it stands alone");
 
@@ -276,20 +433,34 @@ try {
   await page.keyboard.press("m");
   await desk.places(2);
   await page.keyboard.press("Enter");
-  const moved_px = 3 * 0.04 * Math.min(...(await page.locator("strata-stage").boundingBox().then(({ width, height }) => [width, height])));
+  const moved_px =
+    3 *
+    0.04 *
+    Math.min(
+      ...(await page
+        .locator("strata-stage")
+        .boundingBox()
+        .then(({ width, height }) => [width, height])),
+    );
   await desk.is_about("straight", moved_px * mm_per_px, near);
   await shot("keys");
 
-  say("buttons do the same, and the keyboard stays in the panel when the one that was pressed goes");
+  say(
+    "buttons do the same, and the keyboard stays in the panel when the one that was pressed goes",
+  );
   await desk.button("Clear").focus();
   await page.keyboard.press("Enter");
   await desk.none();
-  const focused = () => page.evaluate(() => {
-    let at = document.activeElement;
-    while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
-    return at.textContent.trim();
-  });
-  await wait_for(async () => (await focused()) === "Place in the middle", "the keyboard at the first button");
+  const focused = () =>
+    page.evaluate(() => {
+      let at = document.activeElement;
+      while (at?.shadowRoot?.activeElement) at = at.shadowRoot.activeElement;
+      return at.textContent.trim();
+    });
+  await wait_for(
+    async () => (await focused()) === "Place in the middle",
+    "the keyboard at the first button",
+  );
   await page.keyboard.press("Enter");
   await desk.places(1);
   for (let n = 0; n < 3; ++n) await page.keyboard.press("Shift+ArrowRight");
@@ -298,7 +469,10 @@ try {
   await desk.button("End").focus();
   await page.keyboard.press("Enter");
   await desk.panel.getByRole("heading", { name: "Profile" }).waitFor();
-  await wait_for(async () => (await focused()) === "Take back", "the keyboard at the first button that is left");
+  await wait_for(
+    async () => (await focused()) === "Take back",
+    "the keyboard at the first button that is left",
+  );
   await desk.is_about("straight", moved_px * mm_per_px, near);
 
   say("where not all places are seen at once, the nearest surface counts, and the panel says so");
@@ -308,7 +482,9 @@ try {
   await desk.panel.getByRole("radio", { name: "What is seen" }).click();
   await desk.panel.getByText(/The surface that was seen/).waitFor();
 
-  say("what lies on two sides is measured straight; a line through the object is no way over its surface, and none is told");
+  say(
+    "what lies on two sides is measured straight; a line through the object is no way over its surface, and none is told",
+  );
   await page.keyboard.press("Escape");
   await desk.none();
   await page.keyboard.press("1"); // from the front
@@ -329,7 +505,10 @@ try {
 
   say("another tool takes all of it away");
   await page.keyboard.press("v");
-  await wait_for(async () => (await page.locator("strata-stage svg.measured").count()) === 0, "the line to be gone");
+  await wait_for(
+    async () => (await page.locator("strata-stage svg.measured").count()) === 0,
+    "the line to be gone",
+  );
   await page.keyboard.press("m");
   await desk.none();
 
@@ -341,7 +520,8 @@ try {
   await phone.page.getByRole("button", { name: "Measure", exact: true }).tap();
   await hand.panel.getByText(/Click or tap places/).waitFor();
   const stage = await phone.stage_box();
-  const tap = (share_x, share_y) => phone.page.touchscreen.tap(stage.x + share_x * stage.width, stage.y + share_y * stage.height);
+  const tap = (share_x, share_y) =>
+    phone.page.touchscreen.tap(stage.x + share_x * stage.width, stage.y + share_y * stage.height);
   await tap(0.42, 0.5);
   await hand.places(1);
   await tap(0.58, 0.5);
@@ -356,8 +536,20 @@ try {
   await tap(0.5, 0.5);
   await hand.places(1);
   const fingers = await phone.page.context().newCDPSession(phone.page);
-  const touch = (type, ...points) => fingers.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y]) => ({ x: stage.x + x * stage.width, y: stage.y + y * stage.height })) });
-  const marks = () => phone.page.locator("strata-stage svg.measured circle").evaluateAll((all) => all.map((each) => `${each.getAttribute("cx")} ${each.getAttribute("cy")}`).join());
+  const touch = (type, ...points) =>
+    fingers.send("Input.dispatchTouchEvent", {
+      type,
+      touchPoints: points.map(([x, y]) => ({
+        x: stage.x + x * stage.width,
+        y: stage.y + y * stage.height,
+      })),
+    });
+  const marks = () =>
+    phone.page
+      .locator("strata-stage svg.measured circle")
+      .evaluateAll((all) =>
+        all.map((each) => `${each.getAttribute("cx")} ${each.getAttribute("cy")}`).join(),
+      );
   const unturned = await marks();
   await touch("touchStart", [0.3, 0.8]);
   for (let n = 1; n <= 8; ++n) await touch("touchMove", [0.3 + 0.03 * n, 0.8]);
@@ -371,7 +563,9 @@ try {
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 } catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}\n${phone.complaints.join("\n")}`);
+  console.log(
+    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}\n${phone.complaints.join("\n")}`,
+  );
   await shot("failure");
   await shot("failure_phone", phone.page);
   throw error;

@@ -1,5 +1,6 @@
-// The page at work with one person: what the cursor promises is what is painted, keys and fingers go where they belong,
-// nothing is lost on the way to another page, and what somebody else changed is not overwritten.
+// The page at work with one person: what the cursor promises is what is painted, keys and fingers
+// go where they belong, nothing is lost on the way to another page, and what somebody else changed
+// is not overwritten.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, has_hue, kOfLostServer, rgb } from "../support/browser.mjs";
@@ -15,7 +16,8 @@ let step = "start";
 const say = (text) => console.log((step = text));
 
 const base = "/models/demo-pot";
-const edits = async (layer) => (await server.json("GET", `${base}/layers/${layer}/edits?limit=1000`)).total;
+const edits = async (layer) =>
+  (await server.json("GET", `${base}/layers/${layer}/edits?limit=1000`)).total;
 const button = (name) => page.getByRole("button", { name, exact: true });
 const radio = (name) => page.getByRole("radio", { name });
 const show_only = async (slug) => {
@@ -37,21 +39,32 @@ const may_be_magenta = (data, at) => {
 /** The circle that is drawn around the pointer, in CSS pixels of the stage. */
 async function cursor() {
   const circle = page.locator("strata-stage svg.over circle").first();
-  const [x, y, r] = await circle.evaluate((each) => ["cx", "cy", "r"].map((name) => Number(each.getAttribute(name))));
+  const [x, y, r] = await circle.evaluate((each) =>
+    ["cx", "cy", "r"].map((name) => Number(each.getAttribute(name))),
+  );
   return { x, y, r };
 }
 
 /** Clicks once where the pointer is, and compares what is painted then with the circle. */
 async function compare_footprint(what) {
   await browser.point(0.5, 0.62);
-  await page.locator("strata-value-readout").getByText(/Position/).waitFor(); // the depth under the pointer is known
+  // the depth under the pointer is known
+  await page
+    .locator("strata-value-readout")
+    .getByText(/Position/)
+    .waitFor();
   const circle = await cursor();
   const box = await browser.stage_box();
   await page.mouse.down();
   await page.mouse.up();
   await browser.saved();
-  await page.mouse.move(box.x + box.width - 3, box.y + 3); // away: the cursor would hide what is painted
-  await wait_for(async () => (await browser.count(rgb(kMagenta))) > circle.r * circle.r, `the dab of ${what}`, 150);
+  // away: the cursor would hide what is painted
+  await page.mouse.move(box.x + box.width - 3, box.y + 3);
+  await wait_for(
+    async () => (await browser.count(rgb(kMagenta))) > circle.r * circle.r,
+    `the dab of ${what}`,
+    150,
+  );
   const { data, width, height } = await browser.picture(box);
   let [holes, spills, painted] = [0, 0, 0];
   for (let y = 0; y < height; ++y) {
@@ -64,36 +77,75 @@ async function compare_footprint(what) {
     }
   }
   const share = painted / (Math.PI * circle.r * circle.r);
-  console.log(`  ${what}: radius ${circle.r.toFixed(1)} px, ${painted} pixels painted (${(share * 100).toFixed(1)} % of the circle), ` +
-    `${holes} holes, ${spills} spills`);
-  assert.deepEqual({ holes, spills }, { holes: 0, spills: 0 }, `the cursor of ${what} is not what was painted`);
+  console.log(
+    `  ${what}: radius ${circle.r.toFixed(1)} px, ${painted} pixels painted (${(share * 100).toFixed(1)} % of the circle), ` +
+      `${holes} holes, ${spills} spills`,
+  );
+  assert.deepEqual(
+    { holes, spills },
+    { holes: 0, spills: 0 },
+    `the cursor of ${what} is not what was painted`,
+  );
   assert.ok(Math.abs(share - 1) < 0.08, `${what}: ${share} of the circle's area`);
   await page.keyboard.press("Control+z");
   await browser.saved();
-  await wait_for(async () => (await browser.count(rgb(kMagenta))) === 0, "the dab to be taken back", 150);
+  await wait_for(
+    async () => (await browser.count(rgb(kMagenta))) === 0,
+    "the dab to be taken back",
+    150,
+  );
   return circle.r;
 }
 
 /** A box, as a person drops it on the page. */
 async function drop_scan(name) {
-  const corners = Array.from({ length: 8 }, (_, i) => [i & 1, i & 2 ? 1 : 0, i & 4 ? 1 : 0].map((c) => c * 40).join(" "));
-  const sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+  const corners = Array.from({ length: 8 }, (_, i) =>
+    [i & 1, i & 2 ? 1 : 0, i & 4 ? 1 : 0].map((c) => c * 40).join(" "),
+  );
+  const sides = [
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+  ];
   const faces = sides.flatMap(([a, b, c, d]) => [`3 ${a} ${b} ${c}`, `3 ${a} ${c} ${d}`]);
-  const text = ["ply", "format ascii 1.0", "element vertex 8", "property float x", "property float y", "property float z",
-    "element face 12", "property list uchar int vertex_indices", "end_header", ...corners, ...faces, ""].join("\n");
-  return page.evaluate(([file, body]) => {
-    const dataTransfer = new DataTransfer();
-    dataTransfer.items.add(new File([body], file));
-    const event = new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true });
-    document.body.dispatchEvent(event);
-    return event.defaultPrevented; // else the browser leaves for the file
-  }, [name, text]);
+  const text = [
+    "ply",
+    "format ascii 1.0",
+    "element vertex 8",
+    "property float x",
+    "property float y",
+    "property float z",
+    "element face 12",
+    "property list uchar int vertex_indices",
+    "end_header",
+    ...corners,
+    ...faces,
+    "",
+  ].join("\n");
+  return page.evaluate(
+    ([file, body]) => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File([body], file));
+      const event = new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true });
+      document.body.dispatchEvent(event);
+      return event.defaultPrevented; // else the browser leaves for the file
+    },
+    [name, text],
+  );
 }
 
 try {
   await server.start();
   const palette = { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Test" }] };
-  await server.json("POST", `${base}/layers`, { name: "Test", type: "u8", resolution: 8192, palette });
+  await server.json("POST", `${base}/layers`, {
+    name: "Test",
+    type: "u8",
+    resolution: 8192,
+    palette,
+  });
   await show_only("test");
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
@@ -122,19 +174,30 @@ try {
   const [box, before] = [await browser.stage_box(), await camera()];
   await browser.point(0.5, 0.5);
   await page.keyboard.down(" ");
-  await browser.drag([[0.5, 0.5], [0.55, 0.5]]);
+  await browser.drag([
+    [0.5, 0.5],
+    [0.55, 0.5],
+  ]);
   await page.keyboard.up(" ");
   await wait_for(async () => (await camera()) > before, "the model to turn");
   await browser.saved();
   assert.equal(await edits("test"), painted, "Space and a drag painted");
-  assert.equal(await button("Brush").getAttribute("aria-pressed"), "true", "Space pressed a button");
+  assert.equal(
+    await button("Brush").getAttribute("aria-pressed"),
+    "true",
+    "Space pressed a button",
+  );
 
   say("keys do not act behind a question; a choice obeys the arrows");
   await button("Fill the whole surface").click();
   await page.getByRole("heading", { name: "Fill all of “Test”?" }).waitFor();
   await page.keyboard.press("e");
   await page.getByRole("button", { name: "Cancel" }).click();
-  assert.equal(await button("Brush").getAttribute("aria-pressed"), "true", "a key chose a tool behind the question");
+  assert.equal(
+    await button("Brush").getAttribute("aria-pressed"),
+    "true",
+    "a key chose a tool behind the question",
+  );
   await radio("Round").focus();
   await page.keyboard.press("ArrowRight");
   assert.equal(await radio("Square").getAttribute("aria-checked"), "true");
@@ -157,7 +220,10 @@ try {
   say("a stroke that is not saved yet when its page is left: the server dies, too");
   const known = await edits("test");
   await server.signal("SIGSTOP");
-  await browser.drag([[0.45, 0.62], [0.55, 0.62]]);
+  await browser.drag([
+    [0.45, 0.62],
+    [0.55, 0.62],
+  ]);
   await server.signal("SIGKILL");
   await page.locator('.saving[data-state="not-saved"]').waitFor();
   await page.goBack();
@@ -178,14 +244,20 @@ try {
   await button("Save").click();
   await page.getByText("Somebody else changed this layer meanwhile").waitFor();
   await button("Show the newest").click();
-  await wait_for(async () => (await page.getByLabel("Description").inputValue()) === "by the other", "the newest version");
+  await wait_for(
+    async () => (await page.getByLabel("Description").inputValue()) === "by the other",
+    "the newest version",
+  );
   assert.equal(await page.getByLabel("Name", { exact: true }).inputValue(), "Test");
   await button("Add a class").click(); // a layer of one class gets its second one
   await page.getByLabel("Label of class 2").fill("Second");
   await button("Save").click();
   await radio("Second").waitFor();
   const changed = await server.json("GET", `${base}/layers/test`);
-  assert.deepEqual([changed.name, changed.description, changed.palette.points.length], ["Test", "by the other", 2]);
+  assert.deepEqual(
+    [changed.name, changed.description, changed.palette.points.length],
+    ["Test", "by the other", 2],
+  );
 
   say("a layer of things with records");
   await button("New layer").click();
@@ -197,8 +269,14 @@ try {
   await button("Make record 70012").click(); // what has no record cannot be painted
   await button("Make record 70012").waitFor({ state: "detached" });
   const { table } = await server.json("GET", `${base}/layers/finds`);
-  assert.deepEqual((await server.json("GET", `/tables/${table}/records`)).records.map(({ key }) => key), [1, 70012]);
-  await browser.drag([[0.46, 0.45], [0.54, 0.45]]);
+  assert.deepEqual(
+    (await server.json("GET", `/tables/${table}/records`)).records.map(({ key }) => key),
+    [1, 70012],
+  );
+  await browser.drag([
+    [0.46, 0.45],
+    [0.54, 0.45],
+  ]);
   await browser.saved();
   await browser.point(0.5, 0.45);
   await page.locator("strata-value-readout").getByText("Record 70012").waitFor();
@@ -206,16 +284,25 @@ try {
   await page.getByText("Record 70012").last().waitFor();
   await page.keyboard.press("Escape");
   assert.deepEqual(
-    await server.json("GET", `${base}/layers/finds/statistics`).then(({ keys }) => keys.map(({ key }) => key)), [70012]);
+    await server
+      .json("GET", `${base}/layers/finds/statistics`)
+      .then(({ keys }) => keys.map(({ key }) => key)),
+    [70012],
+  );
 
   say("a unit that was confirmed by mistake is corrected");
   await button("About this model").click();
   await button("Correct size and direction…").click();
   await radio("centimetres").click();
   await button("Yes, that is right").click();
-  await wait_for(async () => (await server.json("GET", base)).unit === "cm", "the unit to be corrected");
+  await wait_for(
+    async () => (await server.json("GET", base)).unit === "cm",
+    "the unit to be corrected",
+  );
 
-  say("a scan that is dropped on a model's page is imported, and the person stays until they open it");
+  say(
+    "a scan that is dropped on a model's page is imported, and the person stays until they open it",
+  );
   const here = page.url();
   assert.ok(await drop_scan("dropped_box.ply"), "the browser would have left for the file");
   await page.getByText("“dropped box” is ready.").waitFor();
@@ -232,7 +319,9 @@ try {
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
   if (process.env.STRATA_TEST_OUTPUT) {
-    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "page.png") }).catch(() => {});
+    await page
+      .screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "page.png") })
+      .catch(() => {});
   }
   throw error;
 } finally {

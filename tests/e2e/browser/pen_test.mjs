@@ -1,10 +1,15 @@
-// A pen on a tablet: it paints, while the hand that holds it rests on the glass; when it is away two fingers move the model, and one turns it.
+// A pen on a tablet: it paints, while the hand that holds it rests on the glass; when it is away
+// two fingers move the model, and one turns it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const tilda = await Browser.open({ viewport: { width: 1180, height: 820 }, hasTouch: true, isMobile: true });
+const tilda = await Browser.open({
+  viewport: { width: 1180, height: 820 },
+  hasTouch: true,
+  isMobile: true,
+});
 const server = new StrataServer({ demo: true });
 let step = "start";
 const say = (text) => console.log((step = text));
@@ -12,7 +17,8 @@ const say = (text) => console.log((step = text));
 try {
   await server.start();
   const [model] = (await server.json("GET", "/models")).models;
-  const edits = async () => (await server.json("GET", `/models/${model.id}/layers/cracks/edits?limit=1`)).total;
+  const edits = async () =>
+    (await server.json("GET", `/models/${model.id}/layers/cracks/edits?limit=1`)).total;
   await tilda.sign_in(server, await server.add_person("tilda", "annotator"));
   await tilda.page.goto(`${server.url}/models/${model.id}`);
   await tilda.drawn();
@@ -21,9 +27,18 @@ try {
   const box = await tilda.stage_box();
   const at = ([x, y]) => ({ x: box.x + x * box.width, y: box.y + y * box.height });
   const device = await tilda.context.newCDPSession(tilda.page);
-  const pen = (type, place, more = {}) => device.send("Input.dispatchMouseEvent", { type, ...at(place), pointerType: "pen", ...more });
-  const touch = (type, ...places) => device.send("Input.dispatchTouchEvent", { type, touchPoints: places.map((place, id) => ({ ...at(place), id })) });
-  const camera = () => tilda.page.locator("strata-stage canvas").first().evaluate((canvas) => Number(canvas.dataset.cameraSeq));
+  const pen = (type, place, more = {}) =>
+    device.send("Input.dispatchMouseEvent", { type, ...at(place), pointerType: "pen", ...more });
+  const touch = (type, ...places) =>
+    device.send("Input.dispatchTouchEvent", {
+      type,
+      touchPoints: places.map((place, id) => ({ ...at(place), id })),
+    });
+  const camera = () =>
+    tilda.page
+      .locator("strata-stage canvas")
+      .first()
+      .evaluate((canvas) => Number(canvas.dataset.cameraSeq));
   const before = await edits();
 
   say("the pen paints with the hand beside it, which neither paints nor turns");
@@ -41,32 +56,55 @@ try {
   await touch("touchEnd");
   await tilda.saved();
   await wait_for(async () => (await edits()) > before, "the stroke to be saved");
-  const { edits: done } = await server.json("GET", `/models/${model.id}/layers/cracks/edits?limit=1000`);
+  const { edits: done } = await server.json(
+    "GET",
+    `/models/${model.id}/layers/cracks/edits?limit=1000`,
+  );
   const strokes = new Set(done.filter(({ user }) => user === "tilda").map(({ stroke }) => stroke));
   assert.equal(strokes.size, 1, "the hand painted, too");
   assert.equal(await camera(), stood, "the hand turned the model");
-  if (process.env.STRATA_TEST_OUTPUT) await tilda.page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "pen.png") });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await tilda.page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "pen.png") });
 
-  say("pressed half as hard the pen paints a narrower line, and as wide as ever where its pressure is not to count");
+  say(
+    "pressed half as hard the pen paints a narrower line, and as wide as ever where its pressure is not to count",
+  );
   const area_of_line = async (y, force) => {
-    const painted = async () => (await server.json("GET", `/models/${model.id}/layers/cracks/edits?limit=1000`)).edits.filter(({ user }) => user === "tilda");
+    const painted = async () =>
+      (await server.json("GET", `/models/${model.id}/layers/cracks/edits?limit=1000`)).edits.filter(
+        ({ user }) => user === "tilda",
+      );
     const known = (await painted()).length;
     await pen("mousePressed", [0.42, y], { button: "left", buttons: 1, clickCount: 1, force });
-    for (const x of [0.45, 0.48, 0.52]) await pen("mouseMoved", [x, y], { button: "left", buttons: 1, force });
+    for (const x of [0.45, 0.48, 0.52])
+      await pen("mouseMoved", [x, y], { button: "left", buttons: 1, force });
     await pen("mouseReleased", [0.52, y], { button: "left", buttons: 0, clickCount: 1 });
     await tilda.saved();
     await wait_for(async () => (await painted()).length > known, "the line to be saved");
     await tilda.saved();
     const edits_now = await painted();
-    return edits_now.slice(0, edits_now.length - known).reduce((sum, { area_m2 }) => sum + area_m2, 0);
+    return edits_now
+      .slice(0, edits_now.length - known)
+      .reduce((sum, { area_m2 }) => sum + area_m2, 0);
   };
-  const clear = () => server.json("POST", `/models/${model.id}/layers/cracks/edits`, { op: "fill", mode: "where", where: "true", erase: true });
+  const clear = () =>
+    server.json("POST", `/models/${model.id}/layers/cracks/edits`, {
+      op: "fill",
+      mode: "where",
+      where: "true",
+      erase: true,
+    });
   await clear();
   const hard = await area_of_line(0.56, 1);
   const soft = await area_of_line(0.62, 0.4);
-  assert.ok(soft > 0 && soft < 0.6 * hard, `the soft line has ${soft / hard} of the hard one's area`);
+  assert.ok(
+    soft > 0 && soft < 0.6 * hard,
+    `the soft line has ${soft / hard} of the hard one's area`,
+  );
   await clear();
-  if ((await tilda.page.getByLabel("A pen that is pressed less paints a narrower line").count()) === 0)
+  if (
+    (await tilda.page.getByLabel("A pen that is pressed less paints a narrower line").count()) === 0
+  )
     await tilda.page.getByRole("button", { name: "Show the panel" }).click();
   await tilda.page.getByLabel("A pen that is pressed less paints a narrower line").uncheck();
   const wide = await area_of_line(0.62, 0.4);
@@ -75,7 +113,8 @@ try {
   say("away with the pen: two fingers move the model, one turns it, and neither paints");
   await pen("mouseMoved", [-0.02, 0.5]); // over the tools
   const painted = await edits();
-  // How long it counts as there is the page's affair: the fingers try again until they are listened to.
+  // How long it counts as there is the page's affair: the fingers try again until they are listened
+  // to.
   const moves = (gesture) => async () => {
     const from = await camera();
     await gesture();
@@ -105,7 +144,10 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  if (process.env.STRATA_TEST_OUTPUT) await tilda.page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "pen_failed.png") }).catch(() => {});
+  if (process.env.STRATA_TEST_OUTPUT)
+    await tilda.page
+      .screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, "pen_failed.png") })
+      .catch(() => {});
   throw error;
 } finally {
   await tilda.close();

@@ -1,4 +1,5 @@
-// Accounts on the page: a password for the owner, somebody invited by a link, what each role is offered, and how people go.
+// Accounts on the page: a password for the owner, somebody invited by a link, what each role is
+// offered, and how people go.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, kOfLostServer } from "../support/browser.mjs";
@@ -9,15 +10,27 @@ const kAdasPassword = "engines weave algebra";
 const kAdasNext = "as the loom weaves flowers";
 const kAdasThird = "notes upon the memoir";
 // What the browser says of answers that the test wants, and of sockets that the server ends.
-const kExpected = ["status of 401", "status of 403", "status of 404", "status of 409", "status of 422", ...kOfLostServer];
+const kExpected = [
+  "status of 401",
+  "status of 403",
+  "status of 404",
+  "status of 409",
+  "status of 422",
+  ...kOfLostServer,
+];
 
-const [owner, ada, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
+const [owner, ada, phone] = [
+  await Browser.open(),
+  await Browser.open(),
+  await Browser.open({ viewport: { width: 390, height: 844 } }),
+];
 const server = new StrataServer({ demo: true });
 let step = "start";
 const say = (text) => console.log((step = text));
 
 const at_home = ({ page }) => page.getByRole("heading", { name: "Models", exact: true }).waitFor();
-const at_sign_in = ({ page }) => page.getByRole("heading", { name: "Sign in", exact: true }).waitFor();
+const at_sign_in = ({ page }) =>
+  page.getByRole("heading", { name: "Sign in", exact: true }).waitFor();
 const alert_of = ({ page }, text) => page.getByRole("alert").getByText(text).waitFor();
 const close_dialog = ({ page }) => page.getByRole("button", { name: "Close", exact: true }).click();
 
@@ -35,28 +48,63 @@ async function choose_for({ page }, name, command) {
   await page.getByRole("menuitem", { name: command }).click();
 }
 const call = async (token, path, more = {}) =>
-  (await fetch(`${server.url}/api/v1${path}`, { ...more, headers: { Authorization: `Bearer ${token}`, "Content-Type": "application/json" } })).status;
+  (
+    await fetch(`${server.url}/api/v1${path}`, {
+      ...more,
+      headers: { Authorization: `Bearer ${token}`, "Content-Type": "application/json" },
+    })
+  ).status;
 
 const shot = async ({ page }, name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `people_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `people_${name}.png`) });
 };
 
 /** A square of 100 mm. */
 async function import_square(name, project) {
-  const ply = ["ply", "format ascii 1.0", "element vertex 4", "property float x", "property float y", "property float z", "element face 2",
-    "property list uchar int vertex_indices", "end_header", "0 0 0", "100 0 0", "100 100 0", "0 100 0", "3 0 1 2", "3 0 2 3", ""].join("\n");
-  const started = await fetch(`${server.url}/api/v1/models?filename=square.ply&name=${name}&unit=mm&project=${project}`, {
-    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: ply,
-  });
+  const ply = [
+    "ply",
+    "format ascii 1.0",
+    "element vertex 4",
+    "property float x",
+    "property float y",
+    "property float z",
+    "element face 2",
+    "property list uchar int vertex_indices",
+    "end_header",
+    "0 0 0",
+    "100 0 0",
+    "100 100 0",
+    "0 100 0",
+    "3 0 1 2",
+    "3 0 2 3",
+    "",
+  ].join("\n");
+  const started = await fetch(
+    `${server.url}/api/v1/models?filename=square.ply&name=${name}&unit=mm&project=${project}`,
+    {
+      method: "POST",
+      headers: {
+        Authorization: `Bearer ${server.token}`,
+        "Content-Type": "application/octet-stream",
+      },
+      body: ply,
+    },
+  );
   assert.equal(started.status, 202, await started.clone().text());
   const { id } = await started.json();
-  await wait_for(async () => (await server.json("GET", `/jobs/${id}`)).state === "done", `the import of ${name}`);
+  await wait_for(
+    async () => (await server.json("GET", `/jobs/${id}`)).state === "done",
+    `the import of ${name}`,
+  );
 }
 
 try {
   await server.start();
 
-  say("the owner, who came by the printed link, is asked for a password, and told what is wrong with one");
+  say(
+    "the owner, who came by the printed link, is asked for a password, and told what is wrong with one",
+  );
   await owner.page.goto(server.link);
   await at_home(owner);
   await owner.page.getByRole("button", { name: "Choose a password" }).click();
@@ -86,7 +134,9 @@ try {
   await sign_in(owner, "Owner", kOwnersPassword); // in any case
   await at_home(owner);
 
-  say("a token that is not known is told so, and the owner's is one for scripts since they have a password");
+  say(
+    "a token that is not known is told so, and the owner's is one for scripts since they have a password",
+  );
   await phone.page.goto(server.url);
   await phone.page.getByText("With a link or token").click();
   await phone.page.getByLabel("Link or token").fill("no such token");
@@ -103,16 +153,29 @@ try {
   await owner.page.getByLabel("Name for signing in").fill("owner");
   await owner.page.getByRole("button", { name: "Make link" }).click();
   await owner.page.locator("strata-people-dialog form small[role=alert]:not([hidden])").waitFor();
-  assert.equal(await owner.page.getByLabel("Name for signing in").getAttribute("aria-invalid"), "true");
+  assert.equal(
+    await owner.page.getByLabel("Name for signing in").getAttribute("aria-invalid"),
+    "true",
+  );
   await owner.page.getByLabel("Name for signing in").fill("ada");
   await owner.page.getByLabel("Full name").fill("Ada Lovelace");
   await owner.page.getByRole("combobox", { name: "Role", exact: true }).selectOption("annotator");
   await owner.page.getByRole("button", { name: "Make link" }).click();
-  const link_field = owner.page.getByRole("textbox", { name: "Link for Ada Lovelace", exact: true });
+  const link_field = owner.page.getByRole("textbox", {
+    name: "Link for Ada Lovelace",
+    exact: true,
+  });
   const link = await link_field.inputValue();
   assert.ok(link.startsWith(`${server.url}/join#`), link);
-  await owner.page.getByRole("row", { name: /Ada Lovelace/ }).getByText("invited").waitFor();
-  assert.equal(await owner.page.getByLabel("Role of owner").count(), 0, "the owner's row can be changed");
+  await owner.page
+    .getByRole("row", { name: /Ada Lovelace/ })
+    .getByText("invited")
+    .waitFor();
+  assert.equal(
+    await owner.page.getByLabel("Role of owner").count(),
+    0,
+    "the owner's row can be changed",
+  );
 
   say("at a browser where somebody else is signed in the link says so");
   const beside = await owner.context.newPage();
@@ -131,9 +194,17 @@ try {
   assert.equal(ada.page.url(), `${server.url}/`);
   await ada.page.getByRole("button", { name: "Account of Ada Lovelace" }).click();
   await ada.page.getByRole("menuitem", { name: "Account…" }).waitFor();
-  assert.equal(await ada.page.getByRole("menuitem", { name: "People…" }).count(), 0, "an annotator is offered the people");
+  assert.equal(
+    await ada.page.getByRole("menuitem", { name: "People…" }).count(),
+    0,
+    "an annotator is offered the people",
+  );
   await ada.page.keyboard.press("Escape");
-  assert.equal(await ada.page.getByRole("button", { name: "Import a scan" }).count(), 0, "an annotator is offered to import");
+  assert.equal(
+    await ada.page.getByRole("button", { name: "Import a scan" }).count(),
+    0,
+    "an annotator is offered to import",
+  );
 
   say("the link was good for one use");
   await phone.page.goto(link);
@@ -149,7 +220,10 @@ try {
   await ada.page.keyboard.press("b");
   const edits = async () => (await server.json("GET", `${path}/layers/cracks/edits?limit=1`)).total;
   const before = await edits();
-  await ada.drag([[0.46, 0.5], [0.56, 0.52]]);
+  await ada.drag([
+    [0.46, 0.5],
+    [0.56, 0.52],
+  ]);
   await ada.saved();
   await wait_for(async () => (await edits()) > before, "her stroke to be in the history");
 
@@ -171,10 +245,14 @@ try {
   await choose_for(owner, "Ada Lovelace", "Disable…");
   await owner.page.getByText("They are signed out everywhere").waitFor();
   await owner.page.getByRole("button", { name: "Disable", exact: true }).click();
-  await owner.page.getByRole("row", { name: /Ada Lovelace/ }).getByText("disabled").waitFor();
+  await owner.page
+    .getByRole("row", { name: /Ada Lovelace/ })
+    .getByText("disabled")
+    .waitFor();
   await at_sign_in(ada);
   await sign_in(ada, "ada", kAdasPassword);
-  await alert_of(ada, "Name or password does not fit"); // before the next try, which must not come while this one is under way
+  // before the next try, which must not come while this one is under way
+  await alert_of(ada, "Name or password does not fit");
   await at_sign_in(ada);
 
   say("enabled again she comes back to where she was");
@@ -243,7 +321,9 @@ try {
   await at_sign_in(ada);
   await phone.page.getByLabel("Full name").fill("Countess of Lovelace");
   await phone.page.keyboard.press("Enter");
-  await phone.page.getByRole("button", { name: "Account of Countess of Lovelace", includeHidden: true }).waitFor();
+  await phone.page
+    .getByRole("button", { name: "Account of Countess of Lovelace", includeHidden: true })
+    .waitFor();
   await close_dialog(phone);
 
   say("a token made on the page works for a script, as its role allows, until it is revoked");
@@ -256,7 +336,11 @@ try {
   const role_of_token = owner.page.getByRole("combobox", { name: "Role", exact: true });
   await role_of_token.selectOption("owner");
   await owner.page.getByRole("combobox", { name: "Good in" }).selectOption("Demo");
-  assert.equal(await role_of_token.inputValue(), "curator", "a token of one project is curator at most");
+  assert.equal(
+    await role_of_token.inputValue(),
+    "curator",
+    "a token of one project is curator at most",
+  );
   await role_of_token.selectOption("viewer");
   await shot(owner, "token_form");
   await owner.page.getByRole("button", { name: "Make token" }).click();
@@ -264,7 +348,10 @@ try {
   const token = await owner.page.getByLabel(/Copy it now/).inputValue();
   await owner.page.getByText(`Authorization: Bearer ${token}`).waitFor();
   assert.equal(await call(token, "/models"), 200);
-  assert.equal(await call(token, `${path}/layers`, { method: "POST", body: JSON.stringify({ name: "No" }) }), 403);
+  assert.equal(
+    await call(token, `${path}/layers`, { method: "POST", body: JSON.stringify({ name: "No" }) }),
+    403,
+  );
   await owner.page.getByRole("button", { name: "Revoke Nightly report" }).click();
   await owner.page.getByRole("button", { name: "Revoke", exact: true }).last().click();
   await owner.page.getByText("You have none.").waitFor();
@@ -282,10 +369,15 @@ try {
   await phone.page.reload();
   await at_sign_in(phone);
   const { edits: history } = await server.json("GET", `${path}/layers/cracks/edits?limit=1000`);
-  assert.ok(history.some(({ user }) => user.startsWith("former-")), "what she did is not in the history");
+  assert.ok(
+    history.some(({ user }) => user.startsWith("former-")),
+    "what she did is not in the history",
+  );
   assert.ok(!history.some(({ user }) => user === "ada"), "her name is still in the history");
 
-  say("an administrator lets a guest annotate in one project: they see its models on their page, and no others");
+  say(
+    "an administrator lets a guest annotate in one project: they see its models on their page, and no others",
+  );
   await server.json("POST", "/projects", { name: "Villa Giulia" });
   await import_square("Threshold", "villa-giulia");
   await ada.sign_in(server, await server.add_person("anna", "administrator"));
@@ -301,15 +393,26 @@ try {
   await shot(ada, "roles_in_projects");
   await phone.page.reload();
   await phone.page.getByRole("link", { name: /Threshold/ }).waitFor();
-  assert.equal(await phone.page.getByRole("link", { name: /Demo pot/ }).count(), 0, "the guest sees a model of another project");
-  assert.equal(await phone.page.getByRole("button", { name: "Import a scan" }).count(), 0, "an annotator is offered to import");
+  assert.equal(
+    await phone.page.getByRole("link", { name: /Demo pot/ }).count(),
+    0,
+    "the guest sees a model of another project",
+  );
+  assert.equal(
+    await phone.page.getByRole("button", { name: "Import a scan" }).count(),
+    0,
+    "an annotator is offered to import",
+  );
   await shot(phone, "guest");
   await phone.page.getByRole("link", { name: /Threshold/ }).click();
   await phone.drawn();
   await phone.page.getByRole("button", { name: "Brush", exact: true }).waitFor();
   await shot(phone, "guest_model");
   await in_villa.selectOption("");
-  await ada.page.locator("strata-project-roles-dialog").getByText("Has no role of their own there any more.").waitFor();
+  await ada.page
+    .locator("strata-project-roles-dialog")
+    .getByText("Has no role of their own there any more.")
+    .waitFor();
   await phone.page.goto(server.url);
   await phone.page.getByText("You see the models of projects that you have a role in.").waitFor();
 
@@ -321,7 +424,9 @@ try {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
   if (process.env.STRATA_TEST_OUTPUT) {
     for (const [name, who] of Object.entries({ owner, ada, phone })) {
-      await who.page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `people_${name}.png`) }).catch(() => {});
+      await who.page
+        .screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `people_${name}.png`) })
+        .catch(() => {});
     }
   }
   throw error;

@@ -1,5 +1,6 @@
-// What one person hides and puts in another order is there again after a reload and in another browser, and others see nothing of it; a computed layer arrives hidden for others,
-// locked, and marked once it is edited by hand; and a person has one colour and one name everywhere.
+// What one person hides and puts in another order is there again after a reload and in another
+// browser, and others see nothing of it; a computed layer arrives hidden for others, locked, and
+// marked once it is edited by hand; and a person has one colour and one name everywhere.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
@@ -11,11 +12,13 @@ let step = "start";
 const say = (text) => console.log((step = text));
 
 async function shoot({ page }, name) {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `personal_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `personal_${name}.png`) });
 }
 const panel = ({ page }) => page.locator("strata-layer-panel");
 const button = (who, name) => panel(who).getByRole("button", { name, exact: true });
-const names = async (who) => (await panel(who).locator("li.layer .name").allTextContents()).map((text) => text.trim());
+const names = async (who) =>
+  (await panel(who).locator("li.layer .name").allTextContents()).map((text) => text.trim());
 const background = (locator) => locator.evaluate((each) => getComputedStyle(each).backgroundColor);
 async function choose_for(who, name, command) {
   await button(who, `Options for ${name}`).click();
@@ -30,14 +33,17 @@ try {
   await server.start();
   const model = (await server.json("GET", "/models")).models[0];
   const layers = `/models/${model.id}/layers`;
-  const layer = async (slug) => (await server.json("GET", layers)).layers.find((each) => each.slug === slug);
+  const layer = async (slug) =>
+    (await server.json("GET", layers)).layers.find((each) => each.slug === slug);
   const cleos = await server.add_person("cleo", "curator");
   const adas = await server.add_person("ada", "annotator");
   await server.json("PATCH", "/users/cleo", { full_name: "Cleo Roe" });
   for (const who of [cleo, elsewhere]) await who.sign_in(server, cleos);
   await ada.sign_in(server, adas);
   for (const who of [cleo, ada]) await look(who, model);
-  const before = (await server.json("GET", layers)).layers.map(({ id, visible, opacity, order }) => ({ id, visible, opacity, order }));
+  const before = (await server.json("GET", layers)).layers.map(
+    ({ id, visible, opacity, order }) => ({ id, visible, opacity, order }),
+  );
 
   say("an annotator hides a layer and moves another");
   const order = await names(ada);
@@ -49,13 +55,27 @@ try {
   await wait_for(async () => {
     await ada.page.reload();
     await ada.drawn();
-    return (await button(ada, "Show cracks").count()) === 1 && JSON.stringify(await names(ada)) === JSON.stringify(moved);
+    return (
+      (await button(ada, "Show cracks").count()) === 1 &&
+      JSON.stringify(await names(ada)) === JSON.stringify(moved)
+    );
   }, "both to be there after a reload");
   await shoot(ada, "kept");
-  assert.deepEqual((await server.json("GET", layers)).layers.map(({ id, visible, opacity, order: at }) => ({ id, visible, opacity, order: at })), before, "for others nothing has changed");
+  assert.deepEqual(
+    (await server.json("GET", layers)).layers.map(({ id, visible, opacity, order: at }) => ({
+      id,
+      visible,
+      opacity,
+      order: at,
+    })),
+    before,
+    "for others nothing has changed",
+  );
   assert.deepEqual(await names(cleo), order);
 
-  say("a curator computes a condition: painted where it holds, hidden for others, locked for everybody");
+  say(
+    "a curator computes a condition: painted where it holds, hidden for others, locked for everybody",
+  );
   await cleo.page.getByRole("button", { name: "New layer" }).click();
   await cleo.page.getByRole("radio", { name: /From an expression/ }).click();
   await cleo.page.getByLabel("Expression: a number").fill("z > 0 and not valid(cracks)");
@@ -63,8 +83,15 @@ try {
   await cleo.page.getByRole("button", { name: "Compute layer" }).click();
   await button(cleo, "Hide Risk").waitFor();
   const risk = await layer("risk");
-  assert.deepEqual([risk.computed, risk.edited_by_hand, risk.locked, risk.visible, risk.type], ["expression", false, true, false, "u8"]);
-  assert.equal(Math.min(...(await server.json("GET", layers)).layers.map((each) => each.order)), risk.order, "it lies below all others");
+  assert.deepEqual(
+    [risk.computed, risk.edited_by_hand, risk.locked, risk.visible, risk.type],
+    ["expression", false, true, false, "u8"],
+  );
+  assert.equal(
+    Math.min(...(await server.json("GET", layers)).layers.map((each) => each.order)),
+    risk.order,
+    "it lies below all others",
+  );
   await button(ada, "Show Risk").waitFor();
   const { min, max } = await server.json("GET", `${layers}/risk/statistics`);
   assert.deepEqual([min, max], [1, 1]);
@@ -73,28 +100,44 @@ try {
   const edits = async () => (await server.json("GET", `${layers}/risk/edits`)).total;
   const computed = await edits();
   await cleo.page.keyboard.press("b");
-  await cleo.page.locator("strata-brush-panel").getByText("The values of Risk were computed.").waitFor();
-  await cleo.drag([[0.46, 0.5], [0.56, 0.52]]);
+  await cleo.page
+    .locator("strata-brush-panel")
+    .getByText("The values of Risk were computed.")
+    .waitFor();
+  await cleo.drag([
+    [0.46, 0.5],
+    [0.56, 0.52],
+  ]);
   await shoot(cleo, "computed");
   await look(elsewhere, model);
   await button(elsewhere, "Hide Risk").waitFor();
 
   say("unlocked, it is edited by hand, and says so to everybody");
   await panel(cleo).getByRole("button", { name: "Unlock to edit by hand" }).click();
-  await panel(cleo).getByText(/^Edited by hand: .* It is not computed again by itself\.$/).waitFor();
+  await panel(cleo)
+    .getByText(/^Edited by hand: .* It is not computed again by itself\.$/)
+    .waitFor();
   assert.equal(await edits(), computed, "nothing was painted while it was locked");
   await cleo.page.keyboard.press("Escape");
   await cleo.page.keyboard.press("b");
-  await cleo.drag([[0.46, 0.5], [0.56, 0.52]]);
+  await cleo.drag([
+    [0.46, 0.5],
+    [0.56, 0.52],
+  ]);
   await cleo.saved();
   await wait_for(async () => (await edits()) > computed, "the stroke");
   await button(ada, "Paint on Risk").click();
-  await panel(ada).getByText(/^Edited by hand/).waitFor();
+  await panel(ada)
+    .getByText(/^Edited by hand/)
+    .waitFor();
   await shoot(cleo, "by_hand");
   await panel(cleo).getByRole("button", { name: "Compute again" }).click();
   await cleo.page.getByText("This overwrites what was edited by hand.").waitFor();
   await cleo.page.locator("strata-question").getByRole("button", { name: "Compute again" }).click();
-  await wait_for(async () => (await layer("risk")).edited_by_hand === false, "the layer to be as it was computed");
+  await wait_for(
+    async () => (await layer("risk")).edited_by_hand === false,
+    "the layer to be as it was computed",
+  );
   await panel(cleo).getByText("Locked: its values were computed.").waitFor();
 
   say("what everybody sees at first is changed only by asking for it");
@@ -105,15 +148,25 @@ try {
   assert.deepEqual(await names(ada), await names(cleo));
 
   say("one colour and one name");
-  const { color } = await server.json("GET", "/users").then(({ users }) => users.find(({ user }) => user === "cleo"));
+  const { color } = await server
+    .json("GET", "/users")
+    .then(({ users }) => users.find(({ user }) => user === "cleo"));
   const wished = `rgb(${rgb(color).join(", ")})`;
   await cleo.close_notices();
   await cleo.page.keyboard.press("c");
-  await cleo.page.mouse.click(...(await cleo.stage_box().then((box) => [box.x + box.width / 2, box.y + box.height * 0.6])));
+  await cleo.page.mouse.click(
+    ...(await cleo.stage_box().then((box) => [box.x + box.width / 2, box.y + box.height * 0.6])),
+  );
   await cleo.page.locator("strata-comment-card textarea").fill("Is this a fresh break?");
-  await cleo.page.locator("strata-comment-card").getByRole("button", { name: "Comment", exact: true }).click();
+  await cleo.page
+    .locator("strata-comment-card")
+    .getByRole("button", { name: "Comment", exact: true })
+    .click();
   await cleo.page.locator("strata-comment-card article").getByText("Cleo Roe").waitFor();
-  await cleo.page.locator("strata-activity-panel").getByRole("button", { name: "Activity" }).click();
+  await cleo.page
+    .locator("strata-activity-panel")
+    .getByRole("button", { name: "Activity" })
+    .click();
   await cleo.page.locator("strata-activity-panel").getByText("Cleo Roe").first().waitFor();
   const marks = {
     account: cleo.page.locator("strata-account-menu .face"),
@@ -135,7 +188,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.error(`failed at: ${step}`);
-  for (const [name, who] of Object.entries({ cleo, elsewhere, ada })) await shoot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ cleo, elsewhere, ada }))
+    await shoot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of [cleo, elsewhere, ada]) await who.close();

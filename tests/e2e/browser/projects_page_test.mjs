@@ -1,4 +1,5 @@
-// Projects on the page: administrators make, rename and delete them, by keyboard, mouse and touch; what would be lost is said before; others are offered nothing.
+// Projects on the page: administrators make, rename and delete them, by keyboard, mouse and touch;
+// what would be lost is said before; others are offered nothing.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -22,7 +23,8 @@ const shoot = async ({ page }, name) => {
   if (output) await page.screenshot({ path: join(output, `projects_${name}.png`) });
 };
 const dialog = ({ page }) => page.locator("dialog[open]");
-const inside = ({ page }) => page.locator("strata-dialog"); // what is slotted is no part of the dialog element itself
+// what is slotted is no part of the dialog element itself
+const inside = ({ page }) => page.locator("strata-dialog");
 const button = ({ page }, name) => page.getByRole("button", { name, exact: true });
 const box = ({ page }, name) => page.getByRole("textbox", { name, exact: true });
 const heading = ({ page }, name) => page.getByRole("heading", { name, exact: true }).waitFor();
@@ -32,20 +34,47 @@ const from_menu = async (who, project, command) => {
   await who.page.getByRole("menuitem", { name: command, exact: true }).click();
   await dialog(who).waitFor();
 };
-const is_closed = (who) => wait_for(async () => (await dialog(who).count()) === 0, "the dialog to close");
+const is_closed = (who) =>
+  wait_for(async () => (await dialog(who).count()) === 0, "the dialog to close");
 const status = async ({ token }, method, path, body) =>
-  (await fetch(`${server.url}/api/v1${path}`, {
-    method, headers: { Authorization: `Bearer ${token}`, ...(body ? { "Content-Type": "application/json" } : {}) }, ...(body ? { body: JSON.stringify(body) } : {}),
-  })).status;
+  (
+    await fetch(`${server.url}/api/v1${path}`, {
+      method,
+      headers: {
+        Authorization: `Bearer ${token}`,
+        ...(body ? { "Content-Type": "application/json" } : {}),
+      },
+      ...(body ? { body: JSON.stringify(body) } : {}),
+    })
+  ).status;
 
 /** 100 mm wide. */
-const kSquare = ["ply", "format ascii 1.0", "element vertex 4", "property float x", "property float y", "property float z", "element face 2",
-  "property list uchar int vertex_indices", "end_header", "0 0 0", "100 0 0", "100 100 0", "0 100 0", "3 0 1 2", "3 0 2 3", ""].join("\n");
+const kSquare = [
+  "ply",
+  "format ascii 1.0",
+  "element vertex 4",
+  "property float x",
+  "property float y",
+  "property float z",
+  "element face 2",
+  "property list uchar int vertex_indices",
+  "end_header",
+  "0 0 0",
+  "100 0 0",
+  "100 100 0",
+  "0 100 0",
+  "3 0 1 2",
+  "3 0 2 3",
+  "",
+].join("\n");
 
 try {
   await server.start();
   const [pot] = (await server.json("GET", "/models")).models;
-  const [curator, annotator] = [await server.add_person("carl", "curator"), await server.add_person("nora", "annotator")];
+  const [curator, annotator] = [
+    await server.add_person("carl", "curator"),
+    await server.add_person("nora", "annotator"),
+  ];
   await ada.sign_in(server, await server.add_person("ada", "administrator"));
   await pia.sign_in(server, await server.add_person("pia", "administrator"));
   await nora.sign_in(server, annotator);
@@ -57,7 +86,11 @@ try {
   await heading(ada, "Demo");
   await ada.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
   assert.equal(new URL(ada.page.url()).pathname, `/projects/${pot.project}`);
-  assert.equal(await ada.page.getByRole("link", { name: "All projects" }).count(), 0, "there is nothing to go up to");
+  assert.equal(
+    await ada.page.getByRole("link", { name: "All projects" }).count(),
+    0,
+    "there is nothing to go up to",
+  );
 
   say("an administrator makes a project by keyboard, and is led to it");
   await ada.page.goto(server.url);
@@ -65,7 +98,11 @@ try {
   await button(ada, "New project").focus();
   await ada.page.keyboard.press("Enter");
   await heading(ada, "New project");
-  await wait_for(async () => (await box(ada, "Name").evaluate((input) => input.getRootNode().activeElement === input)), "the name to have the keyboard");
+  await wait_for(
+    async () =>
+      await box(ada, "Name").evaluate((input) => input.getRootNode().activeElement === input),
+    "the name to have the keyboard",
+  );
   await ada.page.keyboard.type("   ");
   await ada.page.keyboard.press("Enter");
   await ada.page.getByText("Give it a name.").waitFor();
@@ -90,7 +127,10 @@ try {
   await box(ada, "Name").fill("Something else");
   await ada.page.keyboard.press("Escape");
   await is_closed(ada);
-  await wait_for(async () => /Options for Demo/.test(await active(ada.page)), "the keyboard to be back at the menu");
+  await wait_for(
+    async () => /Options for Demo/.test(await active(ada.page)),
+    "the keyboard to be back at the menu",
+  );
   assert.equal((await server.json("GET", `/projects/${pot.project}`)).name, "Demo");
 
   say("the project that every site has can be named, not deleted");
@@ -101,7 +141,9 @@ try {
   assert.equal(await ada.page.getByRole("menuitem", { name: "Delete…" }).count(), 0);
   await ada.page.keyboard.press("Escape");
 
-  say("who changes a project that somebody else changed meanwhile is told, and then may; its address stays");
+  say(
+    "who changes a project that somebody else changed meanwhile is told, and then may; its address stays",
+  );
   await ada.page.getByRole("link", { name: "All projects" }).click();
   await heading(ada, "Projects");
   assert.deepEqual(await cards(ada), ["Demo", "Villa Giulia"]);
@@ -114,13 +156,20 @@ try {
   await shoot(ada, "changed_meanwhile");
   await button(ada, "Save").click();
   await is_closed(ada);
-  await wait_for(async () => (await cards(ada)).includes("Villa Giulia, Rome"), "the card to have the new name");
+  await wait_for(
+    async () => (await cards(ada)).includes("Villa Giulia, Rome"),
+    "the card to have the new name",
+  );
   const renamed = await server.json("GET", "/projects/villa-giulia");
-  assert.deepEqual([renamed.name, renamed.description], ["Villa Giulia, Rome", "Frescoes of the east wing, campaign of 2026."]);
+  assert.deepEqual(
+    [renamed.name, renamed.description],
+    ["Villa Giulia, Rome", "Frescoes of the east wing, campaign of 2026."],
+  );
   await shoot(ada, "gallery_desk");
 
   say("a project may demand that programs name versions; the page does");
-  const demand = () => inside(ada).getByRole("checkbox", { name: "Programs must name the version that they change" });
+  const demand = () =>
+    inside(ada).getByRole("checkbox", { name: "Programs must name the version that they change" });
   for (const is_demanded of [true, false]) {
     await from_menu(ada, "Villa Giulia, Rome", "Rename and describe…");
     await ada.page.getByText("Nothing changes for work on this page.").waitFor();
@@ -129,16 +178,30 @@ try {
     if (is_demanded) await shoot(ada, "demands_versions");
     await button(ada, "Save").click();
     await is_closed(ada);
-    assert.equal((await server.json("GET", "/projects/villa-giulia")).require_if_match, is_demanded);
+    assert.equal(
+      (await server.json("GET", "/projects/villa-giulia")).require_if_match,
+      is_demanded,
+    );
   }
 
   say("with models it stays, and it is said what to do");
-  const started = await fetch(`${server.url}/api/v1/models?filename=square.ply&name=Threshold&unit=mm&project=villa-giulia`, {
-    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: kSquare,
-  });
+  const started = await fetch(
+    `${server.url}/api/v1/models?filename=square.ply&name=Threshold&unit=mm&project=villa-giulia`,
+    {
+      method: "POST",
+      headers: {
+        Authorization: `Bearer ${server.token}`,
+        "Content-Type": "application/octet-stream",
+      },
+      body: kSquare,
+    },
+  );
   assert.equal(started.status, 202);
   const { id: job } = await started.json();
-  await wait_for(async () => (await server.json("GET", `/jobs/${job}`)).state === "done", "the import");
+  await wait_for(
+    async () => (await server.json("GET", `/jobs/${job}`)).state === "done",
+    "the import",
+  );
   await pia.page.goto(`${server.url}/projects/villa-giulia`);
   await heading(pia, "Villa Giulia, Rome");
   await pia.page.getByRole("link", { name: "Open Threshold" }).waitFor();
@@ -151,10 +214,18 @@ try {
   await is_closed(pia);
 
   say("with tables only, these are named, and its name is typed");
-  const [{ id: model }] = (await server.json("GET", "/models")).models.filter(({ name }) => name === "Threshold");
-  const finds = await server.json("POST", "/projects/villa-giulia/tables", { name: "Finds", columns: [{ name: "Name" }] });
+  const [{ id: model }] = (await server.json("GET", "/models")).models.filter(
+    ({ name }) => name === "Threshold",
+  );
+  const finds = await server.json("POST", "/projects/villa-giulia/tables", {
+    name: "Finds",
+    columns: [{ name: "Name" }],
+  });
   await server.json("POST", `/tables/${finds.id}/records`, { values: { name: "Sherd" } });
-  await server.json("POST", "/projects/villa-giulia/tables", { name: "Units", columns: [{ name: "Find", kind: "relation", target: "finds" }] });
+  await server.json("POST", "/projects/villa-giulia/tables", {
+    name: "Units",
+    columns: [{ name: "Find", kind: "relation", target: "finds" }],
+  });
   await server.request("DELETE", `/models/${model}`);
   await pia.page.reload();
   await heading(pia, "No models yet");
@@ -209,11 +280,18 @@ try {
     await heading(nora, "Projects");
     await wait_for(async () => (await cards(nora)).length === 2, "both projects");
     assert.equal(await button(nora, "New project").count(), 0);
-    assert.equal(await nora.page.getByRole("button", { name: /^Options for/ }).count(), person === curator ? 2 : 0, "curators look into the Bin");
+    assert.equal(
+      await nora.page.getByRole("button", { name: /^Options for/ }).count(),
+      person === curator ? 2 : 0,
+      "curators look into the Bin",
+    );
     await nora.page.goto(`${server.url}/projects/archive`);
     await heading(nora, "Archive");
     await heading(nora, "No models yet");
-    assert.equal(await nora.page.getByRole("button", { name: /^Options for/ }).count(), person === curator ? 1 : 0);
+    assert.equal(
+      await nora.page.getByRole("button", { name: /^Options for/ }).count(),
+      person === curator ? 1 : 0,
+    );
     assert.equal(await nora.page.getByRole("menuitem", { name: /Delete|Rename/ }).count(), 0);
     assert.equal(await status(person, "POST", "/projects", { name: "Mine" }), 403);
     assert.equal(await status(person, "PATCH", "/projects/archive", { name: "Mine" }), 403);
@@ -230,7 +308,10 @@ try {
   await button(ada, "Make the project").click();
   await inside(ada).getByRole("alert").filter({ hasText: /./ }).waitFor();
   await shoot(ada, "refused_desk");
-  assert.deepEqual((await server.json("GET", "/projects")).projects.map(({ name }) => name).sort(), ["Archive", "Default", "Demo"]);
+  assert.deepEqual(
+    (await server.json("GET", "/projects")).projects.map(({ name }) => name).sort(),
+    ["Archive", "Default", "Demo"],
+  );
 
   say("the end");
   ada.assert_no_complaints(["412", "403", "401"]);
@@ -240,7 +321,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries(everybody)) await shoot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries(everybody))
+    await shoot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of Object.values(everybody)) await who.close();

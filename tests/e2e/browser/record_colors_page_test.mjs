@@ -1,5 +1,6 @@
-// Records on the model: coloured by what a column says, with patterns, for this person or for all; rows that are chosen and rows that a
-// filter finds stand out, alone where that is wanted, and the camera goes to them.
+// Records on the model: coloured by what a column says, with patterns, for this person or for all;
+// rows that are chosen and rows that a filter finds stand out, alone where that is wanted, and the
+// camera goes to them.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
@@ -22,11 +23,14 @@ const dialog = page.locator("strata-color-dialog");
 const panel = page.locator("strata-table-panel");
 const legend = page.locator("strata-layer-panel .legend-column");
 const shot = async (name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 const palette = async () => (await server.json("GET", L)).palette;
-const shows = (color, least, what) => wait_for(async () => (await browser.count(rgb(color))) > least, what, 150);
-const hides = (color, what) => wait_for(async () => (await browser.count(rgb(color))) < 30, what, 150);
+const shows = (color, least, what) =>
+  wait_for(async () => (await browser.count(rgb(color))) > least, what, 150);
+const hides = (color, what) =>
+  wait_for(async () => (await browser.count(rgb(color))) < 30, what, 150);
 async function open_colors() {
   await button("Options for Sherds").click();
   await page.getByRole("menuitem", { name: "Colours and patterns…" }).click();
@@ -40,16 +44,33 @@ const fill_filter = async (text) => {
 try {
   await server.start();
   await server.json("POST", `${base}/layers`, {
-    name: "Sherds", kind: "database", type: "u16", resolution: 2048,
-    columns: [{ name: "Name" }, { name: "State", kind: "enumeration", choices: ["loose", "firm"] }, { name: "Thickness", kind: "numeric", unit: "mm" }],
+    name: "Sherds",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    columns: [
+      { name: "Name" },
+      { name: "State", kind: "enumeration", choices: ["loose", "firm"] },
+      { name: "Thickness", kind: "numeric", unit: "mm" },
+    ],
   });
   for (let key = 1; key <= kSherds; ++key) {
     const state = key === kSherds ? {} : { state: key % 3 === 0 ? "loose" : "firm" };
-    await server.json("POST", "/tables/sherds/records", { values: { name: `Sherd ${key}`, thickness: 2 + key / 2, ...state } });
-    await server.json("POST", `${L}/edits`, { op: "fill", value: key, mode: "where", where: `pieces = ${key}` });
+    await server.json("POST", "/tables/sherds/records", {
+      values: { name: `Sherd ${key}`, thickness: 2 + key / 2, ...state },
+    });
+    await server.json("POST", `${L}/edits`, {
+      op: "fill",
+      value: key,
+      mode: "where",
+      where: `pieces = ${key}`,
+    });
   }
-  for (const other of ["pieces", "cracks"]) await server.json("PATCH", `${base}/layers/${other}`, { visible: false });
-  const { area_m2: loose_area } = await server.json("POST", `${L}/extent`, { filter: "state = 'loose'" });
+  for (const other of ["pieces", "cracks"])
+    await server.json("PATCH", `${base}/layers/${other}`, { visible: false });
+  const { area_m2: loose_area } = await server.json("POST", `${L}/extent`, {
+    filter: "state = 'loose'",
+  });
 
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
@@ -73,16 +94,30 @@ try {
   say("with patterns, half of the colour makes room for what lies below");
   const plain = await browser.count(rgb(kFirm));
   await dialog.getByLabel("Patterns for all").check();
-  await wait_for(async () => (await browser.count(rgb(kFirm))) < 0.75 * plain, "hatches to be drawn", 150);
+  await wait_for(
+    async () => (await browser.count(rgb(kFirm))) < 0.75 * plain,
+    "hatches to be drawn",
+    150,
+  );
   await dialog.getByLabel("Pattern of loose").selectOption("outline");
   await shot("colors-patterns");
   await dialog.getByLabel("Patterns for all").uncheck();
-  await wait_for(async () => (await browser.count(rgb(kFirm))) > 0.95 * plain, "plain colours", 150);
+  await wait_for(
+    async () => (await browser.count(rgb(kFirm))) > 0.95 * plain,
+    "plain colours",
+    150,
+  );
 
   say("for everyone: the layer keeps it, and the legend says what is what");
   await dialog.getByRole("button", { name: "For everyone" }).click();
   await wait_for(async () => (await palette()).column === "state", "the layer to keep its colours");
-  assert.deepEqual((await palette()).points.map((point) => [point.value, point.color]), [["firm", `${kFirm}ff`], ["loose", `${kLoose}ff`]]);
+  assert.deepEqual(
+    (await palette()).points.map((point) => [point.value, point.color]),
+    [
+      ["firm", `${kFirm}ff`],
+      ["loose", `${kLoose}ff`],
+    ],
+  );
   await legend.getByText("By State").waitFor();
   await legend.getByText("Others, or no value").waitFor();
 
@@ -96,7 +131,10 @@ try {
   await dialog.getByText("2.5 – 4 mm").waitFor();
   await shot("colors-classes");
   await dialog.getByLabel("Classes").selectOption({ label: "Smooth gradient" });
-  await wait_for(async () => (await dialog.locator("li").count()) === 0, "a gradient has no classes");
+  await wait_for(
+    async () => (await dialog.locator("li").count()) === 0,
+    "a gradient has no classes",
+  );
   await dialog.getByRole("button", { name: "Only for me" }).click();
   await legend.getByText("By Thickness").waitFor();
   assert.equal((await palette()).column, "state");
@@ -134,11 +172,17 @@ try {
   assert.match(told, loose_area < 0.1 ? /cm²/ : /m²/, told);
   await server.json("PATCH", "/tables/sherds/records/1", { values: { state: "loose" } });
   await server.json("PATCH", "/tables/sherds/records/2", { values: { state: "loose" } });
-  await wait_for(async () => (await panel.locator(".on-model .hint").textContent()) !== told, "the area with two more");
+  await wait_for(
+    async () => (await panel.locator(".on-model .hint").textContent()) !== told,
+    "the area with two more",
+  );
   await shot("filter-lit");
   await button("Find again").click();
   await panel.getByText("6 of 14 records").waitFor();
-  await wait_for(async () => !(await button("Find again").isVisible()), "the rows to be those that stand out");
+  await wait_for(
+    async () => !(await button("Find again").isVisible()),
+    "the rows to be those that stand out",
+  );
   await button("Show the chosen records on the model").click();
   await shows(kFirm, kEnough, "the filter to stay in the table");
   await button("Show the chosen records on the model").click();
@@ -151,7 +195,9 @@ try {
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 } catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`);
+  console.log(
+    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
+  );
   await shot("record-colors-failure");
   throw error;
 } finally {

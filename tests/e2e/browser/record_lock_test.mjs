@@ -1,4 +1,5 @@
-// Two people at the same records: each sees what the other has open, takes it over after a question, and loses nothing that was written.
+// Two people at the same records: each sees what the other has open, takes it over after a
+// question, and loses nothing that was written.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
@@ -6,7 +7,11 @@ import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kExpected = ["status of 412"]; // what the browser says of a change that came too late
 
-const [ada, bea, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
+const [ada, bea, phone] = [
+  await Browser.open(),
+  await Browser.open(),
+  await Browser.open({ viewport: { width: 390, height: 844 } }),
+];
 const everybody = { ada, bea, phone };
 const server = new StrataServer({ demo: true });
 let step = "start";
@@ -16,15 +21,25 @@ const base = "/models/demo-pot";
 const T = "/tables/units";
 const record = async (key) => (await server.json("GET", `${T}/records/${key}`)).values;
 async function stored(key, slug, value) {
-  await wait_for(async () => (await record(key))[slug] === value, `${slug} of ${key} to be ${value}`);
+  await wait_for(
+    async () => (await record(key))[slug] === value,
+    `${slug} of ${key} to be ${value}`,
+  );
 }
 async function shoot({ page }, name) {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `record_lock_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({
+      path: join(process.env.STRATA_TEST_OUTPUT, `record_lock_${name}.png`),
+    });
 }
 const columns = ["Key", "Code", "Note", "Soil"];
-const row = ({ page }, key) => page.locator("strata-table-panel .line", { has: page.getByRole("rowheader", { name: new RegExp(`^${key}\\b`) }) });
+const row = ({ page }, key) =>
+  page.locator("strata-table-panel .line", {
+    has: page.getByRole("rowheader", { name: new RegExp(`^${key}\\b`) }),
+  });
 const cell = (who, key, column) => row(who, key).locator(".cell").nth(columns.indexOf(column));
-const mark = (who, key, user) => row(who, key).getByRole("img", { name: `${user} is editing this.` });
+const mark = (who, key, user) =>
+  row(who, key).getByRole("img", { name: `${user} is editing this.` });
 const form = ({ page }) => page.locator("strata-record-dialog");
 const note = (who) => form(who).getByRole("textbox", { name: "Note" });
 const save = (who) => form(who).getByRole("button", { name: "Save", exact: true });
@@ -37,7 +52,8 @@ async function open_form(who, key) {
   await note(who).waitFor();
 }
 /** The question's own button, not the one that asked it. */
-const agree = ({ page }, name) => page.locator("strata-question").getByRole("button", { name, exact: true }).click();
+const agree = ({ page }, name) =>
+  page.locator("strata-question").getByRole("button", { name, exact: true }).click();
 async function type_into(who, key, column, text) {
   await cell(who, key, column).click();
   await who.page.keyboard.press("F2");
@@ -51,11 +67,23 @@ try {
   const { project } = await server.json("GET", base);
   await server.json("POST", `/projects/${project}/tables`, {
     name: "Units",
-    columns: [{ name: "Code", required: true }, { name: "Note" }, { name: "Soil", kind: "enumeration", choices: ["sand", "clay"] }],
+    columns: [
+      { name: "Code", required: true },
+      { name: "Note" },
+      { name: "Soil", kind: "enumeration", choices: ["sand", "clay"] },
+    ],
   });
-  for (let n = 1; n <= 6; ++n) await server.json("POST", `${T}/records`, { values: { code: `SU ${n}`, note: `found ${n}` } });
-  await server.json("POST", `${base}/layers`, { name: "Units", kind: "database", type: "u16", table: "units", resolution: 2048 });
-  for (const [name, who] of Object.entries({ ada, bea })) await who.sign_in(server, await server.add_person(name, "annotator"));
+  for (let n = 1; n <= 6; ++n)
+    await server.json("POST", `${T}/records`, { values: { code: `SU ${n}`, note: `found ${n}` } });
+  await server.json("POST", `${base}/layers`, {
+    name: "Units",
+    kind: "database",
+    type: "u16",
+    table: "units",
+    resolution: 2048,
+  });
+  for (const [name, who] of Object.entries({ ada, bea }))
+    await who.sign_in(server, await server.add_person(name, "annotator"));
   await phone.sign_in(server, await server.add_person("vera", "viewer"));
   const id = (await server.json("GET", base)).id;
   for (const who of Object.values(everybody)) {
@@ -88,13 +116,20 @@ try {
   await bea.page.getByText("ada is editing it.").waitFor();
   await shoot(bea, "question");
   await agree(bea, "Cancel");
-  assert.equal(await note(ada).getAttribute("readonly"), null, "a question that was not answered took something");
+  assert.equal(
+    await note(ada).getAttribute("readonly"),
+    null,
+    "a question that was not answered took something",
+  );
   await button(bea, "Take over").click();
   await agree(bea, "Take over");
   await form(ada).getByText("bea took this over.").waitFor();
   assert.equal(await note(ada).getAttribute("readonly"), "");
   assert.equal(await note(ada).inputValue(), "Mine, and not saved");
-  assert.equal(await form(ada).getByRole("textbox", { name: "What you wrote" }).inputValue(), "Note: Mine, and not saved");
+  assert.equal(
+    await form(ada).getByRole("textbox", { name: "What you wrote" }).inputValue(),
+    "Note: Mine, and not saved",
+  );
   assert.ok(await save(ada).isDisabled());
   await note(ada).press("Control+Enter");
   await shoot(ada, "taken");
@@ -103,7 +138,9 @@ try {
   await save(bea).click();
   await stored(1, "note", "Bea's");
 
-  say("left by the other it is one's own again: the text is still there, and what was saved meanwhile is told");
+  say(
+    "left by the other it is one's own again: the text is still there, and what was saved meanwhile is told",
+  );
   await form(ada).getByText("bea took this over.").waitFor({ state: "detached" });
   assert.equal(await note(ada).inputValue(), "Mine, and not saved");
   await save(ada).click();
@@ -166,7 +203,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries(everybody)) await shoot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries(everybody))
+    await shoot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of Object.values(everybody)) await who.close();

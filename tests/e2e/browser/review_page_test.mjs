@@ -1,4 +1,5 @@
-// A curator has the edits of a layer reviewed: what an annotator paints is hatched, listed, accepted, rejected with a reason she reads, and put back.
+// A curator has the edits of a layer reviewed: what an annotator paints is hatched, listed,
+// accepted, rejected with a reason she reads, and put back.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser, rgb } from "../support/browser.mjs";
@@ -6,13 +7,18 @@ import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kEnough = 150; // pixels of a stroke that is there
 
-const [cleo, ada, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
+const [cleo, ada, phone] = [
+  await Browser.open(),
+  await Browser.open(),
+  await Browser.open({ viewport: { width: 390, height: 844 } }),
+];
 const server = new StrataServer({ demo: true });
 let step = "start";
 const say = (text) => console.log((step = text));
 
 async function shoot({ page }, name) {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `review_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `review_${name}.png`) });
 }
 const notice = ({ page }, text) => page.locator("strata-notices").getByText(text);
 const panel = ({ page }) => page.locator("strata-review-panel");
@@ -20,7 +26,8 @@ const panel = ({ page }) => page.locator("strata-review-panel");
 async function dark(who) {
   const { data } = await who.picture(await who.stage_box());
   let count = 0;
-  for (let at = 0; at < data.length; at += 4) if (Math.max(data[at], data[at + 1], data[at + 2]) < 62) ++count;
+  for (let at = 0; at < data.length; at += 4)
+    if (Math.max(data[at], data[at + 1], data[at + 2]) < 62) ++count;
   return count;
 }
 const listed = (who) => panel(who).locator("[data-waiting]");
@@ -34,7 +41,8 @@ try {
   await server.start();
   const model = (await server.json("GET", "/models")).models[0];
   const layers = `/models/${model.id}/layers`;
-  for (const other of (await server.json("GET", layers)).layers) await server.json("PATCH", `${layers}/${other.id}`, { visible: false });
+  for (const other of (await server.json("GET", layers)).layers)
+    await server.json("PATCH", `${layers}/${other.id}`, { visible: false });
   const palette = { mode: "categorical", points: [{ at: 1, color: "#d55e00", label: "Bone" }] };
   await server.json("POST", layers, { name: "Finds", type: "u8", palette });
   const finds = `${layers}/finds`;
@@ -50,13 +58,21 @@ try {
     await who.drawn();
   }
   assert.equal(await panel(cleo).count(), 0, "no layer asks for review yet");
-  for (const who of [ada, cleo]) await who.page.getByRole("button", { name: "Paint on Finds" }).click();
+  for (const who of [ada, cleo])
+    await who.page.getByRole("button", { name: "Paint on Finds" }).click();
   await ada.page.getByRole("button", { name: "Options for Finds" }).click();
-  assert.equal(await ada.page.getByRole("menuitem", { name: "Have edits reviewed" }).count(), 0, "an annotator is offered to ask for review");
+  assert.equal(
+    await ada.page.getByRole("menuitem", { name: "Have edits reviewed" }).count(),
+    0,
+    "an annotator is offered to ask for review",
+  );
   await ada.page.keyboard.press("Escape");
   await cleo.page.getByRole("button", { name: "Options for Finds" }).click();
   await cleo.page.getByRole("menuitem", { name: "Have edits reviewed" }).click();
-  await ada.page.locator("strata-layer-panel").getByText("What you paint here is hatched until a curator accepts it.").waitFor();
+  await ada.page
+    .locator("strata-layer-panel")
+    .getByText("What you paint here is hatched until a curator accepts it.")
+    .waitFor();
   await panel(cleo).getByRole("button", { name: "Review" }).click();
   await panel(cleo).getByText("Nothing waits for review.").waitFor();
 
@@ -68,11 +84,20 @@ try {
     await wait_for(async () => (await who.count(bone)) > kEnough, "the strokes", 150);
     await wait_for(async () => (await dark(who)) > bare + kEnough, "their hatch", 150);
   }
-  await wait_for(async () => (await listed(cleo).count()) === 2, "both strokes in the curator's list");
+  await wait_for(
+    async () => (await listed(cleo).count()) === 2,
+    "both strokes in the curator's list",
+  );
   await cleo.page.locator("strata-layer-panel").getByText("2 strokes wait for review.").waitFor();
   await panel(ada).getByRole("button", { name: "Review" }).click();
   await wait_for(async () => (await listed(ada).count()) === 2, "both strokes in her own list");
-  assert.equal(await panel(ada).getByRole("button", { name: /Accept/ }).count(), 0, "an annotator is offered to decide");
+  assert.equal(
+    await panel(ada)
+      .getByRole("button", { name: /Accept/ })
+      .count(),
+    0,
+    "an annotator is offered to decide",
+  );
   await shoot(ada, "annotator");
   await shoot(cleo, "curator");
 
@@ -80,7 +105,11 @@ try {
   await cleo.page.keyboard.press("6"); // another view
   await cleo.drawn();
   await listed(cleo).first().click();
-  await wait_for(async () => (await cleo.count(bone)) > kEnough, "the strokes, from where they were painted", 150);
+  await wait_for(
+    async () => (await cleo.count(bone)) > kEnough,
+    "the strokes, from where they were painted",
+    150,
+  );
 
   say("she accepts one: its hatch is gone, and its author hears so");
   const painted = await texels();
@@ -99,7 +128,8 @@ try {
   await notice(ada, "This is the old restoration").waitFor();
   await shoot(ada, "told");
   await wait_for(async () => (await texels()) < painted, "the stroke to go");
-  for (const who of [ada, cleo]) await wait_for(async () => (await dark(who)) < bare + kEnough / 3, "no hatch any more", 150);
+  for (const who of [ada, cleo])
+    await wait_for(async () => (await dark(who)) < bare + kEnough / 3, "no hatch any more", 150);
 
   say("the decision is taken back; once more by the notice, as long as it is there");
   const { edits } = await server.json("GET", `${finds}/edits?limit=1000`);
@@ -111,7 +141,10 @@ try {
   await panel(cleo).getByRole("button", { name: "Reject: stroke, ada" }).click();
   await panel(cleo).getByRole("button", { name: "Reject", exact: true }).click();
   await cleo.page.locator("strata-notices").getByRole("button", { name: "Take back" }).click();
-  await wait_for(async () => (await texels()) === painted && (await listed(cleo).count()) === 1, "the stroke to be back, and to wait again");
+  await wait_for(
+    async () => (await texels()) === painted && (await listed(cleo).count()) === 1,
+    "the stroke to be back, and to wait again",
+  );
   await panel(cleo).getByRole("button", { name: "Accept all" }).click();
   await panel(cleo).getByText("Nothing waits for review.").waitFor();
   assert.equal(await texels(), painted);
@@ -134,7 +167,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries({ cleo, ada, phone })) await shoot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ cleo, ada, phone }))
+    await shoot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of [cleo, ada, phone]) await who.close();

@@ -1,5 +1,6 @@
-// The question about size and up direction, as after a drop of files: it begins with what the server proposes and says why; the model shows what is
-// chosen, is not dimmed and stays in reach; "Decide later" keeps what the card said. On a desk and on a phone.
+// The question about size and up direction, as after a drop of files: it begins with what the
+// server proposes and says why; the model shows what is chosen, is not dimmed and stays in reach;
+// "Decide later" keeps what the card said. On a desk and on a phone.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -11,9 +12,20 @@ const kScan = join(kRoot, "..", "shared", "data", "vessel_lekythos_gigamesh_15k.
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const kUps = ["+X", "+Y", "+Z", "−X", "−Y", "−Z"];
 
-/** A bowl with a foot, that stands along `axis`, 80 units wide. Its wall is dented at one side: a round one looks the same with +X and −X up. */
+/**
+ * A bowl with a foot, that stands along `axis`, 80 units wide. Its wall is dented at one side: a
+ * round one looks the same with +X and −X up.
+ */
 function bowl(axis, comment = "") {
-  const rings = [[20, 0], [35, 20], [40, 40], [37, 40], [32, 22], [17, 4], [0.1, 4]];
+  const rings = [
+    [20, 0],
+    [35, 20],
+    [40, 40],
+    [37, 40],
+    [32, 22],
+    [17, 4],
+    [0.1, 4],
+  ];
   const kAround = 40;
   const vertices = [[0, 0, 0]];
   for (const [radius, height] of rings) {
@@ -28,30 +40,58 @@ function bowl(axis, comment = "") {
   const faces = [];
   for (let i = 0; i < kAround; ++i) {
     faces.push([0, at(0, i + 1), at(0, i)]);
-    for (let ring = 0; ring + 1 < rings.length; ++ring) faces.push([at(ring, i), at(ring, i + 1), at(ring + 1, i + 1)], [at(ring, i), at(ring + 1, i + 1), at(ring + 1, i)]);
+    for (let ring = 0; ring + 1 < rings.length; ++ring)
+      faces.push(
+        [at(ring, i), at(ring, i + 1), at(ring + 1, i + 1)],
+        [at(ring, i), at(ring + 1, i + 1), at(ring + 1, i)],
+      );
   }
-  return ["ply", "format ascii 1.0", ...(comment ? [`comment ${comment}`] : []), `element vertex ${vertices.length}`, "property float x", "property float y", "property float z",
-    `element face ${faces.length}`, "property list uchar int vertex_indices", "end_header", ...vertices.map((v) => v.join(" ")), ...faces.map((f) => `3 ${f.join(" ")}`), ""].join("\n");
+  return [
+    "ply",
+    "format ascii 1.0",
+    ...(comment ? [`comment ${comment}`] : []),
+    `element vertex ${vertices.length}`,
+    "property float x",
+    "property float y",
+    "property float z",
+    `element face ${faces.length}`,
+    "property list uchar int vertex_indices",
+    "end_header",
+    ...vertices.map((v) => v.join(" ")),
+    ...faces.map((f) => `3 ${f.join(" ")}`),
+    "",
+  ].join("\n");
 }
 
-const [desk, phone] = [await Browser.open({ viewport: { width: 1440, height: 900 } }), await Browser.open({ ...kPhone })];
+const [desk, phone] = [
+  await Browser.open({ viewport: { width: 1440, height: 900 } }),
+  await Browser.open({ ...kPhone }),
+];
 const server = new StrataServer();
 let step = "start";
 const say = (text) => console.log((step = text));
 const shot = async ({ page }, name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `scale_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `scale_${name}.png`) });
 };
 
 const card = ({ page }) => page.locator("strata-scale-dialog dialog[open]");
 const asks = ({ page }) => page.locator("strata-scale-dialog");
-const title = async (who) => (await asks(who).getByRole("heading").innerText()).replace(/\s+/g, " ");
+const title = async (who) =>
+  (await asks(who).getByRole("heading").innerText()).replace(/\s+/g, " ");
 const reason = (who, of) => who.page.locator(`strata-scale-dialog [data-reason=${of}]`).innerText();
 const texts_of = async (locator) => (await locator.allInnerTexts()).map((text) => text.trim());
-const chosen = (who) => texts_of(who.page.locator("strata-scale-dialog [role=radio][aria-checked=true]"));
+const chosen = (who) =>
+  texts_of(who.page.locator("strata-scale-dialog [role=radio][aria-checked=true]"));
 const choose = (who, name) => asks(who).getByRole("radio", { name, exact: true }).click();
 const bar = (who) => who.page.locator("strata-stage .scale").innerText();
-const model_of = async (name) => (await server.json("GET", "/models?limit=100")).models.find((each) => each.name === name);
-const file_of = (name, text) => ({ name, mimeType: "application/octet-stream", buffer: Buffer.from(text) });
+const model_of = async (name) =>
+  (await server.json("GET", "/models?limit=100")).models.find((each) => each.name === name);
+const file_of = (name, text) => ({
+  name,
+  mimeType: "application/octet-stream",
+  buffer: Buffer.from(text),
+});
 
 async function drop(who, ...files) {
   await who.page.goto(server.url);
@@ -64,10 +104,19 @@ async function asked(who) {
 /** How bright the stage is where it shows no model: a veil makes it darker. */
 async function ground(who) {
   const box = await who.stage_box();
-  const { data } = await who.picture({ x: box.x + box.width * 0.3, y: box.y + 60, width: 4, height: 4 });
+  const { data } = await who.picture({
+    x: box.x + box.width * 0.3,
+    y: box.y + 60,
+    width: 4,
+    height: 4,
+  });
   return data[0] + data[1] + data[2];
 }
-const bar_says = (who, unit) => wait_for(async () => (await bar(who)).replace(/\s+/g, " ").match(new RegExp(`^[\\d.]+ ${unit}( |$)`)), `a scale bar in ${unit}`);
+const bar_says = (who, unit) =>
+  wait_for(
+    async () => (await bar(who)).replace(/\s+/g, " ").match(new RegExp(`^[\\d.]+ ${unit}( |$)`)),
+    `a scale bar in ${unit}`,
+  );
 
 try {
   await server.start();
@@ -82,21 +131,43 @@ try {
   assert.deepEqual(await chosen(desk), ["millimetres", "+Y"]);
   await bar_says(desk, "(mm|cm)");
   let model = await model_of("bowl with unit");
-  assert.deepEqual([model.unit, model.unit_assumed, model.up, model.proposal.unit_reason, model.proposal.up_reason], ["mm", false, "y", "comment", "shape"]);
+  assert.deepEqual(
+    [
+      model.unit,
+      model.unit_assumed,
+      model.up,
+      model.proposal.unit_reason,
+      model.proposal.up_reason,
+    ],
+    ["mm", false, "y", "comment", "shape"],
+  );
 
   say("six small pictures, each another one");
-  assert.deepEqual(await texts_of(asks(desk).locator("[role=radiogroup]").last().getByRole("radio")), kUps);
+  assert.deepEqual(
+    await texts_of(asks(desk).locator("[role=radiogroup]").last().getByRole("radio")),
+    kUps,
+  );
   const pictures = asks(desk).locator("strata-thumbnail canvas.drawn");
   await wait_for(async () => (await pictures.count()) === 6, "six pictures");
-  assert.equal(new Set(await pictures.evaluateAll((all) => all.map((canvas) => canvas.toDataURL()))).size, 6);
+  assert.equal(
+    new Set(await pictures.evaluateAll((all) => all.map((canvas) => canvas.toDataURL()))).size,
+    6,
+  );
   await shot(desk, "desk");
 
   say("the picture is not dimmed, and the model can be turned while the question stands");
   const with_card = await ground(desk);
-  const before = await desk.settled(() => desk.page.locator("strata-stage canvas").first().screenshot());
-  await desk.drag([[0.3, 0.5], [0.5, 0.55]]);
+  const before = await desk.settled(() =>
+    desk.page.locator("strata-stage canvas").first().screenshot(),
+  );
+  await desk.drag([
+    [0.3, 0.5],
+    [0.5, 0.55],
+  ]);
   await card(desk).waitFor();
-  const after = await desk.settled(() => desk.page.locator("strata-stage canvas").first().screenshot());
+  const after = await desk.settled(() =>
+    desk.page.locator("strata-stage canvas").first().screenshot(),
+  );
   assert.ok(!before.equals(after), "the model did not turn");
 
   say("another choice turns the model and changes the scale bar at once, and nothing is kept");
@@ -104,55 +175,87 @@ try {
   await bar_says(desk, "m");
   assert.match(await title(desk), /80 × 40 × 80 m:/);
   await choose(desk, "−Y");
-  const upside_down = await desk.settled(() => desk.page.locator("strata-stage canvas").first().screenshot());
+  const upside_down = await desk.settled(() =>
+    desk.page.locator("strata-stage canvas").first().screenshot(),
+  );
   assert.ok(!upside_down.equals(after), "the model did not turn upside down");
   await shot(desk, "desk_upside_down");
-  assert.deepEqual([(await model_of("bowl with unit")).unit, (await model_of("bowl with unit")).up], ["mm", "y"]);
+  assert.deepEqual(
+    [(await model_of("bowl with unit")).unit, (await model_of("bowl with unit")).up],
+    ["mm", "y"],
+  );
 
   say("decide later: what the card named is kept, marked, and asked again");
-  await asks(desk).getByText(/“Decide later” keeps millimetres and \+Y up/).waitFor();
+  await asks(desk)
+    .getByText(/“Decide later” keeps millimetres and \+Y up/)
+    .waitFor();
   await asks(desk).getByRole("button", { name: "Decide later" }).click();
   await card(desk).waitFor({ state: "detached" });
   await bar_says(desk, "(mm|cm)");
   assert.match(await bar(desk), /Size not confirmed/);
   const without_card = await ground(desk);
-  assert.ok(Math.abs(without_card - with_card) < 12, `the picture was dimmed while the card was open: ${with_card} of ${without_card}`); // a veil takes 80; JPEG a few
+  // a veil takes 80; JPEG a few
+  assert.ok(
+    Math.abs(without_card - with_card) < 12,
+    `the picture was dimmed while the card was open: ${with_card} of ${without_card}`,
+  );
   await desk.page.reload();
   await asked(desk);
 
   say("yes: it is confirmed, upside down as chosen");
   await choose(desk, "−Y");
   await asks(desk).getByRole("button", { name: "Yes, that is right" }).click();
-  await wait_for(async () => (await model_of("bowl with unit")).scale_verified, "the size to be confirmed");
+  await wait_for(
+    async () => (await model_of("bowl with unit")).scale_verified,
+    "the size to be confirmed",
+  );
   model = await model_of("bowl with unit");
   assert.deepEqual([model.unit, model.up], ["mm", "-y"]);
   await wait_for(async () => !/not confirmed/.test(await bar(desk)), "the scale bar to be sure");
 
-  say("without a unit in the file the size decides, and says that it is guessed; on a phone the model is seen above the card");
+  say(
+    "without a unit in the file the size decides, and says that it is guessed; on a phone the model is seen above the card",
+  );
   await drop(phone, file_of("plain_bowl.ply", bowl("z")));
   await asked(phone);
   assert.match(await reason(phone, "unit"), /Guessed from the size/);
   assert.deepEqual(await chosen(phone), ["millimetres", "+Z"]);
   await bar_says(phone, "(mm|cm)");
   model = await model_of("plain bowl");
-  assert.deepEqual([model.unit, model.unit_assumed, model.scale_verified, model.up], ["mm", true, false, "z"]);
+  assert.deepEqual(
+    [model.unit, model.unit_assumed, model.scale_verified, model.up],
+    ["mm", true, false, "z"],
+  );
   const dialog = await card(phone).boundingBox();
   assert.ok(dialog.y > 0.33 * kPhone.viewport.height, `the card begins at ${dialog.y}`);
-  assert.equal(await phone.page.evaluate(() => document.documentElement.scrollWidth), kPhone.viewport.width);
-  await wait_for(async () => (await asks(phone).locator("strata-thumbnail canvas.drawn").count()) === 6, "six pictures");
+  assert.equal(
+    await phone.page.evaluate(() => document.documentElement.scrollWidth),
+    kPhone.viewport.width,
+  );
+  await wait_for(
+    async () => (await asks(phone).locator("strata-thumbnail canvas.drawn").count()) === 6,
+    "six pictures",
+  );
   await shot(phone, "phone");
   await phone.page.keyboard.press("Escape");
   await card(phone).waitFor({ state: "detached" });
 
   if (existsSync(kScan)) {
     say("a real scan");
-    await drop(desk, { name: "vessel_lekythos_gigamesh_15k.ply", mimeType: "application/octet-stream", buffer: readFileSync(kScan) });
+    await drop(desk, {
+      name: "vessel_lekythos_gigamesh_15k.ply",
+      mimeType: "application/octet-stream",
+      buffer: readFileSync(kScan),
+    });
     await asked(desk);
     assert.match(await reason(desk, "unit"), /From the file itself: “unit: mm”/);
     assert.match(await title(desk), /49.6 × 80.3 × 49.8 mm/);
     await bar_says(desk, "(mm|cm)");
     assert.deepEqual(await chosen(desk), ["millimetres", "+Y"]);
-    await wait_for(async () => (await asks(desk).locator("strata-thumbnail canvas.drawn").count()) === 6, "six pictures");
+    await wait_for(
+      async () => (await asks(desk).locator("strata-thumbnail canvas.drawn").count()) === 6,
+      "six pictures",
+    );
     await shot(desk, "lekythos");
   } else {
     console.log(`NOT CHECKED: there is no ${kScan}`);
@@ -163,7 +266,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ desk, phone })) await shot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ desk, phone }))
+    await shot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of [desk, phone]) await who.close();

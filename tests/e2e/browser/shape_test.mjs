@@ -1,4 +1,5 @@
-// Layers that are computed from the shape and layers brought over from another scan, as a person makes them on the page.
+// Layers that are computed from the shape and layers brought over from another scan, as a person
+// makes them on the page.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -24,22 +25,42 @@ async function keep_picture(name) {
 /** A hill of `cells` × `cells` squares, 100 mm wide, as a PLY with a number of its own. */
 function hill(cells) {
   const at = Array.from({ length: cells + 1 }, (_, i) => (100 * i) / cells);
-  const vertices = at.flatMap((y) => at.map((x) => `${x} ${y} ${20 * Math.exp(-((x - 50) ** 2 + (y - 50) ** 2) / 600)} ${x / 100}`));
+  const vertices = at.flatMap((y) =>
+    at.map((x) => `${x} ${y} ${20 * Math.exp(-((x - 50) ** 2 + (y - 50) ** 2) / 600)} ${x / 100}`),
+  );
   const faces = [];
   for (let y = 0; y < cells; ++y)
     for (let x = 0; x < cells; ++x) {
       const a = y * (cells + 1) + x;
       faces.push(`3 ${a} ${a + 1} ${a + cells + 2}`, `3 ${a} ${a + cells + 2} ${a + cells + 1}`);
     }
-  const head = ["ply", "format ascii 1.0", `element vertex ${vertices.length}`, "property float x", "property float y", "property float z",
-    "property float quality", `element face ${faces.length}`, "property list uchar int vertex_indices", "end_header"];
+  const head = [
+    "ply",
+    "format ascii 1.0",
+    `element vertex ${vertices.length}`,
+    "property float x",
+    "property float y",
+    "property float z",
+    "property float quality",
+    `element face ${faces.length}`,
+    "property list uchar int vertex_indices",
+    "end_header",
+  ];
   return [...head, ...vertices, ...faces, ""].join("\n");
 }
 
 async function import_hill(name, cells) {
-  const started = await fetch(`${server.url}/api/v1/models?filename=${name}.ply&name=${name}&unit=mm`, {
-    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: hill(cells),
-  });
+  const started = await fetch(
+    `${server.url}/api/v1/models?filename=${name}.ply&name=${name}&unit=mm`,
+    {
+      method: "POST",
+      headers: {
+        Authorization: `Bearer ${server.token}`,
+        "Content-Type": "application/octet-stream",
+      },
+      body: hill(cells),
+    },
+  );
   assert.equal(started.status, 202, await started.clone().text());
   const { id } = await started.json();
   const job = await wait_for(async () => {
@@ -75,32 +96,56 @@ try {
   await button("Paint on Curvature").waitFor();
   const layer = await server.json("GET", `${base}/layers/curvature`);
   assert.equal(layer.unit, "1/mm");
-  await page.getByText(/Quadric|quadric that fits the surface within 4 mm/).first().waitFor(); // its description: it is selected
-  assert.equal(await page.getByRole("progressbar").count(), 0, "the row of the work goes when it is done");
+  // its description: it is selected
+  await page
+    .getByText(/Quadric|quadric that fits the surface within 4 mm/)
+    .first()
+    .waitFor();
+  assert.equal(
+    await page.getByRole("progressbar").count(),
+    0,
+    "the row of the work goes when it is done",
+  );
   const statistics = await server.json("GET", `${base}/layers/curvature/statistics`);
   const model = await server.json("GET", base);
-  assert.ok(Math.abs(statistics.area_m2 / model.area_m2 - 1) < 0.01, `${statistics.area_m2} of ${model.area_m2} m² have a curvature`);
+  assert.ok(
+    Math.abs(statistics.area_m2 / model.area_m2 - 1) < 0.01,
+    `${statistics.area_m2} of ${model.area_m2} m² have a curvature`,
+  );
   await browser.settled();
   await keep_picture("curvature");
 
   say("it is locked; unlocked, it can be taken back like a stroke");
   await button("Unlock to edit by hand").first().click();
-  await wait_for(async () => (await button("Unlock to edit by hand").count()) === 0, "the layer to be unlocked");
+  await wait_for(
+    async () => (await button("Unlock to edit by hand").count()) === 0,
+    "the layer to be unlocked",
+  );
   await page.keyboard.press("b");
   await page.keyboard.press("Control+z");
-  await wait_for(async () => (await server.json("GET", `${base}/layers/curvature/statistics`)).texels === 0, "the layer to be empty");
+  await wait_for(
+    async () => (await server.json("GET", `${base}/layers/curvature/statistics`)).texels === 0,
+    "the layer to be empty",
+  );
 
   say("long work shows how far it is, and is cancelled");
-  await start_computing("Openness", { Name: "Never", "Looks as far as": "30", "Rays at each point": "7" });
+  await start_computing("Openness", {
+    Name: "Never",
+    "Looks as far as": "30",
+    "Rays at each point": "7",
+  });
   await button("Compute layer").click();
   await page.getByText("Give a whole number of rays from 16 to 1024.").waitFor();
   await page.getByLabel("Rays at each point").fill("128");
-  await page.getByRole("radiogroup", { name: "Smallest detail" }).getByRole("radio").last().click(); // the finest takes longest
+  // the finest takes longest
+  await page.getByRole("radiogroup", { name: "Smallest detail" }).getByRole("radio").last().click();
   await button("Compute layer").click();
   await page.getByRole("progressbar", { name: "Never" }).waitFor();
   await button("Cancel Never").click();
   await page.getByRole("progressbar", { name: "Never" }).waitFor({ state: "detached" });
-  assert.ok(!(await server.json("GET", `${base}/layers`)).layers.some(({ name }) => name === "Never"));
+  assert.ok(
+    !(await server.json("GET", `${base}/layers`)).layers.some(({ name }) => name === "Never"),
+  );
 
   say("what cannot be computed says why");
   await start_computing("Distance to the edge");
@@ -112,8 +157,15 @@ try {
   say("layers are brought over from another scan, with a report");
   const then = await import_hill("Then", 40);
   const now = await import_hill("Now", 57);
-  const made = await server.json("POST", `/models/${then}/layers`, { name: "Terraces", type: "u8", compute: { kind: "height" } });
-  await wait_for(async () => (await server.json("GET", `/jobs/${made.id}`)).state === "done", "the terraces");
+  const made = await server.json("POST", `/models/${then}/layers`, {
+    name: "Terraces",
+    type: "u8",
+    compute: { kind: "height" },
+  });
+  await wait_for(
+    async () => (await server.json("GET", `/jobs/${made.id}`)).state === "done",
+    "the terraces",
+  );
   await page.goto(new URL("/projects/default", server.url).href);
   await page.getByRole("link", { name: /Now/ }).click();
   await browser.drawn();
@@ -144,17 +196,28 @@ try {
   await keep_picture("quality");
 
   say("a table of numbers for the vertices of the scan is painted");
-  const numbers = hill(57).split("end_header\n")[1].split("\n").slice(0, 58 * 58).map((line) => Number(line.split(" ")[3]) * 10);
+  const numbers = hill(57)
+    .split("end_header\n")[1]
+    .split("\n")
+    .slice(0, 58 * 58)
+    .map((line) => Number(line.split(" ")[3]) * 10);
   await button("Options for quality").click();
   await page.getByRole("menuitem", { name: "Unlock to edit by hand" }).click();
   await button("Options for quality").click();
   await page.getByRole("menuitem", { name: "Paint from a file…" }).click();
-  await page.locator("strata-map-dialog input[type=file]").setInputFiles({ name: "tenfold.csv", mimeType: "text/csv", buffer: Buffer.from(numbers.join("\n")) });
+  await page.locator("strata-map-dialog input[type=file]").setInputFiles({
+    name: "tenfold.csv",
+    mimeType: "text/csv",
+    buffer: Buffer.from(numbers.join("\n")),
+  });
   await page.getByText("One number a line").waitFor();
   await button("Paint").click();
   await page.locator("strata-map-dialog").waitFor({ state: "detached" });
   const tenfold = await server.json("GET", `/models/${now}/layers/quality/statistics`);
-  assert.ok(Math.abs(tenfold.max - 10) < 0.1 && tenfold.min >= 0, JSON.stringify({ ...tenfold, histogram: [] }));
+  assert.ok(
+    Math.abs(tenfold.max - 10) < 0.1 && tenfold.min >= 0,
+    JSON.stringify({ ...tenfold, histogram: [] }),
+  );
 
   browser.assert_no_complaints();
   server.assert_clean_log();

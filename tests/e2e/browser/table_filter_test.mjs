@@ -1,5 +1,5 @@
-// The table of records as a tool among others: the keys of the page while it has the keyboard, a filter for each column, and files; areas and cross-tables as
-// copies and files.
+// The table of records as a tool among others: the keys of the page while it has the keyboard, a
+// filter for each column, and files; areas and cross-tables as copies and files.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -7,7 +7,10 @@ import { findings } from "../support/accessible.mjs";
 import { Browser } from "../support/browser.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const browser = await Browser.open({ viewport: { width: 1440, height: 900 }, acceptDownloads: true });
+const browser = await Browser.open({
+  viewport: { width: 1440, height: 900 },
+  acceptDownloads: true,
+});
 const { page } = browser;
 const server = new StrataServer({ demo: true });
 let step = "start";
@@ -19,16 +22,28 @@ const panel = page.locator("strata-table-panel");
 const sheet = page.locator("strata-column-filter");
 const filter = panel.getByRole("textbox", { name: "Filter" });
 const columns = ["Key", "Code", "Depth", "Soil", "Sealed", "Note", "Kind", "Above", "Dug"];
-const cell = (key, column) => panel.locator(".line", { has: page.getByRole("rowheader", { name: String(key), exact: true }) }).locator(".cell").nth(columns.indexOf(column));
+const cell = (key, column) =>
+  panel
+    .locator(".line", { has: page.getByRole("rowheader", { name: String(key), exact: true }) })
+    .locator(".cell")
+    .nth(columns.indexOf(column));
 const shot = async (name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 const shown = async (keys) => {
-  const seen = async () => (await panel.locator(".line .cell.key").allTextContents()).map((text) => Number(text.trim()));
-  await wait_for(async () => JSON.stringify(await seen()) === JSON.stringify(keys), `the records ${keys}`);
+  const seen = async () =>
+    (await panel.locator(".line .cell.key").allTextContents()).map((text) => Number(text.trim()));
+  await wait_for(
+    async () => JSON.stringify(await seen()) === JSON.stringify(keys),
+    `the records ${keys}`,
+  );
 };
 const open_filter = async (column) => {
-  await panel.getByRole("columnheader", { name: new RegExp(`^${column}`) }).getByRole("button", { name: new RegExp(`^Filter by ${column}`) }).click();
+  await panel
+    .getByRole("columnheader", { name: new RegExp(`^${column}`) })
+    .getByRole("button", { name: new RegExp(`^Filter by ${column}`) })
+    .click();
   await sheet.getByRole("dialog").waitFor();
 };
 const apply = async () => {
@@ -41,13 +56,16 @@ const saved = async (click) => {
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 };
 /** The page's tool in hand. */
-const tool = () => page.locator("strata-tool-rail button[aria-pressed=true]").getAttribute("aria-label");
+const tool = () =>
+  page.locator("strata-tool-rail button[aria-pressed=true]").getAttribute("aria-label");
 
 try {
   await server.start();
   const { project, id: model } = await server.json("GET", base);
   const terms = await fetch(`${server.url}/api/v1/projects/${project}/terms?name=Kinds`, {
-    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "text/csv" }, body: "code,label\npit,Pit\nwall,Wall\n",
+    method: "POST",
+    headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "text/csv" },
+    body: "code,label\npit,Pit\nwall,Wall\n",
   });
   assert.ok(terms.ok, await terms.text());
   const { tables } = await server.json("GET", `/projects/${project}/tables`);
@@ -63,17 +81,41 @@ try {
       { name: "Kind", kind: "term", target: kinds.slug },
     ],
   });
-  await server.json("POST", "/tables/units/columns", { name: "Above", kind: "relation", target: "units" });
+  await server.json("POST", "/tables/units/columns", {
+    name: "Above",
+    kind: "relation",
+    target: "units",
+  });
   await server.json("POST", "/tables/units/columns", { name: "Dug", kind: "date" });
   const records = [
     { code: "SU 1", depth: 0.5, soil: "sand", sealed: true, note: "50 % burnt", kind: 1 },
-    { code: "SU 2", depth: 1.5, soil: "clay", sealed: false, note: "Charcoal", kind: 2, above: [1], dug: "2024-05-02" },
+    {
+      code: "SU 2",
+      depth: 1.5,
+      soil: "clay",
+      sealed: false,
+      note: "Charcoal",
+      kind: 2,
+      above: [1],
+      dug: "2024-05-02",
+    },
     { code: "SU 3", depth: 2.5, soil: "clay", above: [1, 2], dug: "2025-01-01" },
     { code: "SU 4" },
   ];
   for (const values of records) await server.json("POST", "/tables/units/records", { values });
-  await server.json("POST", `${base}/layers`, { name: "Units", kind: "database", type: "u16", table: "units", resolution: 2048 });
-  await server.json("POST", `${base}/layers/units/edits`, { op: "fill", value: 2, mode: "where", where: "pieces = 1 or pieces = 2" });
+  await server.json("POST", `${base}/layers`, {
+    name: "Units",
+    kind: "database",
+    type: "u16",
+    table: "units",
+    resolution: 2048,
+  });
+  await server.json("POST", `${base}/layers/units/edits`, {
+    op: "fill",
+    value: 2,
+    mode: "where",
+    where: "pieces = 1 or pieces = 2",
+  });
   await browser.sign_in(server, server.token);
   await page.goto(`${server.url}/models/${model}`);
   await browser.drawn();
@@ -82,18 +124,32 @@ try {
   await page.keyboard.press("t");
   await shown([1, 2, 3, 4]);
 
-  say("where a key cannot be meant as text it is one of the page; Home and End stay within the row");
+  say(
+    "where a key cannot be meant as text it is one of the page; Home and End stay within the row",
+  );
   await cell(2, "Soil").click();
   await page.keyboard.press("m");
-  await wait_for(async () => (await tool()) === "Measure", "the measuring tool, by M in a cell of choices");
+  await wait_for(
+    async () => (await tool()) === "Measure",
+    "the measuring tool, by M in a cell of choices",
+  );
   await page.keyboard.press("v");
   await wait_for(async () => (await tool()) === "Turn", "turning, by V");
   await page.keyboard.press("Home");
-  await wait_for(() => panel.locator(".cell.key.active").count(), "the first cell of the row, by Home");
+  await wait_for(
+    () => panel.locator(".cell.key.active").count(),
+    "the first cell of the row, by Home",
+  );
   await page.keyboard.press("End");
-  await wait_for(() => panel.locator(".cell.computed.active").count(), "the last cell of the row, by End");
+  await wait_for(
+    () => panel.locator(".cell.computed.active").count(),
+    "the last cell of the row, by End",
+  );
   await page.keyboard.press("b");
-  await wait_for(async () => (await tool()) === "Brush", "the brush, by B in a cell that is computed");
+  await wait_for(
+    async () => (await tool()) === "Brush",
+    "the brush, by B in a cell that is computed",
+  );
   await cell(2, "Depth").click();
   await page.keyboard.press("h");
   await wait_for(async () => (await tool()) === "Move", "moving, by H in a cell of numbers");
@@ -102,7 +158,10 @@ try {
   await page.keyboard.press("Escape");
   await cell(2, "Note").click();
   await page.keyboard.press("t");
-  await wait_for(async () => (await panel.locator(".editor textarea").inputValue()) === "t", "a letter in a cell of text");
+  await wait_for(
+    async () => (await panel.locator(".editor textarea").inputValue()) === "t",
+    "a letter in a cell of text",
+  );
   await page.keyboard.press("Escape");
   await page.keyboard.press("Escape");
   await page.keyboard.press("t");
@@ -206,14 +265,24 @@ try {
   await panel.getByRole("button", { name: "Filter by Code (is on)" }).press("Enter");
   await page.keyboard.press("Escape");
   await sheet.waitFor({ state: "detached" });
-  await wait_for(() => panel.getByRole("button", { name: "Filter by Code (is on)" }).evaluate((each) => each.matches(":focus")), "the keyboard back at the funnel");
+  await wait_for(
+    () =>
+      panel
+        .getByRole("button", { name: "Filter by Code (is on)" })
+        .evaluate((each) => each.matches(":focus")),
+    "the keyboard back at the funnel",
+  );
 
   say("the rows are saved as they are shown");
-  const csv = await saved(() => panel.locator(".bar").getByRole("button", { name: "Save as CSV" }).click());
+  const csv = await saved(() =>
+    panel.locator(".bar").getByRole("button", { name: "Save as CSV" }).click(),
+  );
   assert.equal(csv.name, "units.csv");
   assert.match(csv.bytes.toString(), /SU 1/);
   assert.doesNotMatch(csv.bytes.toString(), /SU 2/);
-  const xlsx = await saved(() => panel.locator(".bar").getByRole("button", { name: "Save as XLSX (Excel)" }).click());
+  const xlsx = await saved(() =>
+    panel.locator(".bar").getByRole("button", { name: "Save as XLSX (Excel)" }).click(),
+  );
   assert.equal(xlsx.name, "units.xlsx");
   assert.equal(xlsx.bytes.subarray(0, 2).toString(), "PK");
   await button("Close the table").click();
@@ -227,32 +296,56 @@ try {
   const copied = await page.evaluate(() => navigator.clipboard.readText());
   assert.match(copied, /^Class\tArea\tShare of the surface\n.*\t.*cm²\t.* %/);
   assert.match(copied, /\nAll\t[^\t]+\t[\d.]+ %$/);
-  const of_areas = await saved(() => areas.getByRole("button", { name: "XLSX: Areas of “pieces”" }).click());
+  const of_areas = await saved(() =>
+    areas.getByRole("button", { name: "XLSX: Areas of “pieces”" }).click(),
+  );
   assert.equal(of_areas.name, "pieces-quantities.xlsx");
-  assert.match((await saved(() => areas.getByRole("button", { name: "CSV: Areas of “pieces”" }).click())).bytes.toString(), /percent_of_surface/);
+  assert.match(
+    (
+      await saved(() => areas.getByRole("button", { name: "CSV: Areas of “pieces”" }).click())
+    ).bytes.toString(),
+    /percent_of_surface/,
+  );
 
   say("two layers are set against each other, with names and sums");
   await areas.getByLabel("Other layer").selectOption({ label: "Units" });
   const table = areas.getByRole("table");
   await table.waitFor();
-  assert.deepEqual(await table.getByRole("columnheader").allInnerTexts(), ["pieces / Units", "SU 2", "not in Units", "All"]);
-  const expected = await server.json("POST", `${base}/cross-table`, { rows: "pieces", columns: "units" });
+  assert.deepEqual(await table.getByRole("columnheader").allInnerTexts(), [
+    "pieces / Units",
+    "SU 2",
+    "not in Units",
+    "All",
+  ]);
+  const expected = await server.json("POST", `${base}/cross-table`, {
+    rows: "pieces",
+    columns: "units",
+  });
   assert.equal(await table.getByRole("rowheader").count(), expected.rows.length + 1);
   assert.deepEqual(await findings(page), []);
   await shot("cross-table");
-  const crossed = await saved(() => areas.getByRole("button", { name: /^CSV: .*together/ }).click());
+  const crossed = await saved(() =>
+    areas.getByRole("button", { name: /^CSV: .*together/ }).click(),
+  );
   assert.equal(crossed.name, "pieces-units.csv");
   const [head, first] = crossed.bytes.toString().replace("\ufeff", "").split("\r\n");
-  assert.equal(head, "\"pieces / Units, cm²\",SU 2,–,total");
+  assert.equal(head, '"pieces / Units, cm²",SU 2,–,total');
   assert.match(first, /^Sherd 1,/);
-  assert.equal((await saved(() => areas.getByRole("button", { name: /^XLSX: .*together/ }).click())).bytes.subarray(0, 2).toString(), "PK");
+  assert.equal(
+    (await saved(() => areas.getByRole("button", { name: /^XLSX: .*together/ }).click())).bytes
+      .subarray(0, 2)
+      .toString(),
+    "PK",
+  );
 
   say("the end");
   browser.assert_no_complaints();
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 } catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`);
+  console.log(
+    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
+  );
   await shot("table-filter-failed");
   throw error;
 } finally {

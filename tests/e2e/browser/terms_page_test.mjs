@@ -1,5 +1,6 @@
-// A list of terms on the page: made by a template, chosen from the tree by typing and by keys, painted in its colour, as the legend has it; lists from
-// SKOS, looked at before they are written, imported again, saved; and what is refused.
+// A list of terms on the page: made by a template, chosen from the tree by typing and by keys,
+// painted in its colour, as the legend has it; lists from SKOS, looked at before they are written,
+// imported again, saved; and what is refused.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -25,7 +26,8 @@ const table = page.locator("strata-table-panel");
 const search = brush.getByRole("combobox");
 const term = (name) => brush.getByRole("treeitem", { name, exact: true });
 const shot = async (name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `${name}.png`) });
 };
 const menu = async (name, item) => {
   await button(name).click();
@@ -41,7 +43,9 @@ const drop = (on, name, text) =>
     (element, [file, body]) => {
       const dataTransfer = new DataTransfer();
       dataTransfer.items.add(new File([body], file));
-      element.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, composed: true, cancelable: true }));
+      element.dispatchEvent(
+        new DragEvent("drop", { dataTransfer, bubbles: true, composed: true, cancelable: true }),
+      );
     },
     [name, text],
   );
@@ -67,14 +71,19 @@ try {
   await button("Make Stone condition").click();
   await wait_for(async () => (await templates.count()) === 0, "the dialog to close");
   await layers.locator("li.selected").getByText("Stone condition", { exact: true }).waitFor();
-  const made = (await server.json("GET", `${base}/layers`)).layers.find(({ slug }) => slug === "stone-condition");
+  const made = (await server.json("GET", `${base}/layers`)).layers.find(
+    ({ slug }) => slug === "stone-condition",
+  );
   const { terms } = await server.json("GET", `/tables/${made.table}/terms`);
   const by_code = (code) => terms.find((each) => each.code === code);
 
   say("the brush shows the list as a tree");
   await term("Flaking").waitFor();
   assert.equal(await term("Coming off").getAttribute("aria-expanded"), "true");
-  assert.deepEqual(await term("Flaking").evaluate((row) => [row.ariaLevel, row.ariaPosInSet, row.ariaSetSize]), ["2", "1", "4"]);
+  assert.deepEqual(
+    await term("Flaking").evaluate((row) => [row.ariaLevel, row.ariaPosInSet, row.ariaSetSize]),
+    ["2", "1", "4"],
+  );
   assert.equal(await term("Flaking").getAttribute("title"), by_code("flaking").definition);
   await shot("term-tree");
 
@@ -82,28 +91,54 @@ try {
   await search.fill("flak");
   await search.press("Enter");
   await brush.locator(".now").getByText("Flaking").waitFor();
-  assert.deepEqual(await brush.getByRole("treeitem").allInnerTexts().then((all) => all.map((text) => text.trim())), ["Coming off", "Flaking"]);
+  assert.deepEqual(
+    await brush
+      .getByRole("treeitem")
+      .allInnerTexts()
+      .then((all) => all.map((text) => text.trim())),
+    ["Coming off", "Flaking"],
+  );
   assert.equal(await term("Flaking").getAttribute("aria-selected"), "true");
   await shot("term-found");
 
   say("what is painted has the term's key and its colour, and the legend names it");
   const before = await pixels(by_code("flaking").color);
-  await browser.drag([[0.45, 0.5], [0.6, 0.5]]);
+  await browser.drag([
+    [0.45, 0.5],
+    [0.6, 0.5],
+  ]);
   await browser.saved();
-  await wait_for(async () => (await statistics("stone-condition")).keys?.some(({ key }) => key === by_code("flaking").key), "the stroke to be kept");
+  await wait_for(
+    async () =>
+      (await statistics("stone-condition")).keys?.some(({ key }) => key === by_code("flaking").key),
+    "the stroke to be kept",
+  );
   const line = layers.locator(".legend-classes li", { hasText: "Flaking" });
   await line.scrollIntoViewIfNeeded();
-  await wait_for(async () => (await pixels(by_code("flaking").color)) > before + 500, "the term's colour on the pot");
+  await wait_for(
+    async () => (await pixels(by_code("flaking").color)) > before + 500,
+    "the term's colour on the pot",
+  );
   await shot("term-painted");
 
   say("the arrow keys go through the tree, fold and unfold it");
   await search.press("Escape");
   await term("Cracks").waitFor();
-  const active = () => search.evaluate((input) => input.getRootNode().getElementById(input.getAttribute("aria-activedescendant") ?? "")?.innerText.trim() ?? "");
+  const active = () =>
+    search.evaluate(
+      (input) =>
+        input
+          .getRootNode()
+          .getElementById(input.getAttribute("aria-activedescendant") ?? "")
+          ?.innerText.trim() ?? "",
+    );
   await search.press("ArrowLeft"); // from the one that is chosen to the one above
   assert.equal(await active(), "Coming off");
   await search.press("ArrowLeft");
-  await wait_for(async () => (await term("Flaking").count()) === 0, "those below to be folded away");
+  await wait_for(
+    async () => (await term("Flaking").count()) === 0,
+    "those below to be folded away",
+  );
   await search.press("ArrowDown");
   assert.equal(await active(), "Loss");
   await search.press("ArrowUp");
@@ -120,34 +155,58 @@ try {
   await brush.getByText("No term is called that.").waitFor();
   await button("Show all terms").click();
   await term("Cracks").locator(".fold").click();
-  await wait_for(async () => (await term("Hairline crack").count()) === 0, "the cracks to be folded");
+  await wait_for(
+    async () => (await term("Hairline crack").count()) === 0,
+    "the cracks to be folded",
+  );
 
   say("the same template again is refused in plain words, and nothing is made");
   await menu("More about layers", "From a template…");
   await button("Make Stone condition").click();
-  await templates.getByRole("alert").getByText(/already/).waitFor();
+  await templates
+    .getByRole("alert")
+    .getByText(/already/)
+    .waitFor();
   await shot("template-refused");
   await templates.getByRole("button", { name: "Close" }).click();
-  assert.equal((await server.json("GET", `${base}/layers`)).layers.filter(({ name }) => name.startsWith("Stone")).length, 2);
+  assert.equal(
+    (await server.json("GET", `${base}/layers`)).layers.filter(({ name }) =>
+      name.startsWith("Stone"),
+    ).length,
+    2,
+  );
 
   say("a SKOS file is looked at first, and is not written while one of its terms is wrong");
   await menu("More about layers", "A list of terms from a file…");
   await choose_file("glaze.pdf", "no terms");
-  await importer.getByRole("alert").getByText(/no list of terms/).waitFor();
-  const prefixes = "@prefix skos: <http://www.w3.org/2004/02/skos/core#> .\n@prefix g: <https://glaze.example/> .\n";
-  await choose_file("glaze_terms.ttl", `${prefixes}g:a a skos:Concept ; skos:broader g:b .\ng:b a skos:Concept ; skos:broader g:a .\n`);
+  await importer
+    .getByRole("alert")
+    .getByText(/no list of terms/)
+    .waitFor();
+  const prefixes =
+    "@prefix skos: <http://www.w3.org/2004/02/skos/core#> .\n@prefix g: <https://glaze.example/> .\n";
+  await choose_file(
+    "glaze_terms.ttl",
+    `${prefixes}g:a a skos:Concept ; skos:broader g:b .\ng:b a skos:Concept ; skos:broader g:a .\n`,
+  );
   await importer.getByRole("columnheader", { name: "What is wrong" }).waitFor();
   assert.ok(await button("Import").isDisabled());
   await shot("terms-wrong");
-  await choose_file("glaze_terms.ttl", `${prefixes}
+  await choose_file(
+    "glaze_terms.ttl",
+    `${prefixes}
     g:glaze a skos:Concept ; skos:notation "glaze" ; skos:prefLabel "Glaze"@en, "Vidriado"@es ; skos:definition "Glass that was melted onto the clay."@en .
     g:crazing a skos:Concept ; skos:notation "crazing" ; skos:broader g:glaze ; skos:prefLabel "Crazing"@en, "Craquelado"@es .
-    g:pinhole a skos:Concept ; skos:notation "pinhole" ; skos:broader g:glaze ; skos:prefLabel "Pinhole"@en .\n`);
+    g:pinhole a skos:Concept ; skos:notation "pinhole" ; skos:broader g:glaze ; skos:prefLabel "Pinhole"@en .\n`,
+  );
   await importer.getByText("All of it fits. Nothing has been written yet.").waitFor();
   assert.equal(await importer.getByLabel("Name of the list").inputValue(), "glaze terms");
   await shot("terms-report");
   const { project } = await server.json("GET", base);
-  const lists = async () => (await server.json("GET", `/projects/${project}/tables`)).tables.filter(({ kind }) => kind === "terms").map(({ name }) => name);
+  const lists = async () =>
+    (await server.json("GET", `/projects/${project}/tables`)).tables
+      .filter(({ kind }) => kind === "terms")
+      .map(({ name }) => name);
   assert.deepEqual(await lists(), ["Stone condition terms"]);
   await button("Import").click();
   await wait_for(async () => (await importer.count()) === 0, "the list to be made");
@@ -160,7 +219,10 @@ try {
   await page.getByRole("button", { name: "Table of records" }).click();
   await table.getByText("3 records").waitFor();
   await menu("More about the table", "Import terms…");
-  await choose_file("more.csv", "code,label-en,parent,color\ncrazing,Net of cracks,glaze,#aa3377\nrunning,Running,glaze,#4477aa\n");
+  await choose_file(
+    "more.csv",
+    "code,label-en,parent,color\ncrazing,Net of cracks,glaze,#aa3377\nrunning,Running,glaze,#4477aa\n",
+  );
   await importer.getByText("All of it fits. Nothing has been written yet.").waitFor();
   await shot("terms-more");
   await button("Import").click();
@@ -168,17 +230,26 @@ try {
   await term("Running").waitFor();
   await shot("terms-imported");
 
-  say("a file that is dropped on the list's table is terms for it, and one in the dialog takes its place; one that says nothing new is not imported");
+  say(
+    "a file that is dropped on the list's table is terms for it, and one in the dialog takes its place; one that says nothing new is not imported",
+  );
   await drop(table, "none.csv", "code,parent\nlone,nowhere\n");
   await importer.getByText("nowhere").waitFor();
-  await drop(importer.getByRole("group", { name: "File with terms" }), "same.ttl", `${prefixes}g:pinhole a skos:Concept ; skos:notation "pinhole" ; skos:broader g:glaze ; skos:prefLabel "Pinhole"@en .\n`);
+  await drop(
+    importer.getByRole("group", { name: "File with terms" }),
+    "same.ttl",
+    `${prefixes}g:pinhole a skos:Concept ; skos:notation "pinhole" ; skos:broader g:glaze ; skos:prefLabel "Pinhole"@en .\n`,
+  );
   await importer.getByText("same.ttl").waitFor();
   await importer.getByText("The table holds all of that already.").waitFor();
   assert.ok(await button("Import").isDisabled());
   await button("Cancel").click();
 
   say("the list is saved as SKOS, as it may be imported elsewhere");
-  const [download] = await Promise.all([page.waitForEvent("download"), menu("More about the table", "Save the terms as SKOS (Turtle)")]);
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    menu("More about the table", "Save the terms as SKOS (Turtle)"),
+  ]);
   assert.equal(download.suggestedFilename(), "glaze-terms.ttl");
   await download.saveAs(join(folder, "saved.ttl"));
   assert.match(readFileSync(join(folder, "saved.ttl"), "utf8"), /Net of cracks/);
@@ -198,7 +269,9 @@ try {
   assert.equal(await server.signal("SIGTERM"), 0);
   server.assert_clean_log();
 } catch (error) {
-  console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`);
+  console.log(
+    `failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}\n${browser.complaints.join("\n")}`,
+  );
   await shot("terms-failed");
   throw error;
 } finally {

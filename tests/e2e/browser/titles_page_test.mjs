@@ -1,4 +1,5 @@
-// A table chooses the column that its records are called by, which may be a term; terms in a record's form stand as in the brush, in a list that opens when it is asked for.
+// A table chooses the column that its records are called by, which may be a term; terms in a
+// record's form stand as in the brush, in a list that opens when it is asked for.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
@@ -8,25 +9,54 @@ const browser = await Browser.open();
 const { page } = browser;
 const server = new StrataServer({ demo: true });
 const shot = async (name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `titles_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `titles_${name}.png`) });
 };
-const kTerms = "code,parent,label\nz-loss,,Loss\nq-worn,z-loss,Worn\na-broken,z-loss,Broken off\nb-deposit,,Deposit\na-salt,b-deposit,Salts\n";
+const kTerms =
+  "code,parent,label\nz-loss,,Loss\nq-worn,z-loss,Worn\na-broken,z-loss,Broken off\nb-deposit,,Deposit\na-salt,b-deposit,Salts\n";
 const kTree = ["Loss", "Worn", "Broken off", "Deposit", "Salts"];
 
 try {
   await server.start();
   const model = (await server.json("GET", "/models")).models[0];
   const send = (path, body, type) =>
-    fetch(`${server.url}/api/v1${path}`, { method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": type }, body }).then((answer) => answer.json());
-  await send("/projects/demo/terms?name=Damage", kTerms, "text/csv").then(async (report) => report.table ?? (await send("/projects/default/terms?name=Damage", kTerms, "text/csv")));
+    fetch(`${server.url}/api/v1${path}`, {
+      method: "POST",
+      headers: { Authorization: `Bearer ${server.token}`, "Content-Type": type },
+      body,
+    }).then((answer) => answer.json());
+  await send("/projects/demo/terms?name=Damage", kTerms, "text/csv").then(
+    async (report) =>
+      report.table ?? (await send("/projects/default/terms?name=Damage", kTerms, "text/csv")),
+  );
   const terms = (await server.json("GET", "/tables/damage/terms")).terms;
   const key_of = (label) => terms.find(({ name }) => name === label).key;
-  const columns = [{ name: "Note" }, { name: "Damage", kind: "term", target: "damage" }, { name: "Where" }];
-  const layer = await server.json("POST", `/models/${model.id}/layers`, { name: "Places", kind: "database", type: "u16", columns });
+  const columns = [
+    { name: "Note" },
+    { name: "Damage", kind: "term", target: "damage" },
+    { name: "Where" },
+  ];
+  const layer = await server.json("POST", `/models/${model.id}/layers`, {
+    name: "Places",
+    kind: "database",
+    type: "u16",
+    columns,
+  });
   const table = layer.table;
-  for (const [note, label] of [["Zinc", "Salts"], ["äther", "Worn"], ["Apple", "Loss"]])
-    await server.json("POST", `/tables/${table}/records`, { values: { note, damage: key_of(label) } });
-  await server.json("POST", `/models/${model.id}/layers/${layer.id}/edits`, { op: "fill", mode: "where", where: "z > 0", value: 1 });
+  for (const [note, label] of [
+    ["Zinc", "Salts"],
+    ["äther", "Worn"],
+    ["Apple", "Loss"],
+  ])
+    await server.json("POST", `/tables/${table}/records`, {
+      values: { note, damage: key_of(label) },
+    });
+  await server.json("POST", `/models/${model.id}/layers/${layer.id}/edits`, {
+    op: "fill",
+    mode: "where",
+    where: "z > 0",
+    value: 1,
+  });
 
   await page.goto(server.link);
   await page.goto(`${server.url}/models/${model.id}`);
@@ -37,21 +67,43 @@ try {
   await grid.getByText("Zinc").first().waitFor();
 
   // By the tree, not by the codes, nor by the keys.
-  await grid.getByRole("columnheader", { name: /^Damage/ }).getByRole("button", { name: /^Damage/ }).click();
-  const notes = async () => (await grid.locator('[role="row"] [id$="-1"]').allTextContents()).map((text) => text.trim()).filter((text) => ["Zinc", "äther", "Apple"].includes(text));
-  await wait_for(async () => JSON.stringify(await notes()) === JSON.stringify(["Apple", "äther", "Zinc"]), "the rows in the order of the tree");
+  await grid
+    .getByRole("columnheader", { name: /^Damage/ })
+    .getByRole("button", { name: /^Damage/ })
+    .click();
+  const notes = async () =>
+    (await grid.locator('[role="row"] [id$="-1"]').allTextContents())
+      .map((text) => text.trim())
+      .filter((text) => ["Zinc", "äther", "Apple"].includes(text));
+  await wait_for(
+    async () => JSON.stringify(await notes()) === JSON.stringify(["Apple", "äther", "Zinc"]),
+    "the rows in the order of the tree",
+  );
 
   // The title becomes the term.
-  await grid.getByRole("columnheader", { name: /^Damage/ }).getByRole("button", { name: /column/i }).click();
+  await grid
+    .getByRole("columnheader", { name: /^Damage/ })
+    .getByRole("button", { name: /column/i })
+    .click();
   await page.getByRole("menuitemcheckbox", { name: "Use as the title" }).click();
-  await wait_for(async () => (await server.json("GET", `/tables/${table}`)).title_column !== undefined, "the title");
+  await wait_for(
+    async () => (await server.json("GET", `/tables/${table}`)).title_column !== undefined,
+    "the title",
+  );
   const legend = page.locator("strata-layer-panel li.layer.selected");
   await grid.getByRole("rowheader", { name: "1", exact: true }).click();
-  await grid.locator(".chosen").getByText(/^Salts ·/).waitFor();
+  await grid
+    .locator(".chosen")
+    .getByText(/^Salts ·/)
+    .waitFor();
   await shot("chosen");
 
   // The form: nothing opens by itself, and the list is the tree.
-  await grid.getByRole("button", { name: "Edit the record" }).or(grid.locator(".chosen").getByRole("button").nth(1)).first().click();
+  await grid
+    .getByRole("button", { name: "Edit the record" })
+    .or(grid.locator(".chosen").getByRole("button").nth(1))
+    .first()
+    .click();
   const dialog = page.locator("strata-record-dialog");
   await dialog.getByRole("heading", { name: "Salts" }).waitFor();
   assert.equal(await dialog.locator(".list:popover-open").count(), 0, "a list lies over the form");
@@ -59,16 +111,25 @@ try {
   await field.click();
   const options = dialog.getByRole("option");
   await options.first().waitFor();
-  assert.deepEqual((await options.locator(".ellipsis").allTextContents()).map((text) => text.trim()), kTree);
+  assert.deepEqual(
+    (await options.locator(".ellipsis").allTextContents()).map((text) => text.trim()),
+    kTree,
+  );
   const left = async (index) => (await options.nth(index).locator(".ellipsis").boundingBox()).x;
   assert.ok((await left(1)) > (await left(0)), "a term stands below the one above it");
   await shot("tree");
   await field.fill("broken");
-  await wait_for(async () => (await options.count()) === 2, "the term that is looked for, with the one above it");
+  await wait_for(
+    async () => (await options.count()) === 2,
+    "the term that is looked for, with the one above it",
+  );
   await field.press("Enter");
   const chip = dialog.locator(".chip").first();
   await chip.getByText("Broken off").waitFor();
-  const [word, cross] = [await chip.locator(".ellipsis").boundingBox(), await chip.getByRole("button").boundingBox()];
+  const [word, cross] = [
+    await chip.locator(".ellipsis").boundingBox(),
+    await chip.getByRole("button").boundingBox(),
+  ];
   assert.ok(word.x + word.width <= cross.x + 1, "the button covers letters");
   await chip.getByRole("button").click();
   assert.equal(await field.getAttribute("placeholder"), "Search terms");

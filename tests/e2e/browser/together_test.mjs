@@ -1,5 +1,6 @@
-// Two people look at one model: each sees who is there, where the other points and what they paint while they paint it; one follows the
-// other's view, asks the other to look along, and is told when the other leaves.
+// Two people look at one model: each sees who is there, where the other points and what they paint
+// while they paint it; one follows the other's view, asks the other to look along, and is told when
+// the other leaves.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -8,10 +9,17 @@ import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kOutput = process.env.STRATA_TEST_OUTPUT ?? "/tmp/strata-together";
 const kMagenta = "#ff00ff"; // nothing on the pot has this hue
-const kEnough = 150;        // pixels of a stroke that is there
+const kEnough = 150; // pixels of a stroke that is there
 const kPhone = { width: 390, height: 844 };
 const kDesk = { width: 1280, height: 800 };
-const kCrowd = ["Carl Diaz", "Dora Maar", "Emil Nolde", "Fatma Aliye Topuz of the long and sonorous name", "Gia", "Hal Ito"];
+const kCrowd = [
+  "Carl Diaz",
+  "Dora Maar",
+  "Emil Nolde",
+  "Fatma Aliye Topuz of the long and sonorous name",
+  "Gia",
+  "Hal Ito",
+];
 const kColors = ["#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7b5ea7", "#5c7a29"];
 
 mkdirSync(kOutput, { recursive: true });
@@ -19,18 +27,21 @@ const [anna, bea] = [await Browser.open(), await Browser.open()];
 const server = new StrataServer({ demo: true });
 let step = "start";
 const say = (text) => console.log((step = text));
-const shot = async (who, name) => writeFileSync(join(kOutput, `together_${name}.png`), await who.settled());
+const shot = async (who, name) =>
+  writeFileSync(join(kOutput, `together_${name}.png`), await who.settled());
 
 /** What a page and the server tell each other: `sent` and `heard` by op, newest only. */
 function listen(who) {
   who.sent = {};
   who.heard = {};
   who.page.on("websocket", (socket) => {
-    const keep = (where) => ({ payload }) => {
-      if (typeof payload !== "string") return;
-      const message = JSON.parse(payload);
-      where[message.op] = message;
-    };
+    const keep =
+      (where) =>
+      ({ payload }) => {
+        if (typeof payload !== "string") return;
+        const message = JSON.parse(payload);
+        where[message.op] = message;
+      };
     socket.on("framesent", keep(who.sent));
     socket.on("framereceived", keep(who.heard));
   });
@@ -38,24 +49,39 @@ function listen(who) {
 const bea_as_heard = () => anna.heard.presence?.users.find(({ name }) => name === "bea");
 
 /** Column-major matrices, as the protocol has them. */
-const times = (m, v) => [0, 1, 2, 3].map((row) => [0, 1, 2, 3].reduce((sum, column) => sum + m[4 * column + row] * v[column], 0));
+const times = (m, v) =>
+  [0, 1, 2, 3].map((row) =>
+    [0, 1, 2, 3].reduce((sum, column) => sum + m[4 * column + row] * v[column], 0),
+  );
 /** The place in the window of a camera, by its matrices alone. */
 function projected({ view, projection, width, height }, place) {
   const [x, y, , w] = times(projection, times(view, [...place, 1]));
   return { x: (x / w / 2 + 0.5) * width, y: (0.5 - y / w / 2) * height };
 }
-const same_view = (a, b) => a && b && Math.max(...a.view.map((value, index) => Math.abs(value - b.view[index]))) < 1e-6;
-const at_rest = (who) => wait_for(async () => {
-  const canvas = await who.page.locator("strata-stage canvas").evaluate(({ dataset }) => ({ ...dataset }));
-  return canvas.still === "true" && Number(canvas.cameraSeq) === who.sent.camera?.seq;
-}, "a still picture of the newest camera", 100);
+const same_view = (a, b) =>
+  a && b && Math.max(...a.view.map((value, index) => Math.abs(value - b.view[index]))) < 1e-6;
+const at_rest = (who) =>
+  wait_for(
+    async () => {
+      const canvas = await who.page
+        .locator("strata-stage canvas")
+        .evaluate(({ dataset }) => ({ ...dataset }));
+      return canvas.still === "true" && Number(canvas.cameraSeq) === who.sent.camera?.seq;
+    },
+    "a still picture of the newest camera",
+    100,
+  );
 
 const cursor = anna.page.locator("strata-people-overlay .person");
 /** Where Bea points on Anna's page: CSS pixels of the stage. */
-const cursor_at = () => cursor.evaluate((element) => {
-  const [box, stage] = [element.getBoundingClientRect(), element.getRootNode().host.getBoundingClientRect()];
-  return { x: box.left - stage.left, y: box.top - stage.top, classes: element.className };
-});
+const cursor_at = () =>
+  cursor.evaluate((element) => {
+    const [box, stage] = [
+      element.getBoundingClientRect(),
+      element.getRootNode().host.getBoundingClientRect(),
+    ];
+    return { x: box.left - stage.left, y: box.top - stage.top, classes: element.className };
+  });
 async function cursor_comes_to(wanted, tolerance, what) {
   let last = null;
   await wait_for(async () => {
@@ -63,7 +89,9 @@ async function cursor_comes_to(wanted, tolerance, what) {
     last = await cursor_at();
     return Math.hypot(last.x - wanted.x, last.y - wanted.y) <= tolerance;
   }, what).catch((late) => {
-    throw new Error(`${late.message}: it is at ${JSON.stringify(last)} instead of ${JSON.stringify(wanted)}`);
+    throw new Error(
+      `${late.message}: it is at ${JSON.stringify(last)} instead of ${JSON.stringify(wanted)}`,
+    );
   });
 }
 const people = (who) => who.page.locator("strata-people-menu");
@@ -78,9 +106,15 @@ const bar = (who) => who.page.locator("strata-together-bar button");
 try {
   await server.start();
   for (const { id } of (await server.json("GET", "/models/demo-pot/layers")).layers)
-    await server.json("PATCH", `/models/demo-pot/layers/${id}`, { visible: false }); // they would disturb the counting of pixels
+    // they would disturb the counting of pixels
+    await server.json("PATCH", `/models/demo-pot/layers/${id}`, { visible: false });
   const palette = { mode: "categorical", points: [{ at: 1, color: kMagenta, label: "Soot" }] };
-  await server.json("POST", "/models/demo-pot/layers", { name: "Traces", type: "u8", resolution: 4096, palette });
+  await server.json("POST", "/models/demo-pot/layers", {
+    name: "Traces",
+    type: "u8",
+    resolution: 4096,
+    palette,
+  });
   const person = await server.add_person("bea", "annotator");
   await server.json("PATCH", "/users/bea", { full_name: "Bea Ost" });
 
@@ -94,14 +128,24 @@ try {
   }
   await anna.page.getByLabel("2 people are here: owner (you), Bea Ost").waitFor();
   await bea.page.getByLabel("2 people are here: Bea Ost (you), owner").waitFor();
-  const faces = await people(anna).locator(".faces .face").evaluateAll((all) => all.map(({ textContent, title }) => [textContent.trim(), title]));
-  assert.deepEqual(faces, [["O", "owner (you)"], ["BO", "Bea Ost"]]);
+  const faces = await people(anna)
+    .locator(".faces .face")
+    .evaluateAll((all) => all.map(({ textContent, title }) => [textContent.trim(), title]));
+  assert.deepEqual(faces, [
+    ["O", "owner (you)"],
+    ["BO", "Bea Ost"],
+  ]);
 
   say("a person with two windows is one");
   const second = await bea.context.newPage();
   await second.goto(`${server.url}/models/demo-pot`);
   await wait_for(() => anna.heard.presence?.users.length === 3, "the second window");
-  assert.equal(new Set(anna.heard.presence.users.filter(({ name }) => name === "bea").map(({ color }) => color)).size, 1);
+  assert.equal(
+    new Set(
+      anna.heard.presence.users.filter(({ name }) => name === "bea").map(({ color }) => color),
+    ).size,
+    1,
+  );
   await anna.page.getByLabel(/2 people are here/).waitFor();
   await second.close();
 
@@ -113,7 +157,13 @@ try {
       if (typeof text === "string" && JSON.parse(text).op === "presence") {
         const message = JSON.parse(text);
         kCrowd.forEach((full_name, index) =>
-          message.users.push({ session: `00000000-0000-4000-8000-00000000000${index}`, name: `user${index}`, full_name, color: kColors[index] }));
+          message.users.push({
+            session: `00000000-0000-4000-8000-00000000000${index}`,
+            name: `user${index}`,
+            full_name,
+            color: kColors[index],
+          }),
+        );
         page.send(JSON.stringify(message));
       } else {
         page.send(text);
@@ -125,7 +175,14 @@ try {
   const folded = crowd.locator("strata-people-menu .faces .face");
   assert.deepEqual([await folded.count(), (await folded.last().textContent()).trim()], [6, "+3"]);
   await crowd.locator("strata-people-menu .faces").click();
-  assert.equal(await crowd.locator("strata-people-menu").getByRole("menuitem", { name: /^(..\s*)?Follow / }).count(), 8); // and one's own other window
+  // and one's own other window
+  assert.equal(
+    await crowd
+      .locator("strata-people-menu")
+      .getByRole("menuitem", { name: /^(..\s*)?Follow / })
+      .count(),
+    8,
+  );
   await crowd.screenshot({ path: join(kOutput, "together_crowd_1280.png") });
   await crowd.setViewportSize(kPhone);
   await crowd.screenshot({ path: join(kOutput, "together_crowd_390.png") });
@@ -142,38 +199,70 @@ try {
   await cursor_comes_to(at, 1.5, "her pointer on Anna's page");
   assert.ok(!(await cursor_at()).classes.includes("hidden"), "what she points at is in front");
   assert.equal(await cursor.locator("b").textContent(), "Bea Ost");
-  assert.equal(await anna.page.evaluate(([x, y]) => document.elementsFromPoint(x, y).some((each) => each.localName === "strata-people-overlay"), [box.x + at.x, box.y + at.y]), false);
+  assert.equal(
+    await anna.page.evaluate(
+      ([x, y]) =>
+        document.elementsFromPoint(x, y).some((each) => each.localName === "strata-people-overlay"),
+      [box.x + at.x, box.y + at.y],
+    ),
+    false,
+  );
 
   say("from another side it is where the camera's matrices say, and hidden from behind");
   await anna.page.keyboard.press("ArrowLeft");
   await anna.page.keyboard.press("ArrowUp");
   await at_rest(anna);
-  await cursor_comes_to(projected(anna.sent.camera, bea_as_heard().pointer.position), 1, "her pointer after Anna turned");
+  await cursor_comes_to(
+    projected(anna.sent.camera, bea_as_heard().pointer.position),
+    1,
+    "her pointer after Anna turned",
+  );
   assert.ok(!(await cursor_at()).classes.includes("hidden"), "what she points at is in front");
   await anna.page.keyboard.press("2");
   await at_rest(anna);
-  await wait_for(async () => (await cursor_at()).classes.includes("hidden"), "her pointer to be hidden behind the pot");
-  await cursor_comes_to(projected(anna.sent.camera, bea_as_heard().pointer.position), 1, "it to be behind");
+  await wait_for(
+    async () => (await cursor_at()).classes.includes("hidden"),
+    "her pointer to be hidden behind the pot",
+  );
+  await cursor_comes_to(
+    projected(anna.sent.camera, bea_as_heard().pointer.position),
+    1,
+    "it to be behind",
+  );
   await anna.page.keyboard.press("1");
   await at_rest(anna);
-  await wait_for(async () => !(await cursor_at()).classes.includes("hidden"), "her pointer to be seen again");
+  await wait_for(
+    async () => !(await cursor_at()).classes.includes("hidden"),
+    "her pointer to be seen again",
+  );
 
-  say("the brush in her hand is as large as where she paints, and her paint is there before she lets go");
+  say(
+    "the brush in her hand is as large as where she paints, and her paint is there before she lets go",
+  );
   await bea.page.getByRole("button", { name: "Paint on Traces" }).click();
   await bea.page.keyboard.press("b");
   for (let i = 0; i < 6; ++i) await bea.page.keyboard.press("]");
   await bea.page.keyboard.press("1");
   await at_rest(bea);
   await point(at.x - 20, at.y);
-  const own_radius = await bea.page.locator("strata-stage svg.over circle").first().getAttribute("r");
+  const own_radius = await bea.page
+    .locator("strata-stage svg.over circle")
+    .first()
+    .getAttribute("r");
   await wait_for(async () => {
-    const circles = await cursor.locator("circle").evaluateAll((all) => all.map((circle) => Number(circle.getAttribute("r"))));
+    const circles = await cursor
+      .locator("circle")
+      .evaluateAll((all) => all.map((circle) => Number(circle.getAttribute("r"))));
     return circles.length > 0 && Math.abs(circles[0] / Number(own_radius) - 1) < 0.05;
   }, `her brush of ${own_radius} px on Anna's page`);
   assert.equal(await anna.count(rgb(kMagenta)), 0);
   await bea.page.mouse.down();
   await bea.page.mouse.move(box.x + at.x + 60, box.y + at.y + 10, { steps: 8 });
-  await wait_for(async () => (await anna.count(rgb(kMagenta))) > kEnough, "her paint on Anna's page while she draws", 150);
+  await wait_for(
+    async () => (await anna.count(rgb(kMagenta))) > kEnough,
+    "her paint on Anna's page while she draws",
+    150,
+  );
   assert.equal(await bea.page.locator("strata-stage .surface.paint").count(), 1);
   await shot(anna, "brush_1280");
   await bea.page.mouse.up();
@@ -186,20 +275,37 @@ try {
   await shot(anna, "menu_1280");
   await entry(anna, "Follow Bea Ost").click();
   await bar(anna).getByText("Following Bea Ost").waitFor();
-  for (const key of ["ArrowLeft", "ArrowLeft", "ArrowLeft", "ArrowDown", "+"]) await bea.page.keyboard.press(key);
+  for (const key of ["ArrowLeft", "ArrowLeft", "ArrowLeft", "ArrowDown", "+"])
+    await bea.page.keyboard.press(key);
   await wait_for(() => same_view(anna.sent.camera, bea.sent.camera), "Anna's camera to be Bea's");
   await Promise.all([at_rest(anna), at_rest(bea)]);
   await bea.page.mouse.move(5, 5); // a pointer in the picture would be a difference
   await cursor.waitFor({ state: "detached" });
-  const [mine, hers] = await Promise.all([anna, bea].map((who) =>
-    who.page.locator("strata-stage canvas").evaluate((canvas) => [...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data])));
+  const [mine, hers] = await Promise.all(
+    [anna, bea].map((who) =>
+      who.page
+        .locator("strata-stage canvas")
+        .evaluate((canvas) => [
+          ...canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data,
+        ]),
+    ),
+  );
   assert.equal(mine.length, hers.length);
   let difference = 0;
   for (let i = 0; i < mine.length; ++i) difference += Math.abs(mine[i] - hers[i]);
-  assert.ok(difference / mine.length < 0.5, `the pictures differ by ${difference / mine.length} of 255`);
-  await wait_for(() => bea.heard.presence?.users.some(({ following }) => following !== undefined), "Bea to hear of it");
+  assert.ok(
+    difference / mine.length < 0.5,
+    `the pictures differ by ${difference / mine.length} of 255`,
+  );
+  await wait_for(
+    () => bea.heard.presence?.users.some(({ following }) => following !== undefined),
+    "Bea to hear of it",
+  );
   await open_people(bea);
-  assert.ok(await entry(bea, /owner.*follows you/).isDisabled(), "in a circle nobody gets anywhere");
+  assert.ok(
+    await entry(bea, /owner.*follows you/).isDisabled(),
+    "in a circle nobody gets anywhere",
+  );
   await bea.page.keyboard.press("Escape");
   await shot(anna, "following_1280");
 
@@ -208,11 +314,22 @@ try {
   await anna.page.setViewportSize(kPhone);
   await wait_for(() => anna.sent.camera.height > anna.sent.camera.width, "the window of the phone");
   await at_rest(anna);
-  const eye = ({ view }) => [0, 1, 2].map((c) => -[0, 1, 2].reduce((sum, row) => sum + view[4 * c + row] * view[12 + row], 0));
-  eye(anna.sent.camera).forEach((value, index) => assert.ok(Math.abs(value - eye(bea.sent.camera)[index]) < 1e-6, "another eye"));
+  const eye = ({ view }) =>
+    [0, 1, 2].map(
+      (c) => -[0, 1, 2].reduce((sum, row) => sum + view[4 * c + row] * view[12 + row], 0),
+    );
+  eye(anna.sent.camera).forEach((value, index) =>
+    assert.ok(Math.abs(value - eye(bea.sent.camera)[index]) < 1e-6, "another eye"),
+  );
   // Half the field of view across and along: tangents, of each camera.
-  const [own, other] = [anna.sent.camera, bea.sent.camera].map(({ projection }) => [1 / projection[0], 1 / projection[5]]);
-  assert.ok(Math.abs(own[0] / other[0] - 1) < 1e-6 && own[1] > other[1], `${own} does not hold ${other}`);
+  const [own, other] = [anna.sent.camera, bea.sent.camera].map(({ projection }) => [
+    1 / projection[0],
+    1 / projection[5],
+  ]);
+  assert.ok(
+    Math.abs(own[0] / other[0] - 1) < 1e-6 && own[1] > other[1],
+    `${own} does not hold ${other}`,
+  );
   await bea.page.keyboard.press("b");
   await point(at.x, at.y);
   await cursor.waitFor({ state: "attached" });
@@ -224,13 +341,22 @@ try {
   await anna.page.setViewportSize(kDesk);
   await anna.page.getByRole("button", { name: "Show the panel" }).click();
   await wait_for(() => anna.sent.camera.width > anna.sent.camera.height, "the window of the desk");
-  await wait_for(() => same_view(anna.sent.camera, bea.sent.camera), "Anna's camera to be Bea's again");
+  await wait_for(
+    () => same_view(anna.sent.camera, bea.sent.camera),
+    "Anna's camera to be Bea's again",
+  );
 
   say("a move of one's own stops it, and so does Escape");
   await at_rest(anna);
-  await anna.drag([[0.3, 0.3], [0.36, 0.32]]);
+  await anna.drag([
+    [0.3, 0.3],
+    [0.36, 0.32],
+  ]);
   await bar(anna).waitFor({ state: "detached" });
-  await wait_for(() => bea.heard.presence.users.every(({ following }) => following === undefined), "Bea to hear of it");
+  await wait_for(
+    () => bea.heard.presence.users.every(({ following }) => following === undefined),
+    "Bea to hear of it",
+  );
   assert.ok(!same_view(anna.sent.camera, bea.sent.camera));
   await choose(anna, "Follow Bea Ost");
   await wait_for(() => same_view(anna.sent.camera, bea.sent.camera), "to follow again");
@@ -241,7 +367,10 @@ try {
   await choose(bea, /Look with me/);
   await bar(bea).getByText("You asked the others to look with you").waitFor();
   await anna.page.getByText("Bea Ost asks you to look with them").waitFor();
-  await anna.page.locator("strata-notices").getByRole("button", { name: "Follow", exact: true }).click();
+  await anna.page
+    .locator("strata-notices")
+    .getByRole("button", { name: "Follow", exact: true })
+    .click();
   await bar(bea).getByText("1 person looks with you").waitFor();
   await shot(bea, "leading_1280");
   await bea.page.keyboard.press("ArrowRight");
@@ -275,7 +404,10 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries({ anna, bea })) await who.page.screenshot({ path: join(kOutput, `together_failed_${name}.png`) }).catch(() => {});
+  for (const [name, who] of Object.entries({ anna, bea }))
+    await who.page
+      .screenshot({ path: join(kOutput, `together_failed_${name}.png`) })
+      .catch(() => {});
   throw error;
 } finally {
   await anna.close();

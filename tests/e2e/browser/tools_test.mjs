@@ -1,5 +1,5 @@
-// Shapes of the brush at work: made of a picture by file and by drop, chosen by mouse and by keys, painted with, renamed, and deleted
-// by somebody else; and the limit of the slant.
+// Shapes of the brush at work: made of a picture by file and by drop, chosen by mouse and by keys,
+// painted with, renamed, and deleted by somebody else; and the limit of the slant.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -18,7 +18,8 @@ const say = (text) => console.log((step = text));
 const picker = page.locator("strata-shape-picker");
 const shape = (name) => picker.getByRole("radio", { name, exact: true });
 const dialog = page.locator("strata-shape-dialog");
-const shot = async (name, of = browser) => writeFileSync(join(kOutput, `tools-${name}.png`), await of.settled());
+const shot = async (name, of = browser) =>
+  writeFileSync(join(kOutput, `tools-${name}.png`), await of.settled());
 
 /** A dark shape on white paper. */
 function drawing(inside) {
@@ -26,13 +27,17 @@ function drawing(inside) {
   const data = new Uint8Array(side * side * 4);
   for (let y = 0; y < side; ++y)
     for (let x = 0; x < side; ++x) {
-      const level = inside((x + 0.5) * 2 / side - 1, 1 - (y + 0.5) * 2 / side) ? 20 : 255;
+      const level = inside(((x + 0.5) * 2) / side - 1, 1 - ((y + 0.5) * 2) / side) ? 20 : 255;
       data.set([level, level, level, 255], (y * side + x) * 4);
     }
   return Buffer.from(encode_png({ width: side, height: side, data }));
 }
-const star = drawing((x, y) => Math.hypot(x, y) < 0.45 + 0.4 * Math.cos(5 * (Math.atan2(y, x) - Math.PI / 2)));
-const leaf = drawing((x, y) => Math.hypot(x - 0.5, y + 0.5) < 1.15 && Math.hypot(x + 0.5, y - 0.5) < 1.15);
+const star = drawing(
+  (x, y) => Math.hypot(x, y) < 0.45 + 0.4 * Math.cos(5 * (Math.atan2(y, x) - Math.PI / 2)),
+);
+const leaf = drawing(
+  (x, y) => Math.hypot(x - 0.5, y + 0.5) < 1.15 && Math.hypot(x + 0.5, y - 0.5) < 1.15,
+);
 
 try {
   await server.start();
@@ -42,7 +47,9 @@ try {
   await page.keyboard.press("b");
   const newest = async () => {
     const layers = (await server.json("GET", "/models/demo-pot/layers")).layers;
-    const edits = await Promise.all(layers.map(({ id }) => server.json("GET", `/models/demo-pot/layers/${id}/edits?limit=1`)));
+    const edits = await Promise.all(
+      layers.map(({ id }) => server.json("GET", `/models/demo-pot/layers/${id}/edits?limit=1`)),
+    );
     return edits.flatMap(({ edits }) => edits).sort((a, b) => b.sequence - a.sequence)[0];
   };
   const paint = async (points) => {
@@ -58,7 +65,9 @@ try {
   assert.equal(await shape("Round").getAttribute("aria-checked"), "true");
 
   say("a picture becomes a shape: what of it is seen beforehand");
-  await picker.locator("input[type=file]").setInputFiles({ name: "five_pointed_star.png", mimeType: "image/png", buffer: star });
+  await picker
+    .locator("input[type=file]")
+    .setInputFiles({ name: "five_pointed_star.png", mimeType: "image/png", buffer: star });
   await dialog.getByRole("radio", { name: "Dark parts", checked: true }).waitFor();
   assert.equal(await dialog.getByLabel("Name").inputValue(), "five pointed star");
   const painted_share = () =>
@@ -75,7 +84,10 @@ try {
   await dialog.getByLabel("Name").fill("Star");
   await dialog.getByRole("button", { name: "Add shape" }).click();
   await dialog.waitFor({ state: "detached" });
-  await wait_for(async () => (await shape("Star").getAttribute("aria-checked")) === "true", "the new shape to be chosen");
+  await wait_for(
+    async () => (await shape("Star").getAttribute("aria-checked")) === "true",
+    "the new shape to be chosen",
+  );
 
   say("the pointer shows the shape, and the stroke is of it");
   await page.getByLabel("Width, px").fill("150");
@@ -91,18 +103,23 @@ try {
   await shot("painted");
 
   say("a file that is dropped becomes a shape, too");
-  const transfer = await page.evaluateHandle((bytes) => {
-    const data = new DataTransfer();
-    data.items.add(new File([new Uint8Array(bytes)], "leaf.png", { type: "image/png" }));
-    return data;
-  }, [...leaf]);
+  const transfer = await page.evaluateHandle(
+    (bytes) => {
+      const data = new DataTransfer();
+      data.items.add(new File([new Uint8Array(bytes)], "leaf.png", { type: "image/png" }));
+      return data;
+    },
+    [...leaf],
+  );
   await picker.dispatchEvent("dragover", { dataTransfer: transfer });
   await picker.dispatchEvent("drop", { dataTransfer: transfer });
   await dialog.getByRole("button", { name: "Add shape" }).click();
   await shape("leaf").waitFor();
 
   say("what is no picture is refused in plain words");
-  await picker.locator("input[type=file]").setInputFiles({ name: "notes.png", mimeType: "image/png", buffer: Buffer.from("hello") });
+  await picker
+    .locator("input[type=file]")
+    .setInputFiles({ name: "notes.png", mimeType: "image/png", buffer: Buffer.from("hello") });
   await dialog.getByText("“notes.png” is not a picture that can be read").waitFor();
   assert.equal(await dialog.getByRole("button", { name: "Add shape" }).isDisabled(), true);
   await page.keyboard.press("Escape");
@@ -122,7 +139,10 @@ try {
   await limit.check();
   await page.getByLabel("Largest angle between").fill("35");
   await page.keyboard.press("Tab");
-  const facing = await paint([[0.45, 0.5], [0.62, 0.5]]);
+  const facing = await paint([
+    [0.45, 0.5],
+    [0.62, 0.5],
+  ]);
   assert.equal(facing.max_angle_deg, 35);
   await shot("slant");
   await page.getByLabel("Also what is hidden behind").check();
@@ -168,20 +188,36 @@ try {
   await page.keyboard.press("Escape");
 
   say("on a phone the shapes are chosen by touch");
-  const phone = await Browser.open({ viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true });
+  const phone = await Browser.open({
+    viewport: { width: 390, height: 844 },
+    deviceScaleFactor: 2,
+    hasTouch: true,
+    isMobile: true,
+  });
   try {
     await phone.sign_in(server, server.token);
     await phone.page.goto(`${server.url}/models/1`);
     await phone.drawn();
-    await phone.page.getByRole("button", { name: /^Brush/ }).first().tap();
+    await phone.page
+      .getByRole("button", { name: /^Brush/ })
+      .first()
+      .tap();
     await phone.page.getByRole("button", { name: "Show the panel" }).tap();
     const shapes = phone.page.locator("strata-shape-picker");
-    await shapes.locator("input[type=file]").setInputFiles({ name: "leaf.png", mimeType: "image/png", buffer: leaf });
+    await shapes
+      .locator("input[type=file]")
+      .setInputFiles({ name: "leaf.png", mimeType: "image/png", buffer: leaf });
     await phone.page.getByRole("button", { name: "Add shape" }).tap();
     await shapes.getByRole("radio", { name: "Square", exact: true }).tap();
-    assert.equal(await shapes.getByRole("radio", { name: "Square", exact: true }).getAttribute("aria-checked"), "true");
+    assert.equal(
+      await shapes.getByRole("radio", { name: "Square", exact: true }).getAttribute("aria-checked"),
+      "true",
+    );
     await shapes.getByRole("radio", { name: "leaf", exact: true }).tap();
-    assert.equal(await shapes.getByRole("radio", { name: "leaf", exact: true }).getAttribute("aria-checked"), "true");
+    assert.equal(
+      await shapes.getByRole("radio", { name: "leaf", exact: true }).getAttribute("aria-checked"),
+      "true",
+    );
     await shapes.scrollIntoViewIfNeeded();
     await shot("phone", phone);
     phone.assert_no_complaints();

@@ -1,5 +1,7 @@
-// Tours on the page: made of kept views, translated, put in another order, tried on the model; what somebody else saved meanwhile, and what the server refuses,
-// is told where it belongs and loses nothing. Links for kiosks: shown once, asked to reload, revoked. On a phone, too. Who does not curate is offered none of it.
+// Tours on the page: made of kept views, translated, put in another order, tried on the model; what
+// somebody else saved meanwhile, and what the server refuses, is told where it belongs and loses
+// nothing. Links for kiosks: shown once, asked to reload, revoked. On a phone, too. Who does not
+// curate is offered none of it.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
@@ -7,15 +9,21 @@ import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
 const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
-const kExpected = ["status of 412", "status of 422", "status of 404"]; // answers that the test wants
+// answers that the test wants
+const kExpected = ["status of 412", "status of 422", "status of 404"];
 
-const [ada, bea, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ ...kPhone, colorScheme: "dark" })];
+const [ada, bea, phone] = [
+  await Browser.open(),
+  await Browser.open(),
+  await Browser.open({ ...kPhone, colorScheme: "dark" }),
+];
 const server = new StrataServer({ demo: true });
 let step = "start";
 const say = (text) => console.log((step = text));
 
 const shot = async ({ page }, name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `tours_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `tours_${name}.png`) });
 };
 const exact = (name) => ({ name, exact: true });
 const list = ({ page }) => page.locator("strata-tour-list");
@@ -27,16 +35,21 @@ const trial = (who) => editor(who).locator("strata-tour-trial");
 const kiosks = ({ page }) => page.locator("strata-kiosks-dialog");
 const button = (where, name) => where.getByRole("button", exact(name));
 const gone = (locator) => locator.waitFor({ state: "detached" });
-const titles = async (who) => (await stops(who).locator("li b").allTextContents()).map((text) => text.trim());
+const titles = async (who) =>
+  (await stops(who).locator("li b").allTextContents()).map((text) => text.trim());
 const tours = async () => (await server.json("GET", `${kBase}/tours`)).tours;
 const tour = (slug) => server.json("GET", `${kBase}/tours/${slug}`);
 const choose_stop = (who, title) => stops(who).locator("button.stop", { hasText: title }).click();
 const of_stop = async (who, title, item) => {
-  await stops(who).getByRole("button", exact(`Options for ${title}`)).click();
+  await stops(who)
+    .getByRole("button", exact(`Options for ${title}`))
+    .click();
   await stops(who).getByRole("menuitem", exact(item)).click();
 };
 const from_menu = async (who, name, item) => {
-  await row(who, name).getByRole("button", exact(`Options for ${name}`)).click();
+  await row(who, name)
+    .getByRole("button", exact(`Options for ${name}`))
+    .click();
   await row(who, name).getByRole("menuitem", exact(item)).click();
 };
 const save = (who) => button(editor(who), "Save").click();
@@ -46,10 +59,13 @@ const listed = ({ page }) => page.getByRole("link", { name: /Demo pot/ });
 const path_of = ({ page }) => new URL(page.url()).pathname;
 const home = ({ page }) => page.getByRole("link", exact("All models")).click();
 /** Until the page was told. */
-const back = ({ page }) => page.evaluate(() => new Promise((resolve) => {
-  addEventListener("popstate", resolve, { once: true });
-  history.back();
-}).then(() => {}));
+const back = ({ page }) =>
+  page.evaluate(() =>
+    new Promise((resolve) => {
+      addEventListener("popstate", resolve, { once: true });
+      history.back();
+    }).then(() => {}),
+  );
 const from_account = async (who, item) => {
   await button(who.page, "Account of ada").click();
   await who.page.getByRole("menuitem", exact(item)).click();
@@ -79,21 +95,33 @@ let id;
 
 try {
   await server.start();
-  id = (await server.json("PATCH", kBase, { scale_verified: true })).id; // or curators are asked for it
+  // or curators are asked for it
+  id = (await server.json("PATCH", kBase, { scale_verified: true })).id;
   const layers = (await server.json("GET", `${kBase}/layers`)).layers;
   const { project } = await server.json("GET", kBase);
-  const columns = [{ name: "Name", kind: "text", required: true }, { name: "State", kind: "text" }];
-  const pieces = await server.json("POST", `/projects/${project}/tables`, { name: "Pieces", columns });
-  for (const name of ["Handle", "Rim"]) await server.json("POST", `/tables/${pieces.id}/records`, { values: { name, state: "whole" } });
+  const columns = [
+    { name: "Name", kind: "text", required: true },
+    { name: "State", kind: "text" },
+  ];
+  const pieces = await server.json("POST", `/projects/${project}/tables`, {
+    name: "Pieces",
+    columns,
+  });
+  for (const name of ["Handle", "Rim"])
+    await server.json("POST", `/tables/${pieces.id}/records`, { values: { name, state: "whole" } });
   await ada.sign_in(server, await server.add_person("ada", "curator"));
   await bea.sign_in(server, await server.add_person("bea", "annotator"));
   await phone.sign_in(server, await server.add_person("cleo", "curator"));
 
   say("a tour needs views, and says how they are had");
   await open_panel(ada);
-  await list(ada).getByText(/^None is made yet/).waitFor();
+  await list(ada)
+    .getByText(/^None is made yet/)
+    .waitFor();
   await button(list(ada), "New tour…").click();
-  await editor(ada).getByText(/^No view is kept yet/).waitFor();
+  await editor(ada)
+    .getByText(/^No view is kept yet/)
+    .waitFor();
   await shot(ada, "no_views");
   await button(editor(ada), "Cancel").click(); // nothing was written: nothing is asked
   await gone(editor(ada));
@@ -111,14 +139,26 @@ try {
   await refused(ada, /^Add a stop/);
   for (const [index, name] of ["West wall", "From above", "The handle"].entries()) {
     await button(stops(ada), "Add a stop").click();
-    await stops(ada).locator("li b").nth(index).getByText(`${index + 1}. ${name}`).waitFor();
+    await stops(ada)
+      .locator("li b")
+      .nth(index)
+      .getByText(`${index + 1}. ${name}`)
+      .waitFor();
   }
   await fields(ada).getByLabel("Title", { exact: true }).fill("");
   await save(ada);
   await refused(ada, "Give the stop a title in the first language.");
-  await wait_for(() => fields(ada).getByLabel("Title", { exact: true }).evaluate((input) => input.getRootNode().activeElement === input), "the title to have the focus");
+  await wait_for(
+    () =>
+      fields(ada)
+        .getByLabel("Title", { exact: true })
+        .evaluate((input) => input.getRootNode().activeElement === input),
+    "the title to have the focus",
+  );
   await fields(ada).getByLabel("Title", { exact: true }).fill("The handle");
-  await fields(ada).getByLabel("Text", { exact: true }).fill("Made apart, and set on when the wall was dry.");
+  await fields(ada)
+    .getByLabel("Text", { exact: true })
+    .fill("Made apart, and set on when the wall was dry.");
   await fields(ada).getByLabel("Shown while it plays by itself").fill("0");
   await save(ada);
   await refused(ada, "Seconds from 1 to 600.");
@@ -127,35 +167,51 @@ try {
   await editor(ada).getByLabel("Without a touch it begins anew after").fill("90");
 
   say("layers and records are chosen in an order, with columns that are called otherwise");
-  await fields(ada).getByRole("combobox", exact("Add a layer")).selectOption({ label: layers[0].name });
+  await fields(ada)
+    .getByRole("combobox", exact("Add a layer"))
+    .selectOption({ label: layers[0].name });
   await button(fields(ada), "Add a layer").click();
   await button(fields(ada), "Add a layer").click();
-  await fields(ada).getByRole("list", exact("Layers to swipe between")).getByRole("button", { name: /^Move .* up$/ }).last().click();
+  await fields(ada)
+    .getByRole("list", exact("Layers to swipe between"))
+    .getByRole("button", { name: /^Move .* up$/ })
+    .last()
+    .click();
   await button(fields(ada), "Add a table").click();
   await fields(ada).getByRole("combobox", exact("Records of Pieces")).fill("Rim");
   await fields(ada).getByRole("option", { name: "Rim" }).click();
   await ada.page.keyboard.press("Tab");
   await fields(ada).getByRole("combobox", exact("Add a column")).selectOption({ label: "State" });
   await button(fields(ada), "Add a column").click();
-  await fields(ada).getByLabel(/^What State is called on the card/).fill("Condition");
+  await fields(ada)
+    .getByLabel(/^What State is called on the card/)
+    .fill("Condition");
   await shot(ada, "things");
   await save(ada);
   await gone(editor(ada));
   await row(ada, "Around the pot").getByText("3 stops · en").waitFor();
   const made = await tour("around-the-pot");
-  assert.deepEqual([made.languages, made.idle_s, made.stops.map(({ view }) => view)], [["en"], 90, ["west-wall", "from-above", "the-handle"]]);
+  assert.deepEqual(
+    [made.languages, made.idle_s, made.stops.map(({ view }) => view)],
+    [["en"], 90, ["west-wall", "from-above", "the-handle"]],
+  );
   const last = made.stops[2];
   assert.equal(last.attract_s, 12.5);
   assert.equal(last.layers.length, 2);
   assert.equal(last.layers[1], layers[0].slug);
-  assert.deepEqual(last.records, [{ table: "pieces", keys: [2], columns: [{ column: "state", labels: { en: "Condition" } }] }]);
+  assert.deepEqual(last.records, [
+    { table: "pieces", keys: [2], columns: [{ column: "state", labels: { en: "Condition" } }] },
+  ]);
 
   say("stops are put in another order, taken out and brought back");
   await row(ada, "Around the pot").locator("button.open").click();
   await stops(ada).locator("li").nth(2).waitFor();
   await of_stop(ada, "The handle", "Move up");
   assert.deepEqual(await titles(ada), ["1. West wall", "2. The handle", "3. From above"]);
-  await stops(ada).locator("li .grip").nth(2).dragTo(stops(ada).locator("li").nth(0), { targetPosition: { x: 60, y: 6 } });
+  await stops(ada)
+    .locator("li .grip")
+    .nth(2)
+    .dragTo(stops(ada).locator("li").nth(0), { targetPosition: { x: 60, y: 6 } });
   assert.deepEqual(await titles(ada), ["1. From above", "2. West wall", "3. The handle"]);
   await of_stop(ada, "West wall", "Remove the stop");
   assert.deepEqual(await titles(ada), ["1. From above", "2. The handle"]);
@@ -165,29 +221,41 @@ try {
   assert.deepEqual(await titles(ada), ["1. From above", "2. West wall", "3. The handle"]);
 
   say("it is translated, and what lacks is marked");
-  await editor(ada).getByRole("combobox", exact("Add a language")).selectOption({ label: "Spanish" });
+  await editor(ada)
+    .getByRole("combobox", exact("Add a language"))
+    .selectOption({ label: "Spanish" });
   await button(editor(ada).locator("strata-tour-languages"), "Add a language").click();
-  await stops(ada).locator("li", { hasText: "From above" }).getByText("Not complete in: Spanish").waitFor();
+  await stops(ada)
+    .locator("li", { hasText: "From above" })
+    .getByText("Not complete in: Spanish")
+    .waitFor();
   await choose_stop(ada, "The handle");
   await fields(ada).getByLabel("Title, Spanish").fill("El asa");
   await fields(ada).getByText("Not complete in this language").waitFor(); // the text
   await fields(ada).getByLabel("Text, Spanish").fill("Hecha aparte.");
-  await gone(stops(ada).locator("li", { hasText: "The handle" }).getByText("Not complete in: Spanish"));
+  await gone(
+    stops(ada).locator("li", { hasText: "The handle" }).getByText("Not complete in: Spanish"),
+  );
   await fields(ada).getByLabel("What State is called on the card, Spanish").fill("Estado");
-  await editor(ada).getByRole("combobox", exact("Add a language")).selectOption({ label: "German" });
+  await editor(ada)
+    .getByRole("combobox", exact("Add a language"))
+    .selectOption({ label: "German" });
   await button(editor(ada).locator("strata-tour-languages"), "Add a language").click();
   await fields(ada).getByLabel("Title, German").fill("Der Henkel");
   await fields(ada).getByRole("radio", { name: "Spanish" }).click();
   assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
   await shot(ada, "translated");
-  for (const [width, height, name] of [[820, 1180, "tablet"], [390, 844, "narrow"]]) {
+  for (const [width, height, name] of [
+    [820, 1180, "tablet"],
+    [390, 844, "narrow"],
+  ]) {
     await ada.page.setViewportSize({ width, height });
     await shot(ada, name);
   }
   await ada.page.setViewportSize({ width: 1280, height: 800 });
   await button(editor(ada), "Remove German").click();
   await button(question(ada), "Cancel").click();
-  assert.equal(await fields(ada).getByRole("radio").count() > 0, true);
+  assert.equal((await fields(ada).getByRole("radio").count()) > 0, true);
   await button(editor(ada), "Remove German").click();
   await button(question(ada), "Remove").click();
   await gone(button(editor(ada), "Remove German"));
@@ -195,7 +263,17 @@ try {
   say("a stop is tried on the model, and the editor comes back as it was left");
   await button(fields(ada), "Try the stop").click();
   await trial(ada).getByText("Made apart, and set on when the wall was dry.").waitFor();
-  await wait_for(async () => (await ada.page.locator('strata-view-list button.go[aria-current="true"]').textContent().catch(() => "")).includes("The handle"), "the stop's view", 400);
+  await wait_for(
+    async () =>
+      (
+        await ada.page
+          .locator('strata-view-list button.go[aria-current="true"]')
+          .textContent()
+          .catch(() => "")
+      ).includes("The handle"),
+    "the stop's view",
+    400,
+  );
   await shot(ada, "trial");
   await button(trial(ada), "Stop before").click();
   await trial(ada).getByText("2. West wall").waitFor();
@@ -213,7 +291,9 @@ try {
   await gone(question(ada));
   assert.equal(await fields(ada).getByLabel("Title, Spanish").inputValue(), "El asa");
 
-  say("leaving the page asks as well while a stop is tried: by its links, back, signing out and loading it anew");
+  say(
+    "leaving the page asks as well while a stop is tried: by its links, back, signing out and loading it anew",
+  );
   await button(fields(ada), "Try the stop").click();
   const ways = { home, back, sign_out: (who) => from_account(who, "Sign out") };
   for (const [name, leave] of Object.entries(ways)) {
@@ -225,7 +305,10 @@ try {
     assert.equal(path_of(ada), `/models/${id}`, name);
     await trial(ada).getByText("3. The handle").waitFor();
   }
-  const [asked] = await Promise.all([ada.page.waitForEvent("dialog"), ada.page.evaluate(() => void setTimeout(() => location.reload()))]);
+  const [asked] = await Promise.all([
+    ada.page.waitForEvent("dialog"),
+    ada.page.evaluate(() => void setTimeout(() => location.reload())),
+  ]);
   assert.equal(asked.type(), "beforeunload");
   await asked.dismiss();
   await button(trial(ada), "Back to the tour").click();
@@ -247,9 +330,14 @@ try {
   await save(ada);
   await gone(editor(ada));
   const again = await tour("around-the-pot");
-  assert.deepEqual([again.name, again.languages, again.stops.map(({ view }) => view)], ["Around the pot", ["en", "es"], ["from-above", "west-wall", "the-handle"]]);
+  assert.deepEqual(
+    [again.name, again.languages, again.stops.map(({ view }) => view)],
+    ["Around the pot", ["en", "es"], ["from-above", "west-wall", "the-handle"]],
+  );
   assert.deepEqual(again.stops[2].title, { en: "The handle", es: "El asa" });
-  assert.deepEqual(again.stops[2].records[0].columns, [{ column: "state", labels: { en: "Condition", es: "Estado" } }]);
+  assert.deepEqual(again.stops[2].records[0].columns, [
+    { column: "state", labels: { en: "Condition", es: "Estado" } },
+  ]);
 
   say("who says yes is where they wanted to be, and without changes nothing is asked");
   for (const leave of [home, back]) {
@@ -282,7 +370,10 @@ try {
     return route.continue({ postData: JSON.stringify(body) });
   });
   await save(ada);
-  await wait_for(async () => (await fields(ada).getByLabel("Title, English").inputValue()) === "The handle", "the stop that was refused");
+  await wait_for(
+    async () => (await fields(ada).getByLabel("Title, English").inputValue()) === "The handle",
+    "the stop that was refused",
+  );
   await fields(ada).getByRole("alert").waitFor();
   await shot(ada, "server_refusal");
   await ada.page.unroute(`**/tours/${again.id}`);
@@ -293,20 +384,35 @@ try {
     return route.continue({ postData: JSON.stringify(body) });
   });
   await save(ada);
-  await wait_for(async () => (await fields(ada).getByLabel("Title, Spanish").getAttribute("aria-invalid")) === "true", "the title in Spanish to be refused");
+  await wait_for(
+    async () =>
+      (await fields(ada).getByLabel("Title, Spanish").getAttribute("aria-invalid")) === "true",
+    "the title in Spanish to be refused",
+  );
   assert.equal(await fields(ada).getByLabel("Title, English").inputValue(), "West wall");
   await ada.page.unroute(`**/tours/${again.id}`);
 
   say("a stop whose view is gone is marked, and says what to do");
   const views = (await server.json("GET", `${kBase}/views`)).views;
-  await server.request("DELETE", `${kBase}/views/${views.find(({ slug }) => slug === "west-wall").id}`);
-  await stops(ada).locator("li", { hasText: "West wall" }).getByText("Its view was deleted").waitFor();
-  await fields(ada).getByText(/^The view of this stop was deleted/).waitFor();
+  await server.request(
+    "DELETE",
+    `${kBase}/views/${views.find(({ slug }) => slug === "west-wall").id}`,
+  );
+  await stops(ada)
+    .locator("li", { hasText: "West wall" })
+    .getByText("Its view was deleted")
+    .waitFor();
+  await fields(ada)
+    .getByText(/^The view of this stop was deleted/)
+    .waitFor();
   await shot(ada, "view_gone");
   await fields(ada).getByRole("combobox", exact("View")).selectOption({ label: "From above" });
   await save(ada);
   await gone(editor(ada));
-  assert.deepEqual((await tour("around-the-pot")).stops.map(({ view }) => view), ["from-above", "from-above", "the-handle"]);
+  assert.deepEqual(
+    (await tour("around-the-pot")).stops.map(({ view }) => view),
+    ["from-above", "from-above", "the-handle"],
+  );
 
   say("a link for a kiosk is made, and shown once");
   await from_menu(ada, "Around the pot", "Kiosk links…");
@@ -317,12 +423,17 @@ try {
   await kiosks(ada).getByLabel("Where the screen stands").fill("Entrance hall");
   await kiosks(ada).getByLabel("Good for").fill("4000");
   await button(kiosks(ada), "Make link").click();
-  await kiosks(ada).getByText(/^A whole number of days/).waitFor();
+  await kiosks(ada)
+    .getByText(/^A whole number of days/)
+    .waitFor();
   await kiosks(ada).getByLabel("Good for").fill("30");
   await button(kiosks(ada), "Make link").click();
   const link_field = kiosks(ada).getByLabel("Link for “Entrance hall”");
   const link = await link_field.inputValue();
-  assert.ok(await link_field.evaluate((field) => field === field.getRootNode().activeElement), "the keyboard is where the form was, and the link chosen");
+  assert.ok(
+    await link_field.evaluate((field) => field === field.getRootNode().activeElement),
+    "the keyboard is where the form was, and the link chosen",
+  );
   assert.match(link, /^http:\/\/[^/]+\/kiosk\/.+$/);
   await kiosks(ada).getByRole("listitem").getByText("not opened yet").waitFor();
   await shot(ada, "kiosk_made");
@@ -333,7 +444,11 @@ try {
 
   say("who sees to kiosks finds all of them in their menu: seen, asked to reload, revoked");
   const secret = link.split("/").pop();
-  const as_kiosk = (path, how = {}) => fetch(`${server.url}/api/v1${path}`, { ...how, headers: { Authorization: `Bearer ${secret}`, ...how.headers } });
+  const as_kiosk = (path, how = {}) =>
+    fetch(`${server.url}/api/v1${path}`, {
+      ...how,
+      headers: { Authorization: `Bearer ${secret}`, ...how.headers },
+    });
   assert.equal((await as_kiosk("/kiosk")).status, 200);
   await button(ada.page, "Account of ada").click();
   await ada.page.getByRole("menuitem", exact("Kiosks…")).click();
@@ -374,7 +489,8 @@ try {
   await save(phone);
   await gone(editor(phone));
   assert.equal((await tour("around-the-pot")).stops[2].title.es, "El asa de la vasija");
-  await phone.page.getByRole("button", { name: "Show the panel" }).tap(); // it made way for the model
+  // it made way for the model
+  await phone.page.getByRole("button", { name: "Show the panel" }).tap();
   await row(phone, "Around the pot").scrollIntoViewIfNeeded();
   await from_menu(phone, "Around the pot", "Kiosk links…");
   await kiosks(phone).getByText("revoked", { exact: true }).waitFor();
@@ -398,10 +514,15 @@ try {
   await refused(ada, /^This tour was deleted meanwhile/);
   await save(ada);
   await gone(editor(ada));
-  assert.deepEqual((await tours()).map(({ name }) => name), ["Once more"]);
+  assert.deepEqual(
+    (await tours()).map(({ name }) => name),
+    ["Once more"],
+  );
   await from_menu(ada, "Once more", "Delete…");
   await button(question(ada), "Delete").click();
-  await list(ada).getByText(/^None is made yet/).waitFor();
+  await list(ada)
+    .getByText(/^None is made yet/)
+    .waitFor();
   assert.deepEqual(await tours(), []);
 
   say("the end");
@@ -410,7 +531,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ ada, bea, phone })) await shot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ ada, bea, phone }))
+    await shot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of [ada, bea, phone]) await who.close();

@@ -1,5 +1,5 @@
-// The View panel at work: looks, light and section change the picture of this person alone, by mouse and by keys, and a brush
-// paints what the section leaves to be seen.
+// The View panel at work: looks, light and section change the picture of this person alone, by
+// mouse and by keys, and a brush paints what the section leaves to be seen.
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -19,7 +19,8 @@ const kCyan = [0, 200, 255]; // nothing on the pot has this hue
 const panel = page.locator("strata-view-panel");
 const radio = (name) => panel.getByRole("radio", { name, exact: true });
 const stage = async () => browser.picture(await browser.stage_box());
-const shot = async (name) => writeFileSync(join(kOutput, `view-${name}.png`), await browser.settled());
+const shot = async (name) =>
+  writeFileSync(join(kOutput, `view-${name}.png`), await browser.settled());
 const brightness = ({ data, width, height }, from, to) => {
   let sum = 0;
   for (let y = Math.round(height * 0.62); y < height * 0.75; ++y)
@@ -34,7 +35,8 @@ try {
   for (let at = 0; at < cyan.data.length; at += 4) cyan.data.set([...kCyan, 255], at);
 
   for (const { id } of (await server.json("GET", "/models/demo-pot/layers")).layers)
-    await server.json("PATCH", `/models/demo-pot/layers/${id}`, { visible: false }); // they would hide what lies below
+    // they would hide what lies below
+    await server.json("PATCH", `/models/demo-pot/layers/${id}`, { visible: false });
 
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
@@ -47,7 +49,11 @@ try {
   await radio("Museum").waitFor();
 
   say("a picture that is added is shown, and blends by its slider");
-  await panel.locator("input[type=file]").setInputFiles({ name: "UV light.png", mimeType: "image/png", buffer: Buffer.from(encode_png(cyan)) });
+  await panel.locator("input[type=file]").setInputFiles({
+    name: "UV light.png",
+    mimeType: "image/png",
+    buffer: Buffer.from(encode_png(cyan)),
+  });
   await panel.getByText("UV light").waitFor();
   await wait_for(async () => (await browser.count(kCyan)) > 20_000, "the look on the pot", 150);
   await shot("look");
@@ -89,13 +95,21 @@ try {
   };
   const uncut = inside(await stage()); // some of the clay has that colour, too
   await panel.getByLabel("Position of the cut").fill("500");
-  await wait_for(async () => inside(await stage()) > 3 * uncut + 3000, "the wall to be shown cut", 150);
+  await wait_for(
+    async () => inside(await stage()) > 3 * uncut + 3000,
+    "the wall to be shown cut",
+    150,
+  );
   await page.keyboard.press("b");
   await shot("section");
   const layer = (await server.json("GET", "/models/demo-pot/layers")).layers.at(-1);
-  const edits = async () => (await server.json("GET", `/models/demo-pot/layers/${layer.id}/edits?limit=1000`)).total;
+  const edits = async () =>
+    (await server.json("GET", `/models/demo-pot/layers/${layer.id}/edits?limit=1000`)).total;
   const known = await edits();
-  await browser.drag([[0.46, 0.55], [0.54, 0.6]]);
+  await browser.drag([
+    [0.46, 0.55],
+    [0.54, 0.6],
+  ]);
   await browser.saved();
   assert.ok((await edits()) > known);
   await page.keyboard.press("v");
@@ -122,7 +136,12 @@ try {
   await wait_for(async () => inside(await stage()) < 2 * uncut + 1000, "the whole pot", 150);
 
   say("on a phone the panel is in the sheet");
-  const phone = await Browser.open({ viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true });
+  const phone = await Browser.open({
+    viewport: { width: 390, height: 844 },
+    deviceScaleFactor: 2,
+    hasTouch: true,
+    isMobile: true,
+  });
   try {
     await phone.sign_in(server, server.token);
     await phone.page.goto(`${server.url}/models/1`);

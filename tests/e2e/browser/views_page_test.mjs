@@ -1,5 +1,6 @@
-// Named views on the page: kept, gone to and left again; by their link in somebody else's browser; named, shown otherwise and deleted, which others see at
-// once; by mouse, keyboard and finger. Who may only look is not offered to change them.
+// Named views on the page: kept, gone to and left again; by their link in somebody else's browser;
+// named, shown otherwise and deleted, which others see at once; by mouse, keyboard and finger. Who
+// may only look is not offered to change them.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
@@ -9,13 +10,18 @@ const kBase = "/models/demo-pot";
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const kExpected = ["status of 412"]; // answers that the test wants
 
-const [ada, bea, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ ...kPhone, colorScheme: "dark" })];
+const [ada, bea, phone] = [
+  await Browser.open(),
+  await Browser.open(),
+  await Browser.open({ ...kPhone, colorScheme: "dark" }),
+];
 const server = new StrataServer({ demo: true });
 let step = "start";
 const say = (text) => console.log((step = text));
 
 const shot = async ({ page }, name) => {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `views_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `views_${name}.png`) });
 };
 const panel = ({ page }) => page.locator("strata-view-panel");
 const list = ({ page }) => page.locator("strata-view-list");
@@ -24,23 +30,37 @@ const go = (who, name) => row(who, name).locator("button.go");
 const dialog = ({ page }) => page.locator("strata-view-dialog");
 const notice = ({ page }, text) => page.locator("strata-notices .notice", { hasText: text });
 const radio = (who, name) => panel(who).getByRole("radio", { name, exact: true });
-const is_chosen = async (who, name) => (await radio(who, name).getAttribute("aria-checked")) === "true";
+const is_chosen = async (who, name) =>
+  (await radio(who, name).getAttribute("aria-checked")) === "true";
 const gone = (locator) => locator.waitFor({ state: "detached" });
 const views = async () => (await server.json("GET", `${kBase}/views`)).views;
 const from_menu = async (who, name, item) => {
-  await row(who, name).getByRole("button", { name: `Options for ${name}` }).click();
+  await row(who, name)
+    .getByRole("button", { name: `Options for ${name}` })
+    .click();
   await row(who, name).getByRole("menuitem", { name: item, exact: true }).click();
 };
-const is_current = (who, name) => wait_for(async () => (await go(who, name).getAttribute("aria-current")) === "true", `${name} to be the view that is seen`);
+const is_current = (who, name) =>
+  wait_for(
+    async () => (await go(who, name).getAttribute("aria-current")) === "true",
+    `${name} to be the view that is seen`,
+  );
 /** The picture of the model once it no longer changes, without what lies over it. */
 const picture = ({ page }) => {
   let last = null;
-  return wait_for(async () => {
-    const now = await page.locator("strata-stage canvas").first().evaluate((canvas) => canvas.toDataURL());
-    const same = now === last;
-    last = now;
-    return same ? now : null;
-  }, "the picture to settle", 400);
+  return wait_for(
+    async () => {
+      const now = await page
+        .locator("strata-stage canvas")
+        .first()
+        .evaluate((canvas) => canvas.toDataURL());
+      const same = now === last;
+      last = now;
+      return same ? now : null;
+    },
+    "the picture to settle",
+    400,
+  );
 };
 const becomes = (who, wanted, what) => wait_for(async () => (await picture(who)) === wanted, what);
 const surface = (who) => who.page.locator("strata-stage .surface").focus();
@@ -58,21 +78,27 @@ let id;
 try {
   await server.start();
   const layers = (await server.json("GET", `${kBase}/layers`)).layers;
-  id = (await server.json("PATCH", kBase, { scale_verified: true })).id; // or curators are asked for it
+  // or curators are asked for it
+  id = (await server.json("PATCH", kBase, { scale_verified: true })).id;
   await ada.sign_in(server, await server.add_person("ada", "annotator"));
   await bea.sign_in(server, await server.add_person("bea", "annotator"));
   await phone.sign_in(server, await server.add_person("vera", "viewer"));
-  await ada.page.context().grantPermissions(["clipboard-read", "clipboard-write"], { origin: server.url });
+  await ada.page
+    .context()
+    .grantPermissions(["clipboard-read", "clipboard-write"], { origin: server.url });
 
   say("what is seen is kept under a name, and others have it at once");
   await open_model(ada);
   await open_model(bea);
   await open_panel(ada);
   await open_panel(bea);
-  await list(ada).getByText(/^None is kept yet/).waitFor();
+  await list(ada)
+    .getByText(/^None is kept yet/)
+    .waitFor();
   await shot(ada, "empty");
   await surface(ada);
-  for (const key of ["4", "ArrowUp", "ArrowRight", "+", "+", "o"]) await ada.page.keyboard.press(key);
+  for (const key of ["4", "ArrowUp", "ArrowRight", "+", "+", "o"])
+    await ada.page.keyboard.press(key);
   await radio(ada, "Raking").click();
   await radio(ada, "X").click();
   await panel(ada).getByLabel("Position of the cut").fill("620");
@@ -80,19 +106,34 @@ try {
   const kept = await picture(ada);
   await list(ada).getByRole("button", { name: "Keep this view…" }).click();
   await dialog(ada).getByRole("button", { name: "Keep", exact: true }).click();
-  assert.equal(await dialog(ada).getByLabel("Name").evaluate((input) => input.validity.valueMissing), true);
+  assert.equal(
+    await dialog(ada)
+      .getByLabel("Name")
+      .evaluate((input) => input.validity.valueMissing),
+    true,
+  );
   await dialog(ada).getByLabel("Name").fill("West wall");
-  await dialog(ada).getByLabel("What is to be seen").fill("The breaks of the rim, cut open.\nIn raking light from the left.");
+  await dialog(ada)
+    .getByLabel("What is to be seen")
+    .fill("The breaks of the rim, cut open.\nIn raking light from the left.");
   await shot(ada, "keep");
   await dialog(ada).getByRole("button", { name: "Keep", exact: true }).click();
   await gone(dialog(ada));
   await go(bea, "West wall").waitFor();
   await is_current(ada, "West wall");
   const [made] = await views();
-  assert.deepEqual([made.name, made.slug, made.user, made.light.mode, made.camera.section.length], ["West wall", "west-wall", "ada", "raking", 1]);
-  assert.deepEqual(made.layers.map(({ layer, visible }) => [layer, visible]).sort(), layers.map(({ id: layer, visible }, index) => [layer, index > 0 && visible]).sort());
+  assert.deepEqual(
+    [made.name, made.slug, made.user, made.light.mode, made.camera.section.length],
+    ["West wall", "west-wall", "ada", "raking", 1],
+  );
+  assert.deepEqual(
+    made.layers.map(({ layer, visible }) => [layer, visible]).sort(),
+    layers.map(({ id: layer, visible }, index) => [layer, index > 0 && visible]).sort(),
+  );
 
-  say("going elsewhere and back to it shows the same pixels, and leads back to what was seen before");
+  say(
+    "going elsewhere and back to it shows the same pixels, and leads back to what was seen before",
+  );
   await surface(ada);
   for (const key of ["p", "Home", "ArrowLeft", "ArrowLeft"]) await ada.page.keyboard.press(key);
   await panel(ada).getByRole("button", { name: "Reset" }).click();
@@ -127,18 +168,25 @@ try {
   await bea.page.getByRole("button", { name: `Show ${layers[0].name}` }).waitFor();
   await surface(bea);
   await bea.page.keyboard.press("ArrowLeft");
-  await wait_for(async () => !bea.page.url().includes("#"), "the address to name no view that is not seen");
+  await wait_for(
+    async () => !bea.page.url().includes("#"),
+    "the address to name no view that is not seen",
+  );
 
   say("it gets another name, and its link goes on");
   await from_menu(ada, "West wall", "Rename and describe…");
   assert.equal(await dialog(ada).getByLabel("Name").inputValue(), "West wall");
   await dialog(ada).getByLabel("Name").fill("North wall");
   await ada.page.route("**/views/*", async (route) => {
-    if (route.request().method() === "PATCH") await server.json("PATCH", `${kBase}/views/${made.id}`, { name: "East wall" });
+    if (route.request().method() === "PATCH")
+      await server.json("PATCH", `${kBase}/views/${made.id}`, { name: "East wall" });
     await route.continue();
   });
   await dialog(ada).getByRole("button", { name: "Save" }).click();
-  await dialog(ada).getByRole("alert").getByText(/changed this view meanwhile; it is called “East wall” now/).waitFor();
+  await dialog(ada)
+    .getByRole("alert")
+    .getByText(/changed this view meanwhile; it is called “East wall” now/)
+    .waitFor();
   await shot(ada, "stale");
   await ada.page.unroute("**/views/*");
   assert.equal(await dialog(ada).getByLabel("Name").inputValue(), "North wall");
@@ -149,7 +197,10 @@ try {
 
   say("who did not make it is offered its link alone");
   await row(bea, "North wall").getByRole("button", { name: "Options for North wall" }).click();
-  assert.deepEqual(await row(bea, "North wall").getByRole("menuitem").allTextContents(), ["Copy the link", "Figure of this view…"]);
+  assert.deepEqual(await row(bea, "North wall").getByRole("menuitem").allTextContents(), [
+    "Copy the link",
+    "Figure of this view…",
+  ]);
   await shot(bea, "menu");
   await bea.page.keyboard.press("Escape");
 
@@ -158,14 +209,27 @@ try {
   await notice(ada, "“North wall” now shows what you see.").waitFor();
   assert.equal((await views())[0].light.mode, "museum");
   await is_current(ada, "North wall");
-  await notice(ada, "“North wall” now shows what you see.").getByRole("button", { name: "Undo" }).click();
+  await notice(ada, "“North wall” now shows what you see.")
+    .getByRole("button", { name: "Undo" })
+    .click();
   await wait_for(async () => (await views())[0].light.mode === "raking", "what it showed before");
 
   say("a section that is none of the page's own is kept as it is, and can be turned off");
   const [view] = await views();
   const { id: _i, slug: _s, user: _u, time: _t, version: _v, ...content } = view;
-  const oblique = { ...content.camera, section: [[0.6, 0.6, 0.5, -30], [-0.6, 0.6, -0.5, 1000]] };
-  await server.json("POST", `${kBase}/views`, { ...content, name: "Oblique", text: "", camera: oblique });
+  const oblique = {
+    ...content.camera,
+    section: [
+      [0.6, 0.6, 0.5, -30],
+      [-0.6, 0.6, -0.5, 1000],
+    ],
+  };
+  await server.json("POST", `${kBase}/views`, {
+    ...content,
+    name: "Oblique",
+    text: "",
+    camera: oblique,
+  });
   await go(ada, "Oblique").click();
   await panel(ada).getByText("The view's own section, of 2 planes").waitFor();
   const cut = await picture(ada);
@@ -182,9 +246,14 @@ try {
   await is_current(ada, "Oblique");
   await notice(ada, "View “Oblique”").getByRole("button", { name: "Back to what I saw" }).click();
   await gone(notice(ada, "View “Oblique”"));
-  await wait_for(async () => (await go(ada, "Oblique").getAttribute("aria-current")) === "false", "the way back");
+  await wait_for(
+    async () => (await go(ada, "Oblique").getAttribute("aria-current")) === "false",
+    "the way back",
+  );
 
-  say("on a phone, in another window, a finger goes there; who only looks is not offered to keep or change");
+  say(
+    "on a phone, in another window, a finger goes there; who only looks is not offered to keep or change",
+  );
   await open_model(phone);
   await phone.page.getByRole("button", { name: "Show the panel" }).click();
   await open_panel(phone);
@@ -214,7 +283,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-60).join("\n")}`);
-  for (const [name, who] of Object.entries({ ada, bea, phone })) await shot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ ada, bea, phone }))
+    await shot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of [ada, bea, phone]) await who.close();

@@ -1,17 +1,23 @@
-// A curator says who sees a layer, a column and a photo, and who downloads the scan; somebody who looks on loses them, and gets them back, at once.
+// A curator says who sees a layer, a column and a photo, and who downloads the scan; somebody who
+// looks on loses them, and gets them back, at once.
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { Browser } from "../support/browser.mjs";
 import { encode_png } from "../support/png.mjs";
 import { StrataServer, wait_for } from "../support/strata-server.mjs";
 
-const [carl, vera, phone] = [await Browser.open(), await Browser.open(), await Browser.open({ viewport: { width: 390, height: 844 } })];
+const [carl, vera, phone] = [
+  await Browser.open(),
+  await Browser.open(),
+  await Browser.open({ viewport: { width: 390, height: 844 } }),
+];
 const server = new StrataServer({ demo: true });
 let step = "start";
 const say = (text) => console.log((step = text));
 
 async function shoot({ page }, name) {
-  if (process.env.STRATA_TEST_OUTPUT) await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `visibility_${name}.png`) });
+  if (process.env.STRATA_TEST_OUTPUT)
+    await page.screenshot({ path: join(process.env.STRATA_TEST_OUTPUT, `visibility_${name}.png`) });
 }
 async function choose_for({ page }, menu, command) {
   await page.getByRole("button", { name: menu, exact: true }).click();
@@ -27,12 +33,32 @@ try {
   await server.start();
   const model = (await server.json("GET", "/models")).models[0];
   const layers = `/models/${model.id}/layers`;
-  await server.json("POST", layers, { name: "Finds", kind: "database", type: "u16", columns: [{ name: "Name" }, { name: "Place" }, { name: "Photos", kind: "picture" }] });
-  await server.json("POST", "/tables/finds/records", { values: { name: "Ring", place: "Under the slab" } });
-  await server.json("POST", `${layers}/finds/edits`, { op: "fill", value: 1, mode: "where", where: "true" });
-  const attached = await fetch(`${server.url}/api/v1/tables/finds/records/1/attachments?name=ring.png&column=photos`, {
-    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: photo,
+  await server.json("POST", layers, {
+    name: "Finds",
+    kind: "database",
+    type: "u16",
+    columns: [{ name: "Name" }, { name: "Place" }, { name: "Photos", kind: "picture" }],
   });
+  await server.json("POST", "/tables/finds/records", {
+    values: { name: "Ring", place: "Under the slab" },
+  });
+  await server.json("POST", `${layers}/finds/edits`, {
+    op: "fill",
+    value: 1,
+    mode: "where",
+    where: "true",
+  });
+  const attached = await fetch(
+    `${server.url}/api/v1/tables/finds/records/1/attachments?name=ring.png&column=photos`,
+    {
+      method: "POST",
+      headers: {
+        Authorization: `Bearer ${server.token}`,
+        "Content-Type": "application/octet-stream",
+      },
+      body: photo,
+    },
+  );
   assert.equal(attached.status, 201);
 
   say("a curator and two viewers look at the model");
@@ -65,7 +91,10 @@ try {
   await dialog.getByRole("radio", { name: "Everybody" }).click();
   await dialog.getByRole("button", { name: "Save", exact: true }).click();
   await row_of(vera).waitFor();
-  await wait_for(async () => (await badge(carl.page.locator("strata-layer-panel"), kCurators).count()) === 0, "the badge to go");
+  await wait_for(
+    async () => (await badge(carl.page.locator("strata-layer-panel"), kCurators).count()) === 0,
+    "the badge to go",
+  );
 
   say("a column of the team");
   for (const who of [carl, vera]) {
@@ -79,28 +108,48 @@ try {
   await shoot(carl, "column_dialog");
   await column.getByRole("button", { name: "Save", exact: true }).click();
   await badge(carl.page.locator("strata-table-panel"), kTeam).waitFor();
-  await wait_for(async () => (await vera.page.locator("strata-table-panel").getByText("Under the slab").count()) === 0, "the column to be gone for her");
+  await wait_for(
+    async () =>
+      (await vera.page.locator("strata-table-panel").getByText("Under the slab").count()) === 0,
+    "the column to be gone for her",
+  );
   await vera.page.locator("strata-table-panel").getByText("Ring").waitFor();
   await shoot(carl, "column_badge");
   await shoot(vera, "column_gone");
 
   say("a photo of the curators");
-  await carl.page.locator("strata-table-panel").getByRole("rowheader", { name: "1", exact: true }).click();
+  await carl.page
+    .locator("strata-table-panel")
+    .getByRole("rowheader", { name: "1", exact: true })
+    .click();
   await carl.page.getByRole("button", { name: "Edit the record", exact: true }).click();
   const choice = carl.page.locator("strata-record-dialog").getByLabel("Who sees ring.png");
   await choice.selectOption({ label: "Curators" });
-  await wait_for(async () => (await server.json("GET", "/tables/finds/records/1/attachments")).attachments[0].visibility === "private", "the photo to be private");
+  await wait_for(
+    async () =>
+      (await server.json("GET", "/tables/finds/records/1/attachments")).attachments[0]
+        .visibility === "private",
+    "the photo to be private",
+  );
   await shoot(carl, "photo");
   await carl.page.keyboard.press("Escape");
 
   say("who downloads the scan");
   await carl.page.getByRole("button", { name: "About this model" }).click();
   const about = carl.page.locator("strata-about-sheet");
-  await about.getByLabel("The scan's files are for").selectOption({ label: "everybody who sees the project" });
+  await about
+    .getByLabel("The scan's files are for")
+    .selectOption({ label: "everybody who sees the project" });
   await shoot(carl, "about");
-  await wait_for(async () => (await server.json("GET", `/models/${model.id}`)).source_download === "viewer", "the right to be given");
+  await wait_for(
+    async () => (await server.json("GET", `/models/${model.id}`)).source_download === "viewer",
+    "the right to be given",
+  );
   await about.getByLabel("The scan's files are for").selectOption({ label: "curators alone" });
-  await wait_for(async () => (await server.json("GET", `/models/${model.id}`)).source_download === "curator", "the right to be taken");
+  await wait_for(
+    async () => (await server.json("GET", `/models/${model.id}`)).source_download === "curator",
+    "the right to be taken",
+  );
   await carl.page.keyboard.press("Escape");
   await shoot(phone, "phone");
 
@@ -110,7 +159,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries({ carl, vera, phone })) await shoot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries({ carl, vera, phone }))
+    await shoot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of [carl, vera, phone]) await who.close();

@@ -1,4 +1,5 @@
-// Who comes for the first time: the tour of the model's page, by keyboard and by touch, for who paints and who looks; and projects to choose among.
+// Who comes for the first time: the tour of the model's page, by keyboard and by touch, for who
+// paints and who looks; and projects to choose among.
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
@@ -34,13 +35,26 @@ const progress = (who) => card_of(who).locator(".head .hint").innerText();
 async function lies_well(who, what) {
   const card = await card_of(who).boundingBox();
   const { width, height } = who.page.viewportSize();
-  assert.ok(card.x >= 0 && card.y >= 0 && card.x + card.width <= width && card.y + card.height <= height, `${what}: the card leaves the window: ${JSON.stringify(card)}`);
+  assert.ok(
+    card.x >= 0 && card.y >= 0 && card.x + card.width <= width && card.y + card.height <= height,
+    `${what}: the card leaves the window: ${JSON.stringify(card)}`,
+  );
   const ring = who.page.locator("strata-tour .ring");
   if ((await ring.count()) === 0) return;
   const thing = await ring.boundingBox();
-  assert.ok(thing.width > 10 && thing.height > 10, `${what}: nothing is marked: ${JSON.stringify(thing)}`);
-  const apart = card.x >= thing.x + thing.width || card.x + card.width <= thing.x || card.y >= thing.y + thing.height || card.y + card.height <= thing.y;
-  assert.ok(apart, `${what}: the card covers what it speaks of: ${JSON.stringify({ card, thing })}`);
+  assert.ok(
+    thing.width > 10 && thing.height > 10,
+    `${what}: nothing is marked: ${JSON.stringify(thing)}`,
+  );
+  const apart =
+    card.x >= thing.x + thing.width ||
+    card.x + card.width <= thing.x ||
+    card.y >= thing.y + thing.height ||
+    card.y + card.height <= thing.y;
+  assert.ok(
+    apart,
+    `${what}: the card covers what it speaks of: ${JSON.stringify({ card, thing })}`,
+  );
 }
 
 async function open_model(who) {
@@ -48,7 +62,10 @@ async function open_model(who) {
   await who.drawn();
 }
 
-/** It would have begun by then: what is asked of the server after the first picture has been answered. */
+/**
+ * It would have begun by then: what is asked of the server after the first picture has been
+ * answered.
+ */
 async function offers_nothing(who) {
   await who.page.getByRole("button", { name: "Help", exact: true }).click();
   await who.page.locator("strata-help-sheet").getByRole("heading", { name: "Help" }).waitFor();
@@ -58,16 +75,43 @@ async function offers_nothing(who) {
 }
 
 /** 100 mm wide. */
-const kSquare = ["ply", "format ascii 1.0", "element vertex 4", "property float x", "property float y", "property float z", "element face 2",
-  "property list uchar int vertex_indices", "end_header", "0 0 0", "100 0 0", "100 100 0", "0 100 0", "3 0 1 2", "3 0 2 3", ""].join("\n");
+const kSquare = [
+  "ply",
+  "format ascii 1.0",
+  "element vertex 4",
+  "property float x",
+  "property float y",
+  "property float z",
+  "element face 2",
+  "property list uchar int vertex_indices",
+  "end_header",
+  "0 0 0",
+  "100 0 0",
+  "100 100 0",
+  "0 100 0",
+  "3 0 1 2",
+  "3 0 2 3",
+  "",
+].join("\n");
 
 async function import_square(name, project) {
-  const started = await fetch(`${server.url}/api/v1/models?filename=square.ply&name=${name}&unit=mm&project=${project}`, {
-    method: "POST", headers: { Authorization: `Bearer ${server.token}`, "Content-Type": "application/octet-stream" }, body: kSquare,
-  });
+  const started = await fetch(
+    `${server.url}/api/v1/models?filename=square.ply&name=${name}&unit=mm&project=${project}`,
+    {
+      method: "POST",
+      headers: {
+        Authorization: `Bearer ${server.token}`,
+        "Content-Type": "application/octet-stream",
+      },
+      body: kSquare,
+    },
+  );
   assert.equal(started.status, 202, await started.clone().text());
   const { id } = await started.json();
-  await wait_for(async () => (await server.json("GET", `/jobs/${id}`)).state === "done", `the import of ${name}`);
+  await wait_for(
+    async () => (await server.json("GET", `/jobs/${id}`)).state === "done",
+    `the import of ${name}`,
+  );
 }
 
 let model;
@@ -78,7 +122,9 @@ try {
   await vic.sign_in(server, await server.add_person("vic", "viewer"));
   await tablet.sign_in(server, await server.add_person("tilda", "annotator"));
 
-  say("an annotator opens a model for the first time: the tour offers itself and takes nothing away");
+  say(
+    "an annotator opens a model for the first time: the tour offers itself and takes nothing away",
+  );
   await open_model(nora);
   await at_step(nora, "turn");
   assert.equal(await progress(nora), "1 of 6");
@@ -109,10 +155,22 @@ try {
 
   say("it stays beside its thing in windows of any size; what is put away it leads to otherwise");
   await nora.page.keyboard.press("ArrowLeft");
-  for (const size of [{ width: 700, height: 500 }, { width: 390, height: 844 }, { width: 1600, height: 1000 }, { width: 1280, height: 800 }]) {
+  for (const size of [
+    { width: 700, height: 500 },
+    { width: 390, height: 844 },
+    { width: 1600, height: 1000 },
+    { width: 1280, height: 800 },
+  ]) {
     await nora.page.setViewportSize(size);
-    const outside = () => lies_well(nora, `${size.width}×${size.height}`).then(() => null, (error) => error);
-    await wait_for(async () => (await outside()) === null, `the card to lie beside undo at ${size.width}×${size.height}`);
+    const outside = () =>
+      lies_well(nora, `${size.width}×${size.height}`).then(
+        () => null,
+        (error) => error,
+      );
+    await wait_for(
+      async () => (await outside()) === null,
+      `the card to lie beside undo at ${size.width}×${size.height}`,
+    );
   }
   await nora.page.keyboard.press("ArrowLeft");
   await nora.page.keyboard.press("ArrowLeft");
@@ -190,7 +248,10 @@ try {
   await nora.page.getByRole("link", { name: "Open Demo pot" }).waitFor();
 
   say("with several a project is chosen first; the empty ones are last, and say so");
-  await server.json("POST", "/projects", { name: "Villa Giulia", description: "Frescoes of the east wing, campaign of 2026." });
+  await server.json("POST", "/projects", {
+    name: "Villa Giulia",
+    description: "Frescoes of the east wing, campaign of 2026.",
+  });
   await server.json("POST", "/projects", { name: "Archive" });
   await import_square("Threshold", "villa-giulia");
   await import_square("Lintel", "villa-giulia");
@@ -202,7 +263,10 @@ try {
       await each.scrollIntoViewIfNeeded();
       await each.getByText(/changed (today|yesterday)/).waitFor();
     }
-    await wait_for(async () => (await who.page.locator("strata-thumbnail canvas.drawn").count()) === 2, "a picture of each project with models");
+    await wait_for(
+      async () => (await who.page.locator("strata-thumbnail canvas.drawn").count()) === 2,
+      "a picture of each project with models",
+    );
     await who.page.locator("strata-project-card").first().scrollIntoViewIfNeeded();
   }
   const names = () => nora.page.locator("strata-project-card b").allInnerTexts();
@@ -220,11 +284,20 @@ try {
   await nora.page.getByRole("heading", { name: "Villa Giulia", exact: true }).waitFor();
   assert.equal(nora.page.url(), `${server.url}/projects/villa-giulia`);
   assert.equal(await nora.page.title(), "Villa Giulia – Strata");
-  await wait_for(async () => /Villa Giulia/.test(await active(nora.page)), "the keyboard to be at the head of the project");
+  await wait_for(
+    async () => /Villa Giulia/.test(await active(nora.page)),
+    "the keyboard to be at the head of the project",
+  );
   await nora.page.getByText("2 models").waitFor();
-  const models_of = ({ page }) => page.getByRole("link", { name: /^Open / }).evaluateAll((links) => links.map((link) => link.getAttribute("aria-label")).sort());
+  const models_of = ({ page }) =>
+    page
+      .getByRole("link", { name: /^Open / })
+      .evaluateAll((links) => links.map((link) => link.getAttribute("aria-label")).sort());
   assert.deepEqual(await models_of(nora), ["Open Lintel", "Open Threshold"]);
-  await wait_for(async () => (await nora.page.locator("strata-thumbnail canvas.drawn").count()) === 2, "the pictures");
+  await wait_for(
+    async () => (await nora.page.locator("strata-thumbnail canvas.drawn").count()) === 2,
+    "the pictures",
+  );
   await shoot(nora, "project_desk");
   await nora.page.goBack();
   await nora.page.getByRole("heading", { name: "Projects", exact: true }).waitFor();
@@ -259,9 +332,17 @@ try {
   await nora.sign_in(server, await server.add_person("carl", "curator"));
   await nora.page.goto(`${server.url}/projects/archive`);
   await nora.page.getByRole("button", { name: "Choose a file" }).waitFor();
-  assert.equal(await nora.page.getByRole("combobox", { name: "Import into" }).count(), 0, "another project can be chosen on the page of one");
+  assert.equal(
+    await nora.page.getByRole("combobox", { name: "Import into" }).count(),
+    0,
+    "another project can be chosen on the page of one",
+  );
   await shoot(nora, "empty_curator");
-  await nora.page.locator("input[type=file]").setInputFiles({ name: "sill.ply", mimeType: "application/octet-stream", buffer: Buffer.from(kSquare) });
+  await nora.page.locator("input[type=file]").setInputFiles({
+    name: "sill.ply",
+    mimeType: "application/octet-stream",
+    buffer: Buffer.from(kSquare),
+  });
   await nora.page.waitForURL(/\/models\/\d+$/);
   const made = (await server.json("GET", "/models")).models.find(({ name }) => name === "sill");
   assert.equal(made?.project, "archive");
@@ -272,7 +353,8 @@ try {
   server.assert_clean_log();
 } catch (error) {
   console.log(`failed at: ${step}\n--- log of the server\n${server.log.slice(-100).join("\n")}`);
-  for (const [name, who] of Object.entries(everybody)) await shoot(who, `failed_${name}`).catch(() => {});
+  for (const [name, who] of Object.entries(everybody))
+    await shoot(who, `failed_${name}`).catch(() => {});
   throw error;
 } finally {
   for (const who of Object.values(everybody)) await who.close();

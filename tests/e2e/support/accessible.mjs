@@ -1,31 +1,60 @@
-// What a person with a keyboard, a reader of the screen, strong light or a small window needs of whatever the page shows now.
+// What a person with a keyboard, a reader of the screen, strong light or a small window needs of
+// whatever the page shows now.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { kRoot, load_module } from "./modules.mjs";
 
-const kAxe = readFileSync(join(kRoot, "web-client", "node_modules", "axe-core", "axe.min.js"), "utf8");
+const kAxe = readFileSync(
+  join(kRoot, "web-client", "node_modules", "axe-core", "axe.min.js"),
+  "utf8",
+);
 load_module("axe-core");
 
 /** The serious and critical findings of axe-core, a line each. `rules`: only these. */
 export async function findings(page, rules = null) {
   if (!(await page.evaluate(() => "axe" in globalThis))) await page.evaluate(kAxe);
   const violations = await page.evaluate(
-    async (only) => (await globalThis.axe.run(document, { resultTypes: ["violations"], ...(only ? { runOnly: { type: "rule", values: only } } : {}) })).violations,
+    async (only) =>
+      (
+        await globalThis.axe.run(document, {
+          resultTypes: ["violations"],
+          ...(only ? { runOnly: { type: "rule", values: only } } : {}),
+        })
+      ).violations,
     rules,
   );
   return violations
     .filter(({ impact }) => impact === "serious" || impact === "critical")
-    .flatMap(({ id, nodes }) => nodes.map(({ target, html, any, all }) => `${id}: ${target.flat().join(" ")} ${html.slice(0, 120)} ${[...any, ...all].map(({ message }) => message).join("; ").slice(0, 200)}`));
+    .flatMap(({ id, nodes }) =>
+      nodes.map(
+        ({ target, html, any, all }) =>
+          `${id}: ${target.flat().join(" ")} ${html.slice(0, 120)} ${[...any, ...all]
+            .map(({ message }) => message)
+            .join("; ")
+            .slice(0, 200)}`,
+      ),
+    );
 }
 
-/** Of these rules all findings, however grave, and rules that axe-core does not ask by itself, a line each. */
+/**
+ * Of these rules all findings, however grave, and rules that axe-core does not ask by itself, a
+ * line each.
+ */
 export async function violations(page, rules) {
   if (!(await page.evaluate(() => "axe" in globalThis))) await page.evaluate(kAxe);
   const found = await page.evaluate(
-    async (values) => (await globalThis.axe.run(document, { resultTypes: ["violations"], runOnly: { type: "rule", values } })).violations,
+    async (values) =>
+      (
+        await globalThis.axe.run(document, {
+          resultTypes: ["violations"],
+          runOnly: { type: "rule", values },
+        })
+      ).violations,
     rules,
   );
-  return found.flatMap(({ id, nodes }) => nodes.map(({ target, html }) => `${id}: ${target.flat().join(" ")} ${html.slice(0, 160)}`));
+  return found.flatMap(({ id, nodes }) =>
+    nodes.map(({ target, html }) => `${id}: ${target.flat().join(" ")} ${html.slice(0, 160)}`),
+  );
 }
 
 /** Sees through the roots of elements. */
@@ -37,7 +66,10 @@ const kDeep = `
 `;
 const evaluate = (page, body) => page.evaluate(`(() => { ${kDeep} ${body} })()`);
 
-/** What is wider than its room: the document, dialogs and menus as wholes, words that leave their control, and buttons of a dialog or of the tour that do not stand in one row. */
+/**
+ * What is wider than its room: the document, dialogs and menus as wholes, words that leave their
+ * control, and buttons of a dialog or of the tour that do not stand in one row.
+ */
 export const overflows = (page) =>
   evaluate(
     page,
@@ -77,11 +109,17 @@ export const overflows = (page) =>
      return found;`,
   );
 
-export const active = (page) => evaluate(page, "const at = deep_active(); return at === document.body ? '' : told(at);");
+export const active = (page) =>
+  evaluate(page, "const at = deep_active(); return at === document.body ? '' : told(at);");
 
-/** Goes through all stops of the Tab key; what they do not reach, and those whose focus is not seen. */
+/**
+ * Goes through all stops of the Tab key; what they do not reach, and those whose focus is not seen.
+ */
 export async function walk(page) {
-  await evaluate(page, "window.reached = new Set(); window.unseen = []; document.activeElement?.blur();");
+  await evaluate(
+    page,
+    "window.reached = new Set(); window.unseen = []; document.activeElement?.blur();",
+  );
   const count = await evaluate(
     page,
     `const top = [...deep_all()].filter((each) => each.matches("dialog[open]")).at(-1);

@@ -1,11 +1,14 @@
-// Values for fast-check out of JSON Schemas, good ones and bad ones. The good ones are good as far as members, types and limits go; what a
-// schema cannot say (which layers there are, what a condition looks like) is given by hand: `words.by_name` for members and
-// parameters, `words.by_schema` for the contract's components.
+// Values for fast-check out of JSON Schemas, good ones and bad ones. The good ones are good as far
+// as members, types and limits go; what a schema cannot say (which layers there are, what a
+// condition looks like) is given by hand: `words.by_name` for members and parameters,
+// `words.by_schema` for the contract's components.
 import { load_module } from "./modules.mjs";
 
 export const fc = load_module("fast-check");
 
-const kManyItems = 3; // beyond the fewest that a schema allows: long lists are a matter of limits, which have tests of their own
+// beyond the fewest that a schema allows: long lists are a matter of limits, which have tests of
+// their own
+const kManyItems = 3;
 const kStrangeTexts = [
   "",
   " ",
@@ -59,18 +62,35 @@ const kStrangeNumbers = [
   5e-324,
 ];
 
-export const strange_text = fc.oneof(fc.constantFrom(...kStrangeTexts), fc.string({ unit: "binary", maxLength: 40 }));
+export const strange_text = fc.oneof(
+  fc.constantFrom(...kStrangeTexts),
+  fc.string({ unit: "binary", maxLength: 40 }),
+);
 export const strange_number = fc.constantFrom(...kStrangeNumbers);
 export const strange_value = fc.oneof(
   strange_text,
   strange_number,
-  fc.constantFrom(null, true, false, [], {}, [[]], [null], { a: 1 }, Array(40).fill(1), JSON.parse("[".repeat(40) + "]".repeat(40))),
+  fc.constantFrom(
+    null,
+    true,
+    false,
+    [],
+    {},
+    [[]],
+    [null],
+    { a: 1 },
+    Array(40).fill(1),
+    JSON.parse("[".repeat(40) + "]".repeat(40)),
+  ),
 );
 
 const kWords = ["Apse", "loose", "12.5", "x", "crack 3", "Päivä", "北壁", "note"];
 
 function text_of({ minLength = 0, maxLength = 200, pattern }) {
-  if (pattern) return fc.stringMatching(new RegExp(pattern)).filter((text) => text.length >= minLength && text.length <= maxLength);
+  if (pattern)
+    return fc
+      .stringMatching(new RegExp(pattern))
+      .filter((text) => text.length >= minLength && text.length <= maxLength);
   const fits = (text) => [...text].length >= minLength && [...text].length <= maxLength;
   return fc.oneof(
     { weight: 4, arbitrary: fc.constantFrom(...kWords.filter(fits)) },
@@ -82,22 +102,41 @@ function number_of({ type, minimum = -1e6, exclusiveMinimum, maximum = 1e6 }) {
   const low = Math.max(exclusiveMinimum ?? minimum, -1e15);
   const high = Math.min(maximum, 1e15);
   const small = fc
-    .integer({ min: Math.max(Math.ceil(low), -10), max: Math.max(Math.min(Math.floor(high), 10), Math.ceil(low)) })
+    .integer({
+      min: Math.max(Math.ceil(low), -10),
+      max: Math.max(Math.min(Math.floor(high), 10), Math.ceil(low)),
+    })
     .filter((n) => exclusiveMinimum === undefined || n > low);
   if (type === "integer")
-    return fc.oneof({ weight: 4, arbitrary: small }, { weight: 1, arbitrary: fc.integer({ min: Math.ceil(low), max: Math.floor(high) }) });
+    return fc.oneof(
+      { weight: 4, arbitrary: small },
+      { weight: 1, arbitrary: fc.integer({ min: Math.ceil(low), max: Math.floor(high) }) },
+    );
   return fc.oneof(
-    { weight: 2, arbitrary: fc.double({ min: low, max: high, minExcluded: exclusiveMinimum !== undefined, noNaN: true }) },
+    {
+      weight: 2,
+      arbitrary: fc.double({
+        min: low,
+        max: high,
+        minExcluded: exclusiveMinimum !== undefined,
+        noNaN: true,
+      }),
+    },
     { weight: high < 1 ? 0 : 3, arbitrary: small },
   );
 }
 
-/** With some of the optional members, seldom with all: most of them exclude one another in ways that a schema does not say. */
+/**
+ * With some of the optional members, seldom with all: most of them exclude one another in ways that
+ * a schema does not say.
+ */
 function object_of(contract, schema, words) {
   const members = Object.entries(schema.properties ?? {});
   if (members.length === 0) {
     const values =
-      typeof schema.additionalProperties === "object" ? arbitrary_of(contract, schema.additionalProperties, words) : fc.constant(1);
+      typeof schema.additionalProperties === "object"
+        ? arbitrary_of(contract, schema.additionalProperties, words)
+        : fc.constant(1);
     return schema.additionalProperties === false
       ? fc.constant({})
       : fc.dictionary(fc.constantFrom("es", "pt-BR", "name", "depth"), values, { maxKeys: 2 });
@@ -105,20 +144,33 @@ function object_of(contract, schema, words) {
   const required = schema.required ?? [];
   const optional = members.map(([name]) => name).filter((name) => !required.includes(name));
   const all = fc.record(
-    Object.fromEntries(members.map(([name, member]) => [name, words.by_name[name] ?? arbitrary_of(contract, member, words)])),
+    Object.fromEntries(
+      members.map(([name, member]) => [
+        name,
+        words.by_name[name] ?? arbitrary_of(contract, member, words),
+      ]),
+    ),
   );
   const fewest = Math.max(0, (schema.minProperties ?? 0) - required.length);
   return fc
     .tuple(
       all,
-      fc.subarray(optional, { minLength: Math.min(fewest, optional.length), maxLength: Math.min(Math.max(fewest, 2), optional.length) }),
+      fc.subarray(optional, {
+        minLength: Math.min(fewest, optional.length),
+        maxLength: Math.min(Math.max(fewest, 2), optional.length),
+      }),
     )
     .map(([value, chosen]) =>
-      Object.fromEntries(Object.entries(value).filter(([name]) => required.includes(name) || chosen.includes(name))),
+      Object.fromEntries(
+        Object.entries(value).filter(([name]) => required.includes(name) || chosen.includes(name)),
+      ),
     );
 }
 
-/** `oneOf` and `anyOf` beside `properties` say which members go together: each choice becomes a schema of its own. */
+/**
+ * `oneOf` and `anyOf` beside `properties` say which members go together: each choice becomes a
+ * schema of its own.
+ */
 function choices_of(contract, schema) {
   const word = schema.oneOf ? "oneOf" : "anyOf";
   const { [word]: choices, ...rest } = schema;
@@ -139,7 +191,10 @@ export function arbitrary_of(contract, schema, words) {
   const { description, default: ignored, ...meant } = contract.resolve(schema);
   if ("const" in meant) return fc.constant(meant.const);
   if (meant.enum) return fc.constantFrom(...meant.enum);
-  if (meant.oneOf || meant.anyOf) return fc.oneof(...choices_of(contract, meant).map((choice) => arbitrary_of(contract, choice, words)));
+  if (meant.oneOf || meant.anyOf)
+    return fc.oneof(
+      ...choices_of(contract, meant).map((choice) => arbitrary_of(contract, choice, words)),
+    );
   switch (meant.type) {
     case "null":
       return fc.constant(null);
@@ -183,7 +238,13 @@ function with_change(value, [name, ...rest], change) {
 /** The value with one thing wrong somewhere: another value, a member gone, or one too many. */
 export function damaged(arbitrary) {
   return fc
-    .tuple(arbitrary, fc.nat(), fc.constantFrom("replace", "drop", "add"), strange_value, strange_text)
+    .tuple(
+      arbitrary,
+      fc.nat(),
+      fc.constantFrom("replace", "drop", "add"),
+      strange_value,
+      strange_text,
+    )
     .map(([value, n, how, strange, name]) => {
       const places = places_of(value);
       return with_change(value, places[n % places.length], (item) => {

@@ -1,4 +1,5 @@
-// Real Chromium on the real page. Without Chromium or playwright-core the tests are skipped loudly by hand and fail in CI.
+// Real Chromium on the real page. Without Chromium or playwright-core the tests are skipped loudly
+// by hand and fail in CI.
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -7,12 +8,23 @@ import { decode_png } from "./png.mjs";
 import { kLong_ms, wait_for } from "./strata-server.mjs";
 
 const kChromium = process.env.CHROMIUM ?? "/usr/bin/chromium";
-const kFlags = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-  "--disable-component-update", "--disable-sync", "--force-color-profile=srgb", "--font-render-hinting=none", "--disable-lcd-text"];
+const kFlags = [
+  "--no-sandbox",
+  "--disable-gpu",
+  "--disable-quic",
+  "--no-first-run",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-sync",
+  "--force-color-profile=srgb",
+  "--font-render-hinting=none",
+  "--disable-lcd-text",
+];
 
 function load_playwright() {
   if (!existsSync(kChromium)) missing(`there is no ${kChromium} (Debian's package chromium)`);
-  if (!existsSync(join(kRoot, "web-client", "dist", "index.html"))) missing("the page is not built: npm run build in web-client");
+  if (!existsSync(join(kRoot, "web-client", "dist", "index.html")))
+    missing("the page is not built: npm run build in web-client");
   return load_module("playwright-core");
 }
 
@@ -20,7 +32,14 @@ function load_playwright() {
 export const require_browser = () => void load_playwright();
 
 /** What the console says when a test takes the server away, whatever each connection was at. */
-export const kOfLostServer = ["WebSocket connection", "ERR_CONNECTION_REFUSED", "ERR_EMPTY_RESPONSE", "ERR_CONNECTION_RESET", "ERR_SOCKET_NOT_CONNECTED", "ERR_CONNECTION_CLOSED"];
+export const kOfLostServer = [
+  "WebSocket connection",
+  "ERR_CONNECTION_REFUSED",
+  "ERR_EMPTY_RESPONSE",
+  "ERR_CONNECTION_RESET",
+  "ERR_SOCKET_NOT_CONNECTED",
+  "ERR_CONNECTION_CLOSED",
+];
 
 /** Runs in the page, before everything of its own. */
 function seen_tour() {
@@ -32,20 +51,35 @@ function seen_tour() {
 }
 
 export class Browser {
-  /** `tour`: the tour of the model's page offers itself, as to who comes for the first time; without it this person has seen it. */
+  /**
+   * `tour`: the tour of the model's page offers itself, as to who comes for the first time; without
+   * it this person has seen it.
+   */
   static async open({ tour = false, ...options } = {}) {
     const { chromium } = load_playwright();
     const browser = new Browser();
     browser.folder = mkdtempSync(join(tmpdir(), "strata-browser-"));
     browser.complaints = [];
     browser.context = await chromium.launchPersistentContext(browser.folder, {
-      executablePath: kChromium, headless: true, args: kFlags, viewport: { width: 1280, height: 800 }, locale: "en-GB", timezoneId: "UTC",
-      colorScheme: "light", reducedMotion: "reduce", ...options,
+      executablePath: kChromium,
+      headless: true,
+      args: kFlags,
+      viewport: { width: 1280, height: 800 },
+      locale: "en-GB",
+      timezoneId: "UTC",
+      colorScheme: "light",
+      reducedMotion: "reduce",
+      ...options,
     });
     if (!tour) await browser.context.addInitScript(seen_tour);
     browser.page = browser.context.pages()[0] ?? (await browser.context.newPage());
     browser.page.setDefaultTimeout(kLong_ms);
-    browser.page.on("console", (message) => ["error", "warning"].includes(message.type()) && browser.complaints.push(`${message.text()} (${message.location().url})`));
+    browser.page.on(
+      "console",
+      (message) =>
+        ["error", "warning"].includes(message.type()) &&
+        browser.complaints.push(`${message.text()} (${message.location().url})`),
+    );
     browser.page.on("pageerror", (error) => browser.complaints.push(String(error.stack ?? error)));
     return browser;
   }
@@ -63,8 +97,13 @@ export class Browser {
 
   /** `secret`: the owner's token, or a person of `server.add_person`. */
   async sign_in(server, secret) {
-    const data = typeof secret === "string" ? { token: secret } : { user: secret.user, password: secret.password };
-    const answer = await this.page.context().request.post(`${server.url}/api/v1/login`, { data, headers: { Origin: server.url } });
+    const data =
+      typeof secret === "string"
+        ? { token: secret }
+        : { user: secret.user, password: secret.password };
+    const answer = await this.page
+      .context()
+      .request.post(`${server.url}/api/v1/login`, { data, headers: { Origin: server.url } });
     if (!answer.ok()) throw new Error(`sign-in: ${answer.status()} ${await answer.text()}`);
     await this.page.goto(server.url);
     await this.page.getByRole("heading", { name: /^(Models|Projects)$/ }).waitFor();
@@ -75,7 +114,10 @@ export class Browser {
     await wait_for(() => this.frames().then((count) => count > 0), "the first picture");
   }
   frames() {
-    return this.page.locator("strata-stage canvas").first().evaluate((canvas) => Number(canvas.dataset.frames ?? 0));
+    return this.page
+      .locator("strata-stage canvas")
+      .first()
+      .evaluate((canvas) => Number(canvas.dataset.frames ?? 0));
   }
 
   saved() {
@@ -93,18 +135,25 @@ export class Browser {
   /** A screenshot of what no longer changes: two in a row are the same. */
   async settled(take = () => this.page.screenshot()) {
     let last = null;
-    return wait_for(async () => {
-      const now = await take();
-      const same = last !== null && now.equals(last);
-      last = now;
-      return same ? now : null;
-    }, "the picture to settle", 300);
+    return wait_for(
+      async () => {
+        const now = await take();
+        const same = last !== null && now.equals(last);
+        last = now;
+        return same ? now : null;
+      },
+      "the picture to settle",
+      300,
+    );
   }
 
   /** Drags from point to point, in shares of the stage. */
   async drag(points) {
     const box = await this.stage_box();
-    const [first, ...rest] = points.map(([x, y]) => [box.x + x * box.width, box.y + y * box.height]);
+    const [first, ...rest] = points.map(([x, y]) => [
+      box.x + x * box.width,
+      box.y + y * box.height,
+    ]);
     await this.page.mouse.move(...first);
     await this.page.mouse.down();
     for (const point of rest) await this.page.mouse.move(...point, { steps: 6 });
@@ -115,7 +164,10 @@ export class Browser {
   async close_notices() {
     const close = this.page.locator("strata-notices").getByRole("button", { name: "Close" });
     await wait_for(async () => {
-      await close.first().click({ timeout: 1000 }).catch(() => {});
+      await close
+        .first()
+        .click({ timeout: 1000 })
+        .catch(() => {});
       return (await close.count()) === 0;
     }, "notices to be gone");
   }

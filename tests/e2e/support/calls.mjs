@@ -1,10 +1,22 @@
-// Calls of the contract's operations as fast-check makes them: most are good, the others have something wrong with them. A call says what to
-// send in words, so that a failing one can be read: {path: {model: "wall"}, query: [["at", "3"]], headers, body: {json} | {text} | {hex} | {file} | null}.
+// Calls of the contract's operations as fast-check makes them: most are good, the others have
+// something wrong with them. A call says what to send in words, so that a failing one can be read:
+// {path: {model: "wall"}, query: [["at", "3"]], headers, body: {json} | {text} | {hex} | {file} |
+// null}.
 import { arbitrary_of, damaged, fc, strange_number, strange_text } from "./arbitraries.mjs";
-import { content_of, header_words, mostly, one, particulars, path_words, query_words, words } from "./vocabulary.mjs";
+import {
+  content_of,
+  header_words,
+  mostly,
+  one,
+  particulars,
+  path_words,
+  query_words,
+  words,
+} from "./vocabulary.mjs";
 
 /** One time in so many; otherwise null. */
-const once_in = (times, arbitrary) => fc.oneof({ weight: times - 1, arbitrary: fc.constant(null) }, { weight: 1, arbitrary });
+const once_in = (times, arbitrary) =>
+  fc.oneof({ weight: times - 1, arbitrary: fc.constant(null) }, { weight: 1, arbitrary });
 /** In addresses, whose heads are of 8 KiB at most; beyond that no operation is reached. */
 const strange_word = fc.oneof(
   strange_text.map((text) => text.slice(0, 300)),
@@ -24,17 +36,24 @@ function body_of(contract, operation, { words: own = words, content = {} }) {
     }
     const bodies = content[type] ?? content_of[type];
     return bodies.map((body) =>
-      type === "multipart/form-data" ? { type: `${type}; boundary=XyZ`, body: { form: [body.file] } } : { type, body },
+      type === "multipart/form-data"
+        ? { type: `${type}; boundary=XyZ`, body: { form: [body.file] } }
+        : { type, body },
     );
   });
-  return operation.body.required ? fc.oneof(...kinds) : fc.oneof(fc.constant({ type: null, body: null }), ...kinds);
+  return operation.body.required
+    ? fc.oneof(...kinds)
+    : fc.oneof(fc.constant({ type: null, body: null }), ...kinds);
 }
 
 /** Those whose parameters depend on one another have some that go together. */
 function query_of(operation, own) {
   const parameters = operation.parameters.filter((each) => each.in === "query");
   const each = parameters.map(({ name, schema, required }) => {
-    const good = own.query?.[name] ?? query_words[name] ?? arbitrary_of({ resolve: (node) => node }, schema, words).map(String);
+    const good =
+      own.query?.[name] ??
+      query_words[name] ??
+      arbitrary_of({ resolve: (node) => node }, schema, words).map(String);
     const pair = good.map((text) => [name, text]);
     return required ? pair : once_in(3, pair);
   });
@@ -43,8 +62,12 @@ function query_of(operation, own) {
 }
 
 function headers_of(operation) {
-  const declared = operation.parameters.filter((each) => each.in === "header").map(({ name }) => [name, once_in(6, header_words[name])]);
-  const types = [...operation.responses.values()].flatMap((response) => Object.keys(response.content ?? {}));
+  const declared = operation.parameters
+    .filter((each) => each.in === "header")
+    .map(({ name }) => [name, once_in(6, header_words[name])]);
+  const types = [...operation.responses.values()].flatMap((response) =>
+    Object.keys(response.content ?? {}),
+  );
   return fc
     .tuple(fc.record(Object.fromEntries(declared)), once_in(2, one(...types, "*/*")))
     .map(([headers, accept]) => ({ ...headers, Accept: accept }));
@@ -90,7 +113,9 @@ function with_mishap(call, mishap) {
     case "a parameter too many":
       return { ...call, query: [...query, ["extra", text]] };
     case "the path replaced":
-      return names.length > 0 ? { ...call, path: { ...path, [names[n % names.length]]: text } } : call;
+      return names.length > 0
+        ? { ...call, path: { ...path, [names[n % names.length]]: text } }
+        : call;
     case "no body":
       return { ...call, body: null };
     case "another content type":
@@ -100,10 +125,20 @@ function with_mishap(call, mishap) {
     case "text after the end":
       return as_text ? { ...call, body: { text: `${as_text} {}` } } : call;
     case "NaN":
-      return as_text ? { ...call, body: { text: as_text.replace(/-?\d+(\.\d+)?|true|false/, "NaN") } } : call;
+      return as_text
+        ? { ...call, body: { text: as_text.replace(/-?\d+(\.\d+)?|true|false/, "NaN") } }
+        : call;
     case "bytes that are no UTF-8":
       return as_text
-        ? { ...call, body: { hex: Buffer.concat([Buffer.from(as_text.slice(0, -1)), Buffer.from([0xff, 0x22])]).toString("hex") } }
+        ? {
+            ...call,
+            body: {
+              hex: Buffer.concat([
+                Buffer.from(as_text.slice(0, -1)),
+                Buffer.from([0xff, 0x22]),
+              ]).toString("hex"),
+            },
+          }
         : call;
     case "no token":
       return { ...call, token: null };
@@ -120,7 +155,8 @@ function with_mishap(call, mishap) {
   }
 }
 
-const kept = (record) => Object.fromEntries(Object.entries(record).filter(([, value]) => value !== null));
+const kept = (record) =>
+  Object.fromEntries(Object.entries(record).filter(([, value]) => value !== null));
 
 export function calls_of(contract, operation) {
   const own = particulars[operation.id] ?? {};
@@ -128,14 +164,19 @@ export function calls_of(contract, operation) {
     .filter((each) => each.in === "path")
     .map(({ name }) => [
       name,
-      own.path?.[name] ?? (name === "model" && operation.path.includes("{layer}") ? mostly("wall") : path_words[name]),
+      own.path?.[name] ??
+        (name === "model" && operation.path.includes("{layer}")
+          ? mostly("wall")
+          : path_words[name]),
     ]);
   return fc
     .record({
       path: fc.record(Object.fromEntries(in_path)),
       query: query_of(operation, own),
       headers: headers_of(operation),
-      content: operation.body ? body_of(contract, operation, own) : fc.constant({ type: null, body: null }),
+      content: operation.body
+        ? body_of(contract, operation, own)
+        : fc.constant({ type: null, body: null }),
       mishap: once_in(3, mishap),
     })
     .map(({ path, query, headers, content, mishap: wrong }) =>

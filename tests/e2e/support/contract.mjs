@@ -1,5 +1,5 @@
-// The server's own contract (openapi.json) as something to call and to hold answers against: contract.py does the latter for the
-// tests in Python with less of JSON Schema.
+// The server's own contract (openapi.json) as something to call and to hold answers against:
+// contract.py does the latter for the tests in Python with less of JSON Schema.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { kRoot, load_module } from "./modules.mjs";
@@ -7,12 +7,18 @@ import { kRoot, load_module } from "./modules.mjs";
 const kMethods = ["get", "put", "post", "patch", "delete"];
 const kFormats = {
   uuid: /^[0-9a-f]{8}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{4}-[0-9a-f]{12}$/i,
-  "date-time": (text) => /^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)$/.test(text) && !Number.isNaN(Date.parse(text)),
+  "date-time": (text) =>
+    /^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|[+-]\d\d:\d\d)$/.test(text) &&
+    !Number.isNaN(Date.parse(text)),
 };
 
-const media_type_of = (headers) => (headers["content-type"] ?? "").split(";")[0].trim().toLowerCase();
+const media_type_of = (headers) =>
+  (headers["content-type"] ?? "").split(";")[0].trim().toLowerCase();
 
-/** What a parameter's text says, by the type of its schema; text that is none of its type stays text, so that the schema refuses it. */
+/**
+ * What a parameter's text says, by the type of its schema; text that is none of its type stays
+ * text, so that the schema refuses it.
+ */
 function read_parameter(schema, text) {
   if (schema.type === "boolean") return { true: true, false: false }[text] ?? text;
   if (schema.type !== "integer" && schema.type !== "number") return text;
@@ -27,7 +33,9 @@ export class Contract {
     this.ajv.addSchema(this.document, "contract");
     this.compiled = new Map();
     this.operations = Object.entries(this.document.paths).flatMap(([path, item]) =>
-      kMethods.filter((method) => item[method]).map((method) => this.#operation(path, method, item)),
+      kMethods
+        .filter((method) => item[method])
+        .map((method) => this.#operation(path, method, item)),
     );
   }
 
@@ -51,8 +59,16 @@ export class Contract {
         const parameter = this.resolve(each);
         return { ...parameter, schema: this.resolve(parameter.schema) };
       }),
-      body: requestBody && { required: requestBody.required ?? false, content: requestBody.content },
-      responses: new Map(Object.entries(responses).map(([status, response]) => [Number(status), this.resolve(response)])),
+      body: requestBody && {
+        required: requestBody.required ?? false,
+        content: requestBody.content,
+      },
+      responses: new Map(
+        Object.entries(responses).map(([status, response]) => [
+          Number(status),
+          this.resolve(response),
+        ]),
+      ),
       is_open: security?.length === 0,
     };
   }
@@ -66,7 +82,10 @@ export class Contract {
     const validate = this.compiled.get(schema);
     return validate(value)
       ? []
-      : validate.errors.map(({ instancePath, message, params }) => `${instancePath || "it"} ${message} ${JSON.stringify(params)}`);
+      : validate.errors.map(
+          ({ instancePath, message, params }) =>
+            `${instancePath || "it"} ${message} ${JSON.stringify(params)}`,
+        );
   }
 
   /** What is wrong with an answer: {status, headers, body: Buffer}. */
@@ -79,14 +98,22 @@ export class Contract {
       const text = headers[name.toLowerCase()];
       const schema = this.resolve(this.resolve(header).schema);
       if (text !== undefined)
-        faults.push(...this.faults_of(schema, read_parameter(schema, String(text))).map((fault) => `${name}: ${fault}`));
+        faults.push(
+          ...this.faults_of(schema, read_parameter(schema, String(text))).map(
+            (fault) => `${name}: ${fault}`,
+          ),
+        );
     }
     const content = described.content ?? {};
-    if (body.length === 0) return Object.keys(content).length === 0 || "text/csv" in content ? faults : [...faults, "there is no body"];
+    if (body.length === 0)
+      return Object.keys(content).length === 0 || "text/csv" in content
+        ? faults
+        : [...faults, "there is no body"];
     const media_type = media_type_of(headers);
     const known = content[media_type] ?? content["*/*"];
     if (!known) return [...faults, `the contract has no ${media_type || "body"} of ${status}`];
-    if (status >= 400 && media_type !== "application/problem+json") faults.push(`${media_type} is no problem`);
+    if (status >= 400 && media_type !== "application/problem+json")
+      faults.push(`${media_type} is no problem`);
     if (!/[/+]json$/.test(media_type) || !known.schema) return faults;
     let value = null;
     try {
@@ -98,27 +125,45 @@ export class Contract {
     return [...faults, ...this.faults_of(known.schema, value)];
   }
 
-  /** What the contract has against a request's parameters and JSON: such a request must not be carried out. A parameter without a value may
-      count as absent. */
+  /**
+   * What the contract has against a request's parameters and JSON: such a request must not be
+   * carried out. A parameter without a value may
+   *       count as absent.
+   */
   faults_of_request(operation, { query, headers, body }) {
     const faults = [];
-    const known = new Map(operation.parameters.filter((each) => each.in === "query").map((each) => [each.name, each]));
+    const known = new Map(
+      operation.parameters.filter((each) => each.in === "query").map((each) => [each.name, each]),
+    );
     for (const [name, text] of query) {
       const parameter = known.get(name);
       if (!parameter) faults.push(`there is no parameter ${name}`);
       else if (text !== "")
-        faults.push(...this.faults_of(parameter.schema, read_parameter(parameter.schema, text)).map((fault) => `${name}: ${fault}`));
+        faults.push(
+          ...this.faults_of(parameter.schema, read_parameter(parameter.schema, text)).map(
+            (fault) => `${name}: ${fault}`,
+          ),
+        );
     }
-    if (new Set(query.map(([name]) => name)).size < query.length) faults.push("a parameter is given twice");
+    if (new Set(query.map(([name]) => name)).size < query.length)
+      faults.push("a parameter is given twice");
     for (const { name, required } of known.values())
       if (required && !query.some(([given]) => given === name)) faults.push(`${name} is missing`);
     if (!operation.body) return faults;
     if (body === null || body.length === 0)
-      return operation.body.required && !("text/csv" in operation.body.content) ? [...faults, "there is no body"] : faults;
+      return operation.body.required && !("text/csv" in operation.body.content)
+        ? [...faults, "there is no body"]
+        : faults;
     const json = operation.body.content["application/json"];
     if (!json || media_type_of(headers) !== "application/json") return faults;
     try {
-      return [...faults, ...this.faults_of(json.schema, JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(body)))];
+      return [
+        ...faults,
+        ...this.faults_of(
+          json.schema,
+          JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(body)),
+        ),
+      ];
     } catch (error) {
       return [...faults, `the body is no JSON: ${error.message}`];
     }

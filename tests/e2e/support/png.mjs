@@ -1,10 +1,14 @@
 // PNG pictures as {width, height, data} with 4 bytes a pixel.
 import { load_module } from "./modules.mjs";
 
-const library = () => load_module("pngjs").PNG; // loaded when used: browser.mjs says first what is not installed
+// loaded when used: browser.mjs says first what is not installed
+const library = () => load_module("pngjs").PNG;
 
 export const decode_png = (file) => library().sync.read(file);
 
 export function encode_png({ width, height, data }) {
-  return library().sync.write({ width, height, data: Buffer.from(data) }, { inputHasAlpha: true, colorType: 2 });
+  return library().sync.write(
+    { width, height, data: Buffer.from(data) },
+    { inputHasAlpha: true, colorType: 2 },
+  );
 }

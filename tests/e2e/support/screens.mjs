@@ -1,5 +1,5 @@
-// Every screen of the page, and one way to each: what holds something against all of them goes it (accessibility_test.mjs), and so does what
-// takes their pictures (contact_sheet.mjs).
+// Every screen of the page, and one way to each: what holds something against all of them goes it
+// (accessibility_test.mjs), and so does what takes their pictures (contact_sheet.mjs).
 import assert from "node:assert/strict";
 import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
@@ -9,19 +9,49 @@ const kGoneLayer = "Condition before the cleaning";
 const kOtherProject = "Excavation at the East Gate, Northern Profile";
 
 const kSide = 64;
-const kPhoto = encode_png({ width: kSide, height: kSide, data: Uint8Array.from({ length: kSide * kSide * 4 }, (_, at) => (at % 4 === 3 || (at / 4) % kSide < kSide / 2 ? 255 : 20)) });
+const kPhoto = encode_png({
+  width: kSide,
+  height: kSide,
+  data: Uint8Array.from({ length: kSide * kSide * 4 }, (_, at) =>
+    at % 4 === 3 || (at / 4) % kSide < kSide / 2 ? 255 : 20,
+  ),
+});
 const file_of = (name, mimeType, content) => ({ name, mimeType, buffer: Buffer.from(content) });
 
-/** A site with a bit of everything on a server that has the demo; `bea` becomes the browser of somebody else at its model. */
+/**
+ * A site with a bit of everything on a server that has the demo; `bea` becomes the browser of
+ * somebody else at its model.
+ */
 export async function make_site(server, bea) {
   const { models } = await server.json("GET", "/models");
   const [{ id: model, project }] = models;
-  const { path } = await server.json("POST", "/users", { user: "ada", full_name: "Ada Lovelace", role: "annotator" });
-  await server.json("POST", `/models/${model}/layers`, {
-    name: "Moisture", kind: "numeric", type: "f32", resolution: 2048, unit: "%",
-    palette: { mode: "linear", min: 0, max: 5, points: [{ at: 0, color: "#ffffffff" }, { at: 5, color: "#0000ffff" }] },
+  const { path } = await server.json("POST", "/users", {
+    user: "ada",
+    full_name: "Ada Lovelace",
+    role: "annotator",
   });
-  await server.json("POST", `/models/${model}/layers/moisture/edits`, { op: "fill", value: 2.5, mode: "where", where: "true" });
+  await server.json("POST", `/models/${model}/layers`, {
+    name: "Moisture",
+    kind: "numeric",
+    type: "f32",
+    resolution: 2048,
+    unit: "%",
+    palette: {
+      mode: "linear",
+      min: 0,
+      max: 5,
+      points: [
+        { at: 0, color: "#ffffffff" },
+        { at: 5, color: "#0000ffff" },
+      ],
+    },
+  });
+  await server.json("POST", `/models/${model}/layers/moisture/edits`, {
+    op: "fill",
+    value: 2.5,
+    mode: "where",
+    where: "true",
+  });
   const columns = [
     { name: "Name", kind: "text", required: true },
     { name: "Depth", kind: "numeric", unit: "m" },
@@ -30,14 +60,38 @@ export async function make_site(server, bea) {
     { name: "Photos", kind: "picture" },
     { name: "Edges", kind: "line" },
   ];
-  const finds = await server.json("POST", `/projects/${project}/tables`, { name: "Finds", columns });
-  for (const [name, depth, state] of [["Handle", 1.25, "broken"], ["Rim", 0.5, "whole"], ["Base", 2, "whole"]])
+  const finds = await server.json("POST", `/projects/${project}/tables`, {
+    name: "Finds",
+    columns,
+  });
+  for (const [name, depth, state] of [
+    ["Handle", 1.25, "broken"],
+    ["Rim", 0.5, "whole"],
+    ["Base", 2, "whole"],
+  ])
     await server.json("POST", `/tables/${finds.id}/records`, { values: { name, depth, state } });
-  await server.json("POST", `/models/${model}/layers`, { name: "Finds", kind: "database", type: "u16", resolution: 2048, table: finds.slug });
-  const gone = await server.json("POST", `/models/${model}/layers`, { name: kGoneLayer, type: "u8", resolution: 2048 });
-  await server.json("POST", `/models/${model}/layers/${gone.slug}/edits`, { op: "fill", value: 1, mode: "where", where: "true" });
+  await server.json("POST", `/models/${model}/layers`, {
+    name: "Finds",
+    kind: "database",
+    type: "u16",
+    resolution: 2048,
+    table: finds.slug,
+  });
+  const gone = await server.json("POST", `/models/${model}/layers`, {
+    name: kGoneLayer,
+    type: "u8",
+    resolution: 2048,
+  });
+  await server.json("POST", `/models/${model}/layers/${gone.slug}/edits`, {
+    op: "fill",
+    value: 1,
+    mode: "where",
+    where: "true",
+  });
   await server.request("DELETE", `/models/${model}/layers/${gone.slug}`);
-  const made = await server.json("POST", `/projects/${project}/templates/stone-condition`, { model: String(model) });
+  const made = await server.json("POST", `/projects/${project}/templates/stone-condition`, {
+    model: String(model),
+  });
   const { slug: other } = await server.json("POST", "/projects", { name: kOtherProject });
   const { id: group } = await server.json("POST", "/groups", { name: kGroup, members: ["ada"] });
   await server.json("PUT", `/projects/${other}/groups/${group}`, { role: "annotator" });
@@ -46,11 +100,21 @@ export async function make_site(server, bea) {
   await bea.sign_in(server, person);
   const as_bea = async (path, body) => {
     const headers = { Authorization: `Bearer ${person.token}`, "Content-Type": "application/json" };
-    const answer = await fetch(`${server.url}/api/v1${path}`, { method: "POST", headers, body: JSON.stringify(body) });
+    const answer = await fetch(`${server.url}/api/v1${path}`, {
+      method: "POST",
+      headers,
+      body: JSON.stringify(body),
+    });
     assert.ok(answer.ok, `${path}: ${answer.status}`);
   };
   const reply = (thread, text) => as_bea(`/comments/${thread}/replies`, { text });
-  const fill_as_bea = (layer) => as_bea(`/models/${model}/layers/${layer}/edits`, { op: "fill", mode: "where", where: "true", value: 1 });
+  const fill_as_bea = (layer) =>
+    as_bea(`/models/${model}/layers/${layer}/edits`, {
+      op: "fill",
+      mode: "where",
+      where: "true",
+      value: 1,
+    });
   return { server, bea, model, invitation: path, terms: made.layers[0], reply, fill_as_bea };
 }
 
@@ -60,8 +124,9 @@ export async function bea_at({ server, bea, model }) {
 }
 
 /**
- * All screens and dialogs, in the words of a language, in this order and from the window of a desk. Each begins where `start` left the page and
- * is left by `end`; `keyboard`: the Tab key is to be walked through it.
+ * All screens and dialogs, in the words of a language, in this order and from the window of a desk.
+ * Each begins where `start` left the page and is left by `end`; `keyboard`: the Tab key is to be
+ * walked through it.
  */
 export function screens_of({ page }, w, { server, bea, ...site }) {
   const exact = (name) => ({ name, exact: true });
@@ -98,8 +163,13 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
   const choose_layer = (name) => button(w.layers.select(name)).click();
   /** Of a layer that has names in several languages. */
   const choose_named = ({ name, labels }) => {
-    const names = [...new Set([name, ...Object.values(labels)])].map((each) => w.layers.select(each));
-    return page.locator(names.map((each) => `strata-layer-panel button[aria-label="${each}"]`).join(", ")).first().click();
+    const names = [...new Set([name, ...Object.values(labels)])].map((each) =>
+      w.layers.select(each),
+    );
+    return page
+      .locator(names.map((each) => `strata-layer-panel button[aria-label="${each}"]`).join(", "))
+      .first()
+      .click();
   };
   const tool = async (key) => {
     await page.locator("strata-stage .surface").focus();
@@ -109,22 +179,34 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     await open(button(w.layers.new));
     await page.getByRole("radio", { name: new RegExp(`^${name}`) }).click();
   };
-  /** Once the stage and its picture have the window's shape: after that has changed, what is touched is what is seen there then. */
+  /**
+   * Once the stage and its picture have the window's shape: after that has changed, what is touched
+   * is what is seen there then.
+   */
   const at_stage = async (x, y) => {
-    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))); // until the page has heard of it
-    const fits = (canvas) => Math.abs(canvas.width / canvas.height - canvas.clientWidth / canvas.clientHeight) < 0.02;
-    await wait_for(() => page.locator("strata-stage canvas").first().evaluate(fits), "the picture in the stage's shape");
+    // until the page has heard of it
+    await page.evaluate(
+      () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
+    );
+    const fits = (canvas) =>
+      Math.abs(canvas.width / canvas.height - canvas.clientWidth / canvas.clientHeight) < 0.02;
+    await wait_for(
+      () => page.locator("strata-stage canvas").first().evaluate(fits),
+      "the picture in the stage's shape",
+    );
     const box = await page.locator("strata-stage").boundingBox();
     return [box.x + x * box.width, box.y + y * box.height];
   };
   const stage_centre = () => at_stage(0.5, 0.5);
-  const row = (key) => page.getByRole("grid").getByRole("rowheader", { name: new RegExp(`^${key}\\b`) });
+  const row = (key) =>
+    page.getByRole("grid").getByRole("rowheader", { name: new RegExp(`^${key}\\b`) });
   const people = page.locator("strata-people-menu");
   const choose_of_people = async (name) => {
     await people.locator(".faces").click();
     await people.getByRole("menuitem", { name }).click();
   };
-  const figure_drawn = () => page.locator('strata-figure-preview figure[data-state="drawn"]').waitFor();
+  const figure_drawn = () =>
+    page.locator('strata-figure-preview figure[data-state="drawn"]').waitFor();
   const bar = page.locator("strata-together-bar button");
   const card = page.locator("strata-comment-card section");
   const to_sign_in = async () => {
@@ -135,120 +217,243 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
   return [
     { name: "sign-in", start: to_sign_in },
     { name: "sign-in with a token", start: () => page.getByText(w.sign_in.otherwise).click() },
-    { name: "sign-in that fails", start: async () => {
-      await page.getByRole("textbox", exact(w.sign_in.user)).fill("nobody");
-      await page.getByLabel(w.sign_in.password, { exact: true }).fill("no such password");
-      await page.keyboard.press("Enter");
-      await page.getByText(w.sign_in.wrong).waitFor();
-    } },
-    { name: "join", start: async () => {
-      await page.goto(`${server.url}${site.invitation}`);
-      await page.getByRole("heading", exact(w.join.greeting("Ada Lovelace"))).waitFor();
-    } },
-    { name: "join without a link", start: async () => {
-      await page.goto(`${server.url}/join`);
-      await page.getByText(w.join.incomplete_title).waitFor();
-    } },
-    { name: "home", start: async () => {
-      await page.context().request.post(`${server.url}/api/v1/login`, { data: { token: server.token }, headers: { Origin: server.url } });
-      await page.goto(server.url);
-      await page.getByRole("heading", exact(w.home.projects)).waitFor();
-      await page.locator("strata-thumbnail canvas.drawn").first().waitFor();
-      await page.getByRole("combobox", exact(w.home.into)).waitFor();
-    }, keyboard: true },
-    { name: "new project", start: () => open(button(w.projects.new)), end: close_dialog, keyboard: true },
-    { name: "menu of a project", start: async () => {
-      await page.getByRole("listitem").filter({ hasText: kOtherProject }).hover();
-      await button(w.home.options(kOtherProject)).click();
-    }, end: escape },
-    { name: "project", start: from_menu(w.home.options(kOtherProject), w.projects.describe), end: close_dialog },
-    { name: "Bin, empty", start: async () => {
-      await from_menu(w.home.options(kOtherProject), w.bin.open)();
-      await page.getByText(w.bin.none).waitFor();
-    }, end: close_dialog },
-    { name: "Bin", start: async () => {
-      await from_menu(w.home.options("Demo"), w.bin.open)();
-      await page.getByText(kGoneLayer).waitFor();
-    }, end: close_dialog, keyboard: true },
-    { name: "delete a project", start: async () => {
-      await from_menu(w.home.options(kOtherProject), w.layers.delete)();
-      await page.getByText(w.projects.delete_lead).waitFor();
-    }, end: close_dialog },
-    { name: "delete a project with models", start: from_menu(w.home.options("Demo"), w.layers.delete), end: close_dialog },
-    { name: "empty project", start: async () => {
-      await page.getByRole("link", { name: kOtherProject }).click();
-      await page.getByRole("heading", exact(kOtherProject)).waitFor();
-      await page.getByText(w.home.empty_title).waitFor();
-    } },
-    { name: "no such project", start: async () => {
-      await page.goto(`${server.url}/projects/nowhere`);
-      await page.getByRole("heading", exact(w.home.missing_title)).waitFor();
-    } },
-    { name: "models of a project", start: async () => {
-      await page.getByRole("link", exact(w.home.all_projects)).click();
-      await page.getByRole("heading", exact(w.home.projects)).waitFor();
-      await page.getByRole("link", { name: "Demo" }).click();
-      await page.getByRole("link", exact(w.home.open("Demo pot"))).waitFor();
-      await page.locator("strata-thumbnail canvas.drawn").first().waitFor();
-    }, keyboard: true },
-    { name: "menu of the account", start: () => button(w.account.menu("owner")).click(), end: escape },
-    { name: "menu of a model", start: async () => {
-      await page.locator("li").first().hover();
-      await button(w.home.options("Demo pot")).click();
-    }, end: escape },
-    { name: "question", start: from_menu(w.home.options("Demo pot"), w.layers.delete), end: close_dialog, keyboard: true },
+    {
+      name: "sign-in that fails",
+      start: async () => {
+        await page.getByRole("textbox", exact(w.sign_in.user)).fill("nobody");
+        await page.getByLabel(w.sign_in.password, { exact: true }).fill("no such password");
+        await page.keyboard.press("Enter");
+        await page.getByText(w.sign_in.wrong).waitFor();
+      },
+    },
+    {
+      name: "join",
+      start: async () => {
+        await page.goto(`${server.url}${site.invitation}`);
+        await page.getByRole("heading", exact(w.join.greeting("Ada Lovelace"))).waitFor();
+      },
+    },
+    {
+      name: "join without a link",
+      start: async () => {
+        await page.goto(`${server.url}/join`);
+        await page.getByText(w.join.incomplete_title).waitFor();
+      },
+    },
+    {
+      name: "home",
+      start: async () => {
+        await page.context().request.post(`${server.url}/api/v1/login`, {
+          data: { token: server.token },
+          headers: { Origin: server.url },
+        });
+        await page.goto(server.url);
+        await page.getByRole("heading", exact(w.home.projects)).waitFor();
+        await page.locator("strata-thumbnail canvas.drawn").first().waitFor();
+        await page.getByRole("combobox", exact(w.home.into)).waitFor();
+      },
+      keyboard: true,
+    },
+    {
+      name: "new project",
+      start: () => open(button(w.projects.new)),
+      end: close_dialog,
+      keyboard: true,
+    },
+    {
+      name: "menu of a project",
+      start: async () => {
+        await page.getByRole("listitem").filter({ hasText: kOtherProject }).hover();
+        await button(w.home.options(kOtherProject)).click();
+      },
+      end: escape,
+    },
+    {
+      name: "project",
+      start: from_menu(w.home.options(kOtherProject), w.projects.describe),
+      end: close_dialog,
+    },
+    {
+      name: "Bin, empty",
+      start: async () => {
+        await from_menu(w.home.options(kOtherProject), w.bin.open)();
+        await page.getByText(w.bin.none).waitFor();
+      },
+      end: close_dialog,
+    },
+    {
+      name: "Bin",
+      start: async () => {
+        await from_menu(w.home.options("Demo"), w.bin.open)();
+        await page.getByText(kGoneLayer).waitFor();
+      },
+      end: close_dialog,
+      keyboard: true,
+    },
+    {
+      name: "delete a project",
+      start: async () => {
+        await from_menu(w.home.options(kOtherProject), w.layers.delete)();
+        await page.getByText(w.projects.delete_lead).waitFor();
+      },
+      end: close_dialog,
+    },
+    {
+      name: "delete a project with models",
+      start: from_menu(w.home.options("Demo"), w.layers.delete),
+      end: close_dialog,
+    },
+    {
+      name: "empty project",
+      start: async () => {
+        await page.getByRole("link", { name: kOtherProject }).click();
+        await page.getByRole("heading", exact(kOtherProject)).waitFor();
+        await page.getByText(w.home.empty_title).waitFor();
+      },
+    },
+    {
+      name: "no such project",
+      start: async () => {
+        await page.goto(`${server.url}/projects/nowhere`);
+        await page.getByRole("heading", exact(w.home.missing_title)).waitFor();
+      },
+    },
+    {
+      name: "models of a project",
+      start: async () => {
+        await page.getByRole("link", exact(w.home.all_projects)).click();
+        await page.getByRole("heading", exact(w.home.projects)).waitFor();
+        await page.getByRole("link", { name: "Demo" }).click();
+        await page.getByRole("link", exact(w.home.open("Demo pot"))).waitFor();
+        await page.locator("strata-thumbnail canvas.drawn").first().waitFor();
+      },
+      keyboard: true,
+    },
+    {
+      name: "menu of the account",
+      start: () => button(w.account.menu("owner")).click(),
+      end: escape,
+    },
+    {
+      name: "menu of a model",
+      start: async () => {
+        await page.locator("li").first().hover();
+        await button(w.home.options("Demo pot")).click();
+      },
+      end: escape,
+    },
+    {
+      name: "question",
+      start: from_menu(w.home.options("Demo pot"), w.layers.delete),
+      end: close_dialog,
+      keyboard: true,
+    },
     { name: "account", start: account(w.account.open), end: close_dialog, keyboard: true },
-    { name: "account: new token", start: async () => {
-      await account(w.account.open)();
-      await button(w.account.token_new).click();
-    }, end: close_dialog },
-    { name: "people", start: async () => {
-      await account(w.account.people)();
-      await page.getByRole("row", { name: /Ada Lovelace/ }).waitFor();
-    }, end: close_dialog, keyboard: true },
-    { name: "people: invite", start: async () => {
-      await account(w.account.people)();
-      await button(w.site_people.invite).click();
-    }, end: close_dialog },
-    { name: "people: roles in projects", start: async () => {
-      await account(w.account.people)();
-      await button(w.site_people.options("Ada Lovelace")).click();
-      await item(w.site_people.projects).click();
-      await page.getByRole("combobox", exact(w.project_roles.role_in(kOtherProject))).selectOption("curator");
-      await page.locator("strata-project-roles-dialog").getByRole("status").waitFor();
-    }, end: close_both, keyboard: true },
-    { name: "people: groups", start: async () => {
-      await account(w.account.people)();
-      await page.getByRole("radio", exact(w.groups.title)).click();
-      await page.getByText(kGroup).waitFor();
-    }, end: close_dialog, keyboard: true },
-    { name: "people: who is in a group", start: async () => {
-      await account(w.account.people)();
-      await page.getByRole("radio", exact(w.groups.title)).click();
-      await button(w.groups.options(kGroup)).click();
-      await item(w.groups.members).click();
-      await page.getByRole("checkbox", { name: "Ada Lovelace" }).waitFor();
-    }, end: close_both, keyboard: true },
-    { name: "people: roles of a group", start: async () => {
-      await account(w.account.people)();
-      await page.getByRole("radio", exact(w.groups.title)).click();
-      await button(w.groups.options(kGroup)).click();
-      await item(w.site_people.projects).click();
-      await page.getByRole("combobox", exact(w.project_roles.role_in(kOtherProject))).waitFor();
-    }, end: close_both },
+    {
+      name: "account: new token",
+      start: async () => {
+        await account(w.account.open)();
+        await button(w.account.token_new).click();
+      },
+      end: close_dialog,
+    },
+    {
+      name: "people",
+      start: async () => {
+        await account(w.account.people)();
+        await page.getByRole("row", { name: /Ada Lovelace/ }).waitFor();
+      },
+      end: close_dialog,
+      keyboard: true,
+    },
+    {
+      name: "people: invite",
+      start: async () => {
+        await account(w.account.people)();
+        await button(w.site_people.invite).click();
+      },
+      end: close_dialog,
+    },
+    {
+      name: "people: roles in projects",
+      start: async () => {
+        await account(w.account.people)();
+        await button(w.site_people.options("Ada Lovelace")).click();
+        await item(w.site_people.projects).click();
+        await page
+          .getByRole("combobox", exact(w.project_roles.role_in(kOtherProject)))
+          .selectOption("curator");
+        await page.locator("strata-project-roles-dialog").getByRole("status").waitFor();
+      },
+      end: close_both,
+      keyboard: true,
+    },
+    {
+      name: "people: groups",
+      start: async () => {
+        await account(w.account.people)();
+        await page.getByRole("radio", exact(w.groups.title)).click();
+        await page.getByText(kGroup).waitFor();
+      },
+      end: close_dialog,
+      keyboard: true,
+    },
+    {
+      name: "people: who is in a group",
+      start: async () => {
+        await account(w.account.people)();
+        await page.getByRole("radio", exact(w.groups.title)).click();
+        await button(w.groups.options(kGroup)).click();
+        await item(w.groups.members).click();
+        await page.getByRole("checkbox", { name: "Ada Lovelace" }).waitFor();
+      },
+      end: close_both,
+      keyboard: true,
+    },
+    {
+      name: "people: roles of a group",
+      start: async () => {
+        await account(w.account.people)();
+        await page.getByRole("radio", exact(w.groups.title)).click();
+        await button(w.groups.options(kGroup)).click();
+        await item(w.site_people.projects).click();
+        await page.getByRole("combobox", exact(w.project_roles.role_in(kOtherProject))).waitFor();
+      },
+      end: close_both,
+    },
     { name: "preferences", start: account(w.settings.open), end: close_dialog, keyboard: true },
-    { name: "no such model", start: async () => {
-      await page.goto(`${server.url}/models/999`);
-      await page.getByText(w.model.not_found_title).waitFor();
-    } },
-    { name: "model", start: async () => {
-      await page.goto(`${server.url}/models/${site.model}`);
-      await wait_for(async () => Number(await page.locator("strata-stage canvas").first().evaluate((canvas) => canvas.dataset.frames ?? 0)) > 0, "the first picture");
-    }, keyboard: true },
-    { name: "brush: a class", start: async () => {
-      await choose_layer("cracks");
-      await tool("b");
-    }, keyboard: true },
+    {
+      name: "no such model",
+      start: async () => {
+        await page.goto(`${server.url}/models/999`);
+        await page.getByText(w.model.not_found_title).waitFor();
+      },
+    },
+    {
+      name: "model",
+      start: async () => {
+        await page.goto(`${server.url}/models/${site.model}`);
+        await wait_for(
+          async () =>
+            Number(
+              await page
+                .locator("strata-stage canvas")
+                .first()
+                .evaluate((canvas) => canvas.dataset.frames ?? 0),
+            ) > 0,
+          "the first picture",
+        );
+      },
+      keyboard: true,
+    },
+    {
+      name: "brush: a class",
+      start: async () => {
+        await choose_layer("cracks");
+        await tool("b");
+      },
+      keyboard: true,
+    },
     { name: "brush: a number", start: () => choose_layer("Moisture") },
     { name: "brush: a record", start: () => choose_layer("Finds") },
     { name: "brush: a term", start: () => choose_named(site.terms) },
@@ -256,285 +461,572 @@ export function screens_of({ page }, w, { server, bea, ...site }) {
     { name: "polygon", start: () => tool("a") },
     { name: "fill connected", start: () => tool("g") },
     { name: "line", start: () => tool("d") },
-    { name: "measure", start: async () => {
-      const panel = page.locator("strata-measure-panel");
-      await tool("m");
-      for (const place of [[0.4, 0.5], [0.6, 0.5], [0.5, 0.6]]) await page.mouse.click(...(await at_stage(...place))); // prettier-ignore
-      await panel.locator('[data-figure="area"]').waitFor();
-      await panel.getByRole("button", exact(w.measure.end)).click();
-      await panel.locator("strata-profile-plot path.curve").first().waitFor();
-    }, keyboard: true },
-    { name: "value under the pointer", start: async () => {
-      await tool("v");
-      await choose_layer("Finds");
-      await page.mouse.move(...(await stage_centre()));
-      await page.locator("strata-value-readout .card").waitFor();
-    }, end: () => page.mouse.move(2, 2) },
-    { name: "menu of a layer", start: () => button(w.layers.options("Finds")).click(), end: escape },
+    {
+      name: "measure",
+      start: async () => {
+        const panel = page.locator("strata-measure-panel");
+        await tool("m");
+        for (const place of [
+          [0.4, 0.5],
+          [0.6, 0.5],
+          [0.5, 0.6],
+        ])
+          await page.mouse.click(...(await at_stage(...place)));
+        await panel.locator('[data-figure="area"]').waitFor();
+        await panel.getByRole("button", exact(w.measure.end)).click();
+        await panel.locator("strata-profile-plot path.curve").first().waitFor();
+      },
+      keyboard: true,
+    },
+    {
+      name: "value under the pointer",
+      start: async () => {
+        await tool("v");
+        await choose_layer("Finds");
+        await page.mouse.move(...(await stage_centre()));
+        await page.locator("strata-value-readout .card").waitFor();
+      },
+      end: () => page.mouse.move(2, 2),
+    },
+    {
+      name: "menu of a layer",
+      start: () => button(w.layers.options("Finds")).click(),
+      end: escape,
+    },
     { name: "menu of the layers", start: () => button(w.layers.more).click(), end: escape },
     { name: "menu of the view", start: () => button(w.model.view).first().click(), end: escape },
-    ...["presence", "classes", "measurement", "records", "formula", "shape"].map((kind) => ({ name: `new layer: ${kind}`, start: purpose(w.layer_dialog[kind]), end: close_dialog, keyboard: kind === "classes" })),
+    ...["presence", "classes", "measurement", "records", "formula", "shape"].map((kind) => ({
+      name: `new layer: ${kind}`,
+      start: purpose(w.layer_dialog[kind]),
+      end: close_dialog,
+      keyboard: kind === "classes",
+    })),
     { name: "layer", start: of_layer("Moisture", w.layers.edit), end: close_dialog },
     { name: "colours", start: of_layer("Finds", w.colors.open), end: close_dialog },
     { name: "areas of classes", start: of_layer("cracks", w.layers.statistics), end: close_dialog },
-    { name: "areas of measurements", start: async () => {
-      await of_layer("Moisture", w.layers.statistics)();
-      await page.locator("strata-statistics-dialog").getByText(w.statistics.mean).waitFor();
-    }, end: close_dialog, keyboard: true },
+    {
+      name: "areas of measurements",
+      start: async () => {
+        await of_layer("Moisture", w.layers.statistics)();
+        await page.locator("strata-statistics-dialog").getByText(w.statistics.mean).waitFor();
+      },
+      end: close_dialog,
+      keyboard: true,
+    },
     { name: "paint from a file", start: of_layer("Moisture", w.maps.menu), end: close_dialog },
-    { name: "fill where", start: async () => {
-      await choose_layer("Moisture");
-      await tool("b");
-      await open(button(w.areas.where));
-    }, end: close_dialog },
-    { name: "templates", start: async () => {
-      await from_menu(w.layers.more, w.templates.open)();
-      await page.locator("strata-template-dialog").getByRole("listitem").first().waitFor();
-    }, end: close_dialog },
-    { name: "terms from a file", start: from_menu(w.layers.more, w.terms_dialog.open), end: close_dialog },
-    { name: "layers of another scan", start: from_menu(w.layers.more, w.transfer.open), end: close_dialog },
-    { name: "view", start: async () => {
-      await page.locator("strata-view-panel").getByRole("button", { name: w.view.title }).first().click();
-      await page.keyboard.press("Escape");
-      await page.getByRole("radio", exact(w.view.lights.raking)).click();
-      await page.getByRole("radio", exact(w.view.sections.box)).click();
-    } },
-    { name: "keep a view", start: async () => {
-      await page.locator("strata-view-list").getByText(w.kept_views.none).waitFor();
-      await open(button(w.kept_views.keep));
-      await page.getByRole("textbox", exact(w.kept_views.name)).fill("Inscription beside the handle, upper register");
-      await page.getByRole("textbox", exact(w.kept_views.text)).fill("Read in raking light.\nCompare https://example.org/a-very-long-address/that-does-not-break/anywhere/in-it");
-    }, keyboard: true },
-    { name: "views", start: async () => {
-      await page.locator("strata-view-dialog").getByRole("button", exact(w.kept_views.keep_yes)).click();
-      await page.locator("strata-view-list").getByRole("listitem").waitFor();
-      await page.locator("strata-view-list").getByRole("listitem").getByRole("button").first().click();
-      await page.locator("strata-view-list").evaluate((list) => list.scrollIntoView());
-    }, keyboard: true },
-    { name: "menu of a view", start: () => button(w.layers.options("Inscription beside the handle, upper register")).click(), end: escape },
-    { name: "figure of a view", start: async () => {
-      await from_menu(w.layers.options("Inscription beside the handle, upper register"), w.figures.of_view)();
-      await figure_drawn();
-    }, end: close_dialog },
-    { name: "figure", start: async () => {
-      await open(button(w.figures.open));
-      await page.getByRole("combobox", exact(w.figures.scale)).selectOption("own");
-      await page.getByRole("textbox", exact(w.figures.own_scale_label)).fill("1 / 3");
-      await page.getByText(w.figures.wrong_scale).waitFor();
-      await page.getByRole("radio", exact(w.figures.own_dpi)).click();
-      await page.getByRole("combobox", exact(w.figures.labels)).selectOption({ label: "Finds" });
-      await figure_drawn();
-    }, keyboard: true },
-    { name: "figure: a face is picked", start: async () => {
-      await page.getByRole("textbox", exact(w.figures.own_scale_label)).fill("1 : 3");
-      await page.getByRole("combobox", exact(w.figures.from)).selectOption("face");
-      await page.locator("strata-face-hint section").waitFor();
-    }, end: async () => {
-      await escape();
-      await dialog.first().waitFor();
-      await close_dialog();
-    } },
-    { name: "new tour", start: async () => {
-      await open(button(w.tours.new));
-      const languages = page.locator("strata-tour-languages");
-      await page.getByRole("textbox", exact(w.tours.name)).fill("Once around the pot, and into it");
-      await page.locator("strata-tour-stops").getByRole("button", exact(w.tours.add)).click();
-      for (const tag of ["fr", "zh-Hant"]) {
-        await languages.getByRole("combobox").selectOption(tag);
-        await languages.getByRole("button", exact(w.tours.language_add)).click();
-      }
-      const fields = page.locator("strata-tour-stop-fields");
-      await fields.getByRole("button", exact(w.tours.layer_add)).click();
-      await fields.getByRole("button", exact(w.tours.table_add)).click();
-      await fields.getByRole("button", exact(w.tours.column_add)).click();
-    }, keyboard: true },
-    { name: "tour: a stop that is refused", start: async () => {
-      await page.locator("strata-tour-stop-fields").getByRole("textbox", { name: w.tours.transition_takes }).fill("99");
-      await button(w.save).click();
-      await page.getByText(w.tours.wrong_seconds(0, 30)).waitFor();
-    } },
-    { name: "tour: closing without saving", start: async () => {
-      await escape();
-      await page.locator("strata-question dialog[open]").waitFor();
-    }, end: async () => {
-      await page.locator("strata-question").getByRole("button", exact(w.cancel)).click();
-      await page.locator("strata-tour-stop-fields").getByRole("textbox", { name: w.tours.transition_takes }).fill("2");
-    } },
-    { name: "tour: a stop is tried", start: async () => {
-      await page.locator("strata-tour-stop-fields").getByRole("button", exact(w.tours.try_stop)).click();
-      await page.locator("strata-tour-trial section").waitFor();
-    }, end: async () => {
-      await button(w.tours.trial_end).click();
-      await page.locator("strata-tour-dialog").getByRole("button", exact(w.save)).click();
-      await wait_for(async () => (await dialog.count()) === 0, "the editor to close");
-    } },
-    { name: "tours", start: async () => {
-      await page.locator("strata-tour-list").getByRole("listitem").waitFor();
-      await page.locator("strata-tour-list").evaluate((list) => list.scrollIntoView());
-    } },
-    { name: "kiosk links of a tour", start: async () => {
-      await from_menu(w.layers.options("Once around the pot, and into it"), w.kiosks.of_tour)();
-      await button(w.kiosks.new).click();
-      await page.getByRole("textbox", exact(w.kiosks.name)).fill("Entrance hall, beside the ticket desk on the left");
-      await button(w.kiosks.make).click();
-      await page.locator("strata-kiosks-dialog strata-copy-field").waitFor();
-      await page.locator("strata-kiosks-dialog").getByRole("listitem").waitFor();
-    }, end: close_dialog, keyboard: true },
-    { name: "kiosks", start: async () => {
-      await account(w.kiosks.open)();
-      await page.locator("strata-kiosks-dialog").getByRole("listitem").first().waitFor();
-    }, end: async () => {
-      await close_dialog();
-      for (const { id } of (await server.json("GET", "/kiosks")).kiosks) await server.request("DELETE", `/kiosks/${id}`);
-      for (const { id } of (await server.json("GET", `/models/${site.model}/tours`)).tours) await server.request("DELETE", `/models/${site.model}/tours/${id}`);
-    } },
-    { name: "view with a section of its own", start: async () => {
-      const [view] = (await server.json("GET", `/models/${site.model}/views`)).views;
-      await server.json("PATCH", `/models/${site.model}/views/${view.id}`, { camera: { ...view.camera, section: [[0.6, 0.6, 0.5, 0]] } });
-      // Until the page has heard of the change, the button leads to what the view showed before.
-      const section = page.locator("strata-view-panel").getByText(w.view.section_of_view(1));
-      await wait_for(async () => {
-        await page.locator("strata-view-list").getByRole("listitem").getByRole("button").first().click();
-        return section.isVisible();
-      }, "the section of the view", 500);
-    }, end: async () => {
-      for (const { id } of (await server.json("GET", `/models/${site.model}/views`)).views) await server.request("DELETE", `/models/${site.model}/views/${id}`);
-      await page.locator("strata-view-list").getByText(w.kept_views.none).waitFor();
-      await page.locator("strata-view-list").getByRole("button", exact(w.kept_views.back)).click();
-    } },
-    { name: "orthophoto", start: async () => {
-      await from_menu(w.view.look_more, w.orthophoto.open)();
-    }, end: close_dialog },
+    {
+      name: "fill where",
+      start: async () => {
+        await choose_layer("Moisture");
+        await tool("b");
+        await open(button(w.areas.where));
+      },
+      end: close_dialog,
+    },
+    {
+      name: "templates",
+      start: async () => {
+        await from_menu(w.layers.more, w.templates.open)();
+        await page.locator("strata-template-dialog").getByRole("listitem").first().waitFor();
+      },
+      end: close_dialog,
+    },
+    {
+      name: "terms from a file",
+      start: from_menu(w.layers.more, w.terms_dialog.open),
+      end: close_dialog,
+    },
+    {
+      name: "layers of another scan",
+      start: from_menu(w.layers.more, w.transfer.open),
+      end: close_dialog,
+    },
+    {
+      name: "view",
+      start: async () => {
+        await page
+          .locator("strata-view-panel")
+          .getByRole("button", { name: w.view.title })
+          .first()
+          .click();
+        await page.keyboard.press("Escape");
+        await page.getByRole("radio", exact(w.view.lights.raking)).click();
+        await page.getByRole("radio", exact(w.view.sections.box)).click();
+      },
+    },
+    {
+      name: "keep a view",
+      start: async () => {
+        await page.locator("strata-view-list").getByText(w.kept_views.none).waitFor();
+        await open(button(w.kept_views.keep));
+        await page
+          .getByRole("textbox", exact(w.kept_views.name))
+          .fill("Inscription beside the handle, upper register");
+        await page
+          .getByRole("textbox", exact(w.kept_views.text))
+          .fill(
+            "Read in raking light.\nCompare https://example.org/a-very-long-address/that-does-not-break/anywhere/in-it",
+          );
+      },
+      keyboard: true,
+    },
+    {
+      name: "views",
+      start: async () => {
+        await page
+          .locator("strata-view-dialog")
+          .getByRole("button", exact(w.kept_views.keep_yes))
+          .click();
+        await page.locator("strata-view-list").getByRole("listitem").waitFor();
+        await page
+          .locator("strata-view-list")
+          .getByRole("listitem")
+          .getByRole("button")
+          .first()
+          .click();
+        await page.locator("strata-view-list").evaluate((list) => list.scrollIntoView());
+      },
+      keyboard: true,
+    },
+    {
+      name: "menu of a view",
+      start: () =>
+        button(w.layers.options("Inscription beside the handle, upper register")).click(),
+      end: escape,
+    },
+    {
+      name: "figure of a view",
+      start: async () => {
+        await from_menu(
+          w.layers.options("Inscription beside the handle, upper register"),
+          w.figures.of_view,
+        )();
+        await figure_drawn();
+      },
+      end: close_dialog,
+    },
+    {
+      name: "figure",
+      start: async () => {
+        await open(button(w.figures.open));
+        await page.getByRole("combobox", exact(w.figures.scale)).selectOption("own");
+        await page.getByRole("textbox", exact(w.figures.own_scale_label)).fill("1 / 3");
+        await page.getByText(w.figures.wrong_scale).waitFor();
+        await page.getByRole("radio", exact(w.figures.own_dpi)).click();
+        await page.getByRole("combobox", exact(w.figures.labels)).selectOption({ label: "Finds" });
+        await figure_drawn();
+      },
+      keyboard: true,
+    },
+    {
+      name: "figure: a face is picked",
+      start: async () => {
+        await page.getByRole("textbox", exact(w.figures.own_scale_label)).fill("1 : 3");
+        await page.getByRole("combobox", exact(w.figures.from)).selectOption("face");
+        await page.locator("strata-face-hint section").waitFor();
+      },
+      end: async () => {
+        await escape();
+        await dialog.first().waitFor();
+        await close_dialog();
+      },
+    },
+    {
+      name: "new tour",
+      start: async () => {
+        await open(button(w.tours.new));
+        const languages = page.locator("strata-tour-languages");
+        await page
+          .getByRole("textbox", exact(w.tours.name))
+          .fill("Once around the pot, and into it");
+        await page.locator("strata-tour-stops").getByRole("button", exact(w.tours.add)).click();
+        for (const tag of ["fr", "zh-Hant"]) {
+          await languages.getByRole("combobox").selectOption(tag);
+          await languages.getByRole("button", exact(w.tours.language_add)).click();
+        }
+        const fields = page.locator("strata-tour-stop-fields");
+        await fields.getByRole("button", exact(w.tours.layer_add)).click();
+        await fields.getByRole("button", exact(w.tours.table_add)).click();
+        await fields.getByRole("button", exact(w.tours.column_add)).click();
+      },
+      keyboard: true,
+    },
+    {
+      name: "tour: a stop that is refused",
+      start: async () => {
+        await page
+          .locator("strata-tour-stop-fields")
+          .getByRole("textbox", { name: w.tours.transition_takes })
+          .fill("99");
+        await button(w.save).click();
+        await page.getByText(w.tours.wrong_seconds(0, 30)).waitFor();
+      },
+    },
+    {
+      name: "tour: closing without saving",
+      start: async () => {
+        await escape();
+        await page.locator("strata-question dialog[open]").waitFor();
+      },
+      end: async () => {
+        await page.locator("strata-question").getByRole("button", exact(w.cancel)).click();
+        await page
+          .locator("strata-tour-stop-fields")
+          .getByRole("textbox", { name: w.tours.transition_takes })
+          .fill("2");
+      },
+    },
+    {
+      name: "tour: a stop is tried",
+      start: async () => {
+        await page
+          .locator("strata-tour-stop-fields")
+          .getByRole("button", exact(w.tours.try_stop))
+          .click();
+        await page.locator("strata-tour-trial section").waitFor();
+      },
+      end: async () => {
+        await button(w.tours.trial_end).click();
+        await page.locator("strata-tour-dialog").getByRole("button", exact(w.save)).click();
+        await wait_for(async () => (await dialog.count()) === 0, "the editor to close");
+      },
+    },
+    {
+      name: "tours",
+      start: async () => {
+        await page.locator("strata-tour-list").getByRole("listitem").waitFor();
+        await page.locator("strata-tour-list").evaluate((list) => list.scrollIntoView());
+      },
+    },
+    {
+      name: "kiosk links of a tour",
+      start: async () => {
+        await from_menu(w.layers.options("Once around the pot, and into it"), w.kiosks.of_tour)();
+        await button(w.kiosks.new).click();
+        await page
+          .getByRole("textbox", exact(w.kiosks.name))
+          .fill("Entrance hall, beside the ticket desk on the left");
+        await button(w.kiosks.make).click();
+        await page.locator("strata-kiosks-dialog strata-copy-field").waitFor();
+        await page.locator("strata-kiosks-dialog").getByRole("listitem").waitFor();
+      },
+      end: close_dialog,
+      keyboard: true,
+    },
+    {
+      name: "kiosks",
+      start: async () => {
+        await account(w.kiosks.open)();
+        await page.locator("strata-kiosks-dialog").getByRole("listitem").first().waitFor();
+      },
+      end: async () => {
+        await close_dialog();
+        for (const { id } of (await server.json("GET", "/kiosks")).kiosks)
+          await server.request("DELETE", `/kiosks/${id}`);
+        for (const { id } of (await server.json("GET", `/models/${site.model}/tours`)).tours)
+          await server.request("DELETE", `/models/${site.model}/tours/${id}`);
+      },
+    },
+    {
+      name: "view with a section of its own",
+      start: async () => {
+        const [view] = (await server.json("GET", `/models/${site.model}/views`)).views;
+        await server.json("PATCH", `/models/${site.model}/views/${view.id}`, {
+          camera: { ...view.camera, section: [[0.6, 0.6, 0.5, 0]] },
+        });
+        // Until the page has heard of the change, the button leads to what the view showed before.
+        const section = page.locator("strata-view-panel").getByText(w.view.section_of_view(1));
+        await wait_for(
+          async () => {
+            await page
+              .locator("strata-view-list")
+              .getByRole("listitem")
+              .getByRole("button")
+              .first()
+              .click();
+            return section.isVisible();
+          },
+          "the section of the view",
+          500,
+        );
+      },
+      end: async () => {
+        for (const { id } of (await server.json("GET", `/models/${site.model}/views`)).views)
+          await server.request("DELETE", `/models/${site.model}/views/${id}`);
+        await page.locator("strata-view-list").getByText(w.kept_views.none).waitFor();
+        await page
+          .locator("strata-view-list")
+          .getByRole("button", exact(w.kept_views.back))
+          .click();
+      },
+    },
+    {
+      name: "orthophoto",
+      start: async () => {
+        await from_menu(w.view.look_more, w.orthophoto.open)();
+      },
+      end: close_dialog,
+    },
     { name: "help", start: () => open(button(w.model.help)), end: close_dialog, keyboard: true },
-    { name: "tour", start: async () => {
-      await open(button(w.model.help));
-      await button(w.tour.again).click();
-      await page.locator("strata-tour section").waitFor();
-    }, keyboard: true },
+    {
+      name: "tour",
+      start: async () => {
+        await open(button(w.model.help));
+        await button(w.tour.again).click();
+        await page.locator("strata-tour section").waitFor();
+      },
+      keyboard: true,
+    },
     { name: "tour: the layers", start: () => button(w.tour.next).click() },
-    { name: "tour: the brush", start: () => button(w.tour.next).click(), end: async () => {
-      await escape();
-      await page.locator("strata-tour section").waitFor({ state: "detached" });
-    } },
-    { name: "shape of the brush", start: async () => {
-      await tool("b");
-      await page.locator("strata-shape-picker input[type=file]").setInputFiles(file_of("leaf.png", "image/png", kPhoto));
-      await page.locator("strata-shape-dialog dialog[open]").waitFor();
-    }, end: close_dialog, keyboard: true },
+    {
+      name: "tour: the brush",
+      start: () => button(w.tour.next).click(),
+      end: async () => {
+        await escape();
+        await page.locator("strata-tour section").waitFor({ state: "detached" });
+      },
+    },
+    {
+      name: "shape of the brush",
+      start: async () => {
+        await tool("b");
+        await page
+          .locator("strata-shape-picker input[type=file]")
+          .setInputFiles(file_of("leaf.png", "image/png", kPhoto));
+        await page.locator("strata-shape-dialog dialog[open]").waitFor();
+      },
+      end: close_dialog,
+      keyboard: true,
+    },
     { name: "about", start: () => open(button(w.model.details)), end: close_dialog },
-    { name: "size", start: async () => {
-      await open(button(w.model.details));
-      await button(w.model.correct_size).click();
-      await page.locator("strata-scale-dialog dialog[open]").waitFor();
-    }, end: close_dialog },
-    { name: "table", start: async () => {
-      await choose_layer("Finds");
-      await button(w.tables.open).first().click();
-      await page.getByRole("grid").getByText("Handle").first().waitFor();
-    }, keyboard: true },
+    {
+      name: "size",
+      start: async () => {
+        await open(button(w.model.details));
+        await button(w.model.correct_size).click();
+        await page.locator("strata-scale-dialog dialog[open]").waitFor();
+      },
+      end: close_dialog,
+    },
+    {
+      name: "table",
+      start: async () => {
+        await choose_layer("Finds");
+        await button(w.tables.open).first().click();
+        await page.getByRole("grid").getByText("Handle").first().waitFor();
+      },
+      keyboard: true,
+    },
     { name: "menu of a table", start: () => button(w.tables.more).click(), end: escape },
-    { name: "new column", start: from_menu(w.tables.more, w.tables.new_column), end: close_dialog, keyboard: true },
-    { name: "records from a file", start: with_files(w.tables.import_csv, [file_of("finds.csv", "text/csv", "key,name,depth\n1,Handle of a jug,1.5\n,Spout,deep\n")]), end: close_dialog, keyboard: true },
-    { name: "photos by their names", start: with_files(w.files.add_menu, ["Handle_1.png", "Lid_1.png"].map((name) => file_of(name, "image/png", kPhoto))), end: close_dialog, keyboard: true },
-    { name: "record", start: () => open(page.locator("strata-table-panel").getByRole("button", exact(w.tables.new_record))), end: close_dialog },
-    { name: "delete a record", start: async () => {
-      await page.getByRole("grid").getByRole("rowheader", exact("1")).click();
-      await open(page.locator("strata-table-panel").getByRole("button", exact(w.tables.delete)).first());
-    }, end: close_dialog },
-    { name: "record that somebody else edits", start: async () => {
-      await bea_at({ server, bea, model: site.model });
-      await bea.page.getByRole("button", { name: "Paint on Finds" }).click();
-      await bea.page.keyboard.press("t");
-      await bea.page.getByRole("grid").getByRole("rowheader", exact("2")).click();
-      await bea.page.getByRole("button", exact("Edit the record")).click();
-      await row(2).getByRole("img", exact(w.tables.edited_by("Bea Ost"))).waitFor();
-      await row(2).click();
-      await open(page.locator("strata-table-panel").getByRole("button", exact(w.tables.edit)));
-      await page.locator("strata-record-dialog").getByText(w.tables.edited_by("Bea Ost")).waitFor();
-    }, end: async () => {
-      await close_dialog();
-      await bea.page.keyboard.press("Escape");
-      await page.locator("strata-table-panel").getByRole("button", exact(w.tables.close)).click();
-    }, keyboard: true },
-    { name: "menu of the people", start: async () => {
-      await bea_at({ server, bea, model: site.model }); // without the table
-      await people.locator(".faces").click();
-      await people.getByRole("menuitem", { name: w.together.follow("Bea Ost") }).waitFor();
-    }, end: escape },
-    { name: "following", start: async () => {
-      await choose_of_people(w.together.follow("Bea Ost"));
-      await bar.getByText(w.together.following("Bea Ost")).waitFor();
-      const [x, y] = await stage_centre();
-      await bea.page.mouse.move(x + 20, y + 30); // she points
-      await page.locator("strata-people-overlay .person").waitFor({ state: "attached" });
-    }, end: async () => {
-      await bea.page.mouse.move(2, 2);
-      await bar.click();
-      await bar.waitFor({ state: "detached" });
-    }, keyboard: true },
-    { name: "asked to look along", start: async () => {
-      await bea.page.locator("strata-people-menu .faces").click();
-      await bea.page.getByRole("menuitem", { name: /Look with me/ }).click();
-      await page.getByText(w.together.invites("Bea Ost")).waitFor();
-    }, end: () => bea.page.locator("strata-together-bar button").click() },
-    { name: "others look along", start: async () => {
-      await choose_of_people(w.together.lead);
-      await bea.page.locator("strata-notices").getByRole("button", exact("Follow")).click();
-      await bar.getByText(w.together.leading(1)).waitFor();
-    }, end: async () => {
-      await bar.click();
-      await bar.waitFor({ state: "detached" });
-      await bea.page.keyboard.press("Escape");
-    } },
-    { name: "locked layer", start: async () => {
-      await server.json("PATCH", `/models/${site.model}/layers/finds`, { locked: true });
-      await choose_layer("Finds");
-      await page.locator("strata-layer-panel .more").getByText(w.layers.locked_to_others).waitFor();
-    }, end: () => server.json("PATCH", `/models/${site.model}/layers/finds`, { locked: false }) },
-    { name: "review", start: async () => {
-      await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true });
-      await site.fill_as_bea("finds");
-      await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true }); // of which the page hears when the edit is durable
-      await page.getByRole("button", { name: w.review.title }).click();
-      await page.locator("strata-review-panel").getByRole("button", exact(w.review.reject_all)).click();
-      await page.locator("strata-review-panel textarea").waitFor();
-    }, end: async () => {
-      await page.keyboard.press("Escape");
-      await page.getByRole("button", { name: w.review.title }).click();
-      await server.json("POST", `/models/${site.model}/layers/finds/review`, { decision: "reject", all: true });
-      await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: false });
-      // Heard of while the next screen is walked through, it would be a control that the keyboard never reaches.
-      await page.getByRole("button", { name: w.review.title }).waitFor({ state: "detached" });
-    }, keyboard: true },
-    { name: "new comment", start: async () => {
-      await tool("c");
-      await page.mouse.click(...(await stage_centre()));
-      await card.getByRole("textbox", exact(w.comments.text)).fill("Is this the crack of 2019?\nSee https://example.org/report");
-    }, keyboard: true },
-    { name: "comment", start: async () => {
-      await card.getByRole("textbox", exact(w.comments.text)).press("Control+Enter");
-      await card.getByRole("article").first().waitFor();
-      const { comments } = await server.json("GET", `/models/${site.model}/comments`);
-      await site.reply(comments.at(-1).id, "@owner yes, it has grown. Look at the rim, too: https://example.org/a-very-long-address/that-does-not-break/anywhere/in-it");
-      await wait_for(async () => (await card.getByRole("article").count()) === 2, "the reply");
-    }, keyboard: true },
-    { name: "comments", start: async () => {
-      await card.getByRole("button", exact(w.comments.resolve)).click();
-      await card.getByRole("button", exact(w.comments.reopen)).waitFor();
-      await card.getByRole("button", exact(w.comments.close)).click();
-      await page.locator("strata-comment-panel").getByRole("button", { name: w.comments.title, expanded: false }).click();
-      await page.locator("strata-comment-panel").getByRole("radio", exact(w.comments.states.all)).click();
-      await page.locator("strata-comment-panel").getByRole("listitem").first().waitFor();
-      await page.locator("strata-comment-panel").evaluate((panel) => panel.scrollIntoView());
-    }, end: async () => {
-      for (const { id } of (await server.json("GET", `/models/${site.model}/comments`)).comments) await server.request("DELETE", `/comments/${id}`);
-    }, keyboard: true },
-    { name: "activity", start: async () => {
-      const panel = page.locator("strata-activity-panel");
-      await panel.getByRole("button", { name: w.activity.title, expanded: false }).click();
-      await panel.getByRole("radio", exact(w.activity.of_project)).click();
-      await panel.getByRole("listitem").first().waitFor();
-      await panel.evaluate((all) => all.scrollIntoView());
-    }, keyboard: true },
+    {
+      name: "new column",
+      start: from_menu(w.tables.more, w.tables.new_column),
+      end: close_dialog,
+      keyboard: true,
+    },
+    {
+      name: "records from a file",
+      start: with_files(w.tables.import_csv, [
+        file_of("finds.csv", "text/csv", "key,name,depth\n1,Handle of a jug,1.5\n,Spout,deep\n"),
+      ]),
+      end: close_dialog,
+      keyboard: true,
+    },
+    {
+      name: "photos by their names",
+      start: with_files(
+        w.files.add_menu,
+        ["Handle_1.png", "Lid_1.png"].map((name) => file_of(name, "image/png", kPhoto)),
+      ),
+      end: close_dialog,
+      keyboard: true,
+    },
+    {
+      name: "record",
+      start: () =>
+        open(page.locator("strata-table-panel").getByRole("button", exact(w.tables.new_record))),
+      end: close_dialog,
+    },
+    {
+      name: "delete a record",
+      start: async () => {
+        await page.getByRole("grid").getByRole("rowheader", exact("1")).click();
+        await open(
+          page.locator("strata-table-panel").getByRole("button", exact(w.tables.delete)).first(),
+        );
+      },
+      end: close_dialog,
+    },
+    {
+      name: "record that somebody else edits",
+      start: async () => {
+        await bea_at({ server, bea, model: site.model });
+        await bea.page.getByRole("button", { name: "Paint on Finds" }).click();
+        await bea.page.keyboard.press("t");
+        await bea.page.getByRole("grid").getByRole("rowheader", exact("2")).click();
+        await bea.page.getByRole("button", exact("Edit the record")).click();
+        await row(2)
+          .getByRole("img", exact(w.tables.edited_by("Bea Ost")))
+          .waitFor();
+        await row(2).click();
+        await open(page.locator("strata-table-panel").getByRole("button", exact(w.tables.edit)));
+        await page
+          .locator("strata-record-dialog")
+          .getByText(w.tables.edited_by("Bea Ost"))
+          .waitFor();
+      },
+      end: async () => {
+        await close_dialog();
+        await bea.page.keyboard.press("Escape");
+        await page.locator("strata-table-panel").getByRole("button", exact(w.tables.close)).click();
+      },
+      keyboard: true,
+    },
+    {
+      name: "menu of the people",
+      start: async () => {
+        await bea_at({ server, bea, model: site.model }); // without the table
+        await people.locator(".faces").click();
+        await people.getByRole("menuitem", { name: w.together.follow("Bea Ost") }).waitFor();
+      },
+      end: escape,
+    },
+    {
+      name: "following",
+      start: async () => {
+        await choose_of_people(w.together.follow("Bea Ost"));
+        await bar.getByText(w.together.following("Bea Ost")).waitFor();
+        const [x, y] = await stage_centre();
+        await bea.page.mouse.move(x + 20, y + 30); // she points
+        await page.locator("strata-people-overlay .person").waitFor({ state: "attached" });
+      },
+      end: async () => {
+        await bea.page.mouse.move(2, 2);
+        await bar.click();
+        await bar.waitFor({ state: "detached" });
+      },
+      keyboard: true,
+    },
+    {
+      name: "asked to look along",
+      start: async () => {
+        await bea.page.locator("strata-people-menu .faces").click();
+        await bea.page.getByRole("menuitem", { name: /Look with me/ }).click();
+        await page.getByText(w.together.invites("Bea Ost")).waitFor();
+      },
+      end: () => bea.page.locator("strata-together-bar button").click(),
+    },
+    {
+      name: "others look along",
+      start: async () => {
+        await choose_of_people(w.together.lead);
+        await bea.page.locator("strata-notices").getByRole("button", exact("Follow")).click();
+        await bar.getByText(w.together.leading(1)).waitFor();
+      },
+      end: async () => {
+        await bar.click();
+        await bar.waitFor({ state: "detached" });
+        await bea.page.keyboard.press("Escape");
+      },
+    },
+    {
+      name: "locked layer",
+      start: async () => {
+        await server.json("PATCH", `/models/${site.model}/layers/finds`, { locked: true });
+        await choose_layer("Finds");
+        await page
+          .locator("strata-layer-panel .more")
+          .getByText(w.layers.locked_to_others)
+          .waitFor();
+      },
+      end: () => server.json("PATCH", `/models/${site.model}/layers/finds`, { locked: false }),
+    },
+    {
+      name: "review",
+      start: async () => {
+        await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true });
+        await site.fill_as_bea("finds");
+        // of which the page hears when the edit is durable
+        await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: true });
+        await page.getByRole("button", { name: w.review.title }).click();
+        await page
+          .locator("strata-review-panel")
+          .getByRole("button", exact(w.review.reject_all))
+          .click();
+        await page.locator("strata-review-panel textarea").waitFor();
+      },
+      end: async () => {
+        await page.keyboard.press("Escape");
+        await page.getByRole("button", { name: w.review.title }).click();
+        await server.json("POST", `/models/${site.model}/layers/finds/review`, {
+          decision: "reject",
+          all: true,
+        });
+        await server.json("PATCH", `/models/${site.model}/layers/finds`, { review: false });
+        // Heard of while the next screen is walked through, it would be a control that the keyboard
+        // never reaches.
+        await page.getByRole("button", { name: w.review.title }).waitFor({ state: "detached" });
+      },
+      keyboard: true,
+    },
+    {
+      name: "new comment",
+      start: async () => {
+        await tool("c");
+        await page.mouse.click(...(await stage_centre()));
+        await card
+          .getByRole("textbox", exact(w.comments.text))
+          .fill("Is this the crack of 2019?\nSee https://example.org/report");
+      },
+      keyboard: true,
+    },
+    {
+      name: "comment",
+      start: async () => {
+        await card.getByRole("textbox", exact(w.comments.text)).press("Control+Enter");
+        await card.getByRole("article").first().waitFor();
+        const { comments } = await server.json("GET", `/models/${site.model}/comments`);
+        await site.reply(
+          comments.at(-1).id,
+          "@owner yes, it has grown. Look at the rim, too: https://example.org/a-very-long-address/that-does-not-break/anywhere/in-it",
+        );
+        await wait_for(async () => (await card.getByRole("article").count()) === 2, "the reply");
+      },
+      keyboard: true,
+    },
+    {
+      name: "comments",
+      start: async () => {
+        await card.getByRole("button", exact(w.comments.resolve)).click();
+        await card.getByRole("button", exact(w.comments.reopen)).waitFor();
+        await card.getByRole("button", exact(w.comments.close)).click();
+        await page
+          .locator("strata-comment-panel")
+          .getByRole("button", { name: w.comments.title, expanded: false })
+          .click();
+        await page
+          .locator("strata-comment-panel")
+          .getByRole("radio", exact(w.comments.states.all))
+          .click();
+        await page.locator("strata-comment-panel").getByRole("listitem").first().waitFor();
+        await page.locator("strata-comment-panel").evaluate((panel) => panel.scrollIntoView());
+      },
+      end: async () => {
+        for (const { id } of (await server.json("GET", `/models/${site.model}/comments`)).comments)
+          await server.request("DELETE", `/comments/${id}`);
+      },
+      keyboard: true,
+    },
+    {
+      name: "activity",
+      start: async () => {
+        const panel = page.locator("strata-activity-panel");
+        await panel.getByRole("button", { name: w.activity.title, expanded: false }).click();
+        await panel.getByRole("radio", exact(w.activity.of_project)).click();
+        await panel.getByRole("listitem").first().waitFor();
+        await panel.evaluate((all) => all.scrollIntoView());
+      },
+      keyboard: true,
+    },
   ];
 }

@@ -1,10 +1,12 @@
-// A small site that has one of everything: a nearly flat wall and another version of it, layers of each kind, tables, terms, files, a look,
-// a tool. `spare` makes one more of a kind, for calls that take something away.
+// A small site that has one of everything: a nearly flat wall and another version of it, layers of
+// each kind, tables, terms, files, a look, a tool. `spare` makes one more of a kind, for calls that
+// take something away.
 import { encode_png } from "./png.mjs";
 import { wait_for } from "./strata-server.mjs";
 
 const kSide = 12; // cells of the wall, which is 100 mm wide
-const kTextureShare = 0.12; // of the texture that the wall covers: 60 000 texels are quick to read, and a raster is still whole
+// of the texture that the wall covers: 60 000 texels are quick to read, and a raster is still whole
+const kTextureShare = 0.12;
 
 /** An ASCII PLY with texture coordinates, and a number at each vertex. */
 function wall() {
@@ -13,18 +15,34 @@ function wall() {
   for (let row = 0; row <= kSide; ++row) {
     for (let column = 0; column <= kSide; ++column) {
       const [u, v] = [column / kSide, row / kSide];
-      vertices.push([100 * u, 100 * v, Math.sin(5 * u), 0.02 + kTextureShare * u, 0.02 + kTextureShare * v, u + v].join(" "));
+      vertices.push(
+        [
+          100 * u,
+          100 * v,
+          Math.sin(5 * u),
+          0.02 + kTextureShare * u,
+          0.02 + kTextureShare * v,
+          u + v,
+        ].join(" "),
+      );
       const at = row * (kSide + 1) + column;
-      if (row < kSide && column < kSide) faces.push(`3 ${at} ${at + 1} ${at + kSide + 2}`, `3 ${at} ${at + kSide + 2} ${at + kSide + 1}`);
+      if (row < kSide && column < kSide)
+        faces.push(
+          `3 ${at} ${at + 1} ${at + kSide + 2}`,
+          `3 ${at} ${at + kSide + 2} ${at + kSide + 1}`,
+        );
     }
   }
-  const properties = ["x", "y", "z", "s", "t", "quality"].map((name) => `property float ${name}`).join("\n");
+  const properties = ["x", "y", "z", "s", "t", "quality"]
+    .map((name) => `property float ${name}`)
+    .join("\n");
   return `ply\nformat ascii 1.0\nelement vertex ${vertices.length}\n${properties}\nelement face ${faces.length}\nproperty list uchar int vertex_indices\nend_header\n${vertices.join("\n")}\n${faces.join("\n")}\n`;
 }
 
 function picture(width, height) {
   const data = new Uint8Array(4 * width * height);
-  for (let at = 0; at < width * height; ++at) data.set(at % width < width / 3 ? [200, 30, 30, 255] : [250, 250, 250, 255], 4 * at);
+  for (let at = 0; at < width * height; ++at)
+    data.set(at % width < width / 3 ? [200, 30, 30, 255] : [250, 250, 250, 255], 4 * at);
   return encode_png({ width, height, data });
 }
 
@@ -102,12 +120,16 @@ export class Site {
   }
 
   async #import(name, project) {
-    const job = await this.#post(`/models?filename=wall.ply&unit=mm&project=${project}&name=${encodeURIComponent(name)}`, "wall.ply");
+    const job = await this.#post(
+      `/models?filename=wall.ply&unit=mm&project=${project}&name=${encodeURIComponent(name)}`,
+      "wall.ply",
+    );
     this.job ??= String(job.id);
     return wait_for(
       async () => {
         const now = await this.server.json("GET", `/jobs/${job.id}`);
-        if (["failed", "cancelled"].includes(now.state)) throw new Error(`the import ended: ${JSON.stringify(now)}`);
+        if (["failed", "cancelled"].includes(now.state))
+          throw new Error(`the import ended: ${JSON.stringify(now)}`);
         return now.state === "done" && now.model;
       },
       "the import",
@@ -122,12 +144,20 @@ export class Site {
     await server.json("POST", "/groups", { name: "Students", members: ["guest"] });
     // Of people whom no call changes: who is disabled, say, has no invitation any more.
     this.invitations = [];
-    for (const user of ["newcomer", "other-newcomer"]) this.invitations.push((await server.json("POST", "/users", { user })).path.split("#")[1]);
+    for (const user of ["newcomer", "other-newcomer"])
+      this.invitations.push((await server.json("POST", "/users", { user })).path.split("#")[1]);
     for (const name of ["Wall", "Wall 2"]) await this.#import(name, "site");
     await this.#post("/projects/site/terms?name=Damage", "terms.csv", "text/csv");
-    await server.json("POST", "/projects/site/tables", { name: "Units", columns: kColumns.filter(({ target }) => target !== "units") });
-    for (const column of kColumns.filter(({ target }) => target === "units")) await server.json("POST", "/tables/units/columns", column);
-    await server.json("POST", "/projects/site/tables", { name: "Scratch", columns: [{ name: "Note" }, { name: "Size", kind: "integer" }] });
+    await server.json("POST", "/projects/site/tables", {
+      name: "Units",
+      columns: kColumns.filter(({ target }) => target !== "units"),
+    });
+    for (const column of kColumns.filter(({ target }) => target === "units"))
+      await server.json("POST", "/tables/units/columns", column);
+    await server.json("POST", "/projects/site/tables", {
+      name: "Scratch",
+      columns: [{ name: "Note" }, { name: "Size", kind: "integer" }],
+    });
     for (const key of [1, 2, 3, 4]) {
       const values = {
         code: `SU ${key}`,
@@ -141,7 +171,9 @@ export class Site {
         above: key > 1 ? [key - 1] : [],
       };
       await server.json("POST", "/tables/units/records", { values });
-      await server.json("POST", "/tables/scratch/records", { values: { note: `Note ${key}`, size: key } });
+      await server.json("POST", "/tables/scratch/records", {
+        values: { note: `Note ${key}`, size: key },
+      });
     }
     await this.#post("/tables/units/records/1/attachments?name=north.png", "picture.png");
     await this.#post("/tables/units/records/1/attachments?name=letter.txt", "letter.txt");
@@ -152,9 +184,24 @@ export class Site {
       ["Moisture", "f32"],
     ])
       await server.json("POST", "/models/wall/layers", { name, type, resolution: 2048 });
-    await server.json("POST", "/models/wall-2/layers", { name: "Cracks", type: "u8", resolution: 2048 });
-    await server.json("POST", "/models/wall/layers", { name: "Units", kind: "database", type: "u16", table: "units", resolution: 2048 });
-    const { id } = await server.json("POST", "/models/wall/comments", { text: "Since when?", position: [10, 10, 0], layer: "units", record: 1 });
+    await server.json("POST", "/models/wall-2/layers", {
+      name: "Cracks",
+      type: "u8",
+      resolution: 2048,
+    });
+    await server.json("POST", "/models/wall/layers", {
+      name: "Units",
+      kind: "database",
+      type: "u16",
+      table: "units",
+      resolution: 2048,
+    });
+    const { id } = await server.json("POST", "/models/wall/comments", {
+      text: "Since when?",
+      position: [10, 10, 0],
+      layer: "units",
+      record: 1,
+    });
     await server.json("POST", `/comments/${id}/replies`, { text: "Since 2019." });
     await this.#view("West");
     await this.#tour("Round");
@@ -166,7 +213,12 @@ export class Site {
       ["units", 1, "x < 20 and y < 20"],
       ["units", 2, "x > 80"],
     ])
-      await server.json("POST", `/models/wall/layers/${layer}/edits`, { op: "fill", mode: "where", where, value });
+      await server.json("POST", `/models/wall/layers/${layer}/edits`, {
+        op: "fill",
+        mode: "where",
+        where,
+        value,
+      });
     await this.#undo();
     await server.json("POST", "/models/wall/layers", {
       name: "Risk",
@@ -174,24 +226,51 @@ export class Site {
       type: "f32",
       resolution: 2048,
     });
-    const figure = await server.request("POST", "/models/wall/figures", { dpi: 50 }, { Prefer: "respond-async" });
+    const figure = await server.request(
+      "POST",
+      "/models/wall/figures",
+      { dpi: 50 },
+      { Prefer: "respond-async" },
+    );
     this.figure_job = String((await figure.json()).id);
-    await wait_for(async () => (await server.json("GET", `/jobs/${this.figure_job}`)).state === "done", "a figure", 100);
+    await wait_for(
+      async () => (await server.json("GET", `/jobs/${this.figure_job}`)).state === "done",
+      "a figure",
+      100,
+    );
     for (const format of ["png", "npy"])
       this.files[`cracks.${format}`] = Buffer.from(
-        await (await server.request("GET", `/models/wall/layers/cracks/texels.${format}`)).arrayBuffer(),
+        await (
+          await server.request("GET", `/models/wall/layers/cracks/texels.${format}`)
+        ).arrayBuffer(),
       );
   }
 
   /** A layer and a table of which there is something to redo. */
   #view(name) {
-    // prettier-ignore
-    const camera = { view: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1], projection: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.1, -1, 0, 0, -21, 0], width: 400, height: 400 };
-    return this.server.json("POST", "/models/wall/views", { name, text: "The west.", camera, layers: [{ layer: "cracks", opacity: 0.5 }] });
+    const camera = {
+      view: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -50, -50, -300, 1],
+      projection: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1.1, -1, 0, 0, -21, 0],
+      width: 400,
+      height: 400,
+    };
+    return this.server.json("POST", "/models/wall/views", {
+      name,
+      text: "The west.",
+      camera,
+      layers: [{ layer: "cracks", opacity: 0.5 }],
+    });
   }
 
   #tour(name) {
-    const stops = [{ view: "west", title: { en: "The west" }, layers: ["cracks"], records: [{ table: "units", keys: [1], columns: [{ column: "code" }] }] }];
+    const stops = [
+      {
+        view: "west",
+        title: { en: "The west" },
+        layers: ["cracks"],
+        records: [{ table: "units", keys: [1], columns: [{ column: "code" }] }],
+      },
+    ];
     return this.server.json("POST", "/models/wall/tours", { name, languages: ["en", "es"], stops });
   }
 
@@ -201,17 +280,31 @@ export class Site {
 
   async #undo() {
     const { server } = this;
-    await server.json("POST", "/models/wall-2/layers", { name: "Undone", type: "u8", resolution: 2048 });
+    await server.json("POST", "/models/wall-2/layers", {
+      name: "Undone",
+      type: "u8",
+      resolution: 2048,
+    });
     await server.json("POST", "/projects/site/tables", { name: "Undone" });
     for (const value of [1, 2, 3, 4]) {
-      await server.json("POST", "/models/wall-2/layers/undone/edits", { op: "fill", mode: "where", where: "x < 30", value });
+      await server.json("POST", "/models/wall-2/layers/undone/edits", {
+        op: "fill",
+        mode: "where",
+        where: "x < 30",
+        value,
+      });
       await server.json("POST", "/tables/undone/columns", { name: `Column ${value}` });
     }
     for (let n = 0; n < 4; ++n) {
       await server.json("POST", "/models/wall-2/layers/undone/undo");
       await server.json("POST", "/tables/undone/undo");
     }
-    await server.json("POST", "/models/wall-2/layers", { name: "Reviewed", type: "u8", resolution: 2048, review: true });
+    await server.json("POST", "/models/wall-2/layers", {
+      name: "Reviewed",
+      type: "u8",
+      resolution: 2048,
+      review: true,
+    });
     const annotator = await server.add_person("rita", "annotator");
     for (const value of [1, 2, 3, 4]) {
       const waits = await fetch(`${server.url}/api/v1/models/wall-2/layers/reviewed/edits`, {
@@ -219,7 +312,8 @@ export class Site {
         headers: { "Content-Type": "application/json", Authorization: `Bearer ${annotator.token}` },
         body: JSON.stringify({ op: "fill", mode: "where", where: `x < ${20 * value}`, value }),
       });
-      if (!waits.ok) throw new Error(`an edit that waits for review: ${waits.status} ${await waits.text()}`);
+      if (!waits.ok)
+        throw new Error(`an edit that waits for review: ${waits.status} ${await waits.text()}`);
     }
   }
 
@@ -233,26 +327,52 @@ export class Site {
       case "model":
         return String(await this.#import(name, "default"));
       case "layer":
-        return (await server.json("POST", "/models/wall/layers", { name, type: "u8", resolution: 2048, visible: false })).slug;
+        return (
+          await server.json("POST", "/models/wall/layers", {
+            name,
+            type: "u8",
+            resolution: 2048,
+            visible: false,
+          })
+        ).slug;
       case "entry": {
-        const { id } = await server.json("POST", "/models/wall/layers", { name, type: "u8", resolution: 2048, visible: false });
+        const { id } = await server.json("POST", "/models/wall/layers", {
+          name,
+          type: "u8",
+          resolution: 2048,
+          visible: false,
+        });
         await server.request("DELETE", `/models/wall/layers/${id}`);
         return `layer-${id}`;
       }
       case "look":
-        return (await this.#post(`/models/wall-2/looks?name=${encodeURIComponent(name)}`, "picture.png", "image/png")).slug;
+        return (
+          await this.#post(
+            `/models/wall-2/looks?name=${encodeURIComponent(name)}`,
+            "picture.png",
+            "image/png",
+          )
+        ).slug;
       case "tool":
-        return (await this.#post(`/tools?name=${encodeURIComponent(name)}`, "picture.png", "image/png")).slug;
+        return (
+          await this.#post(`/tools?name=${encodeURIComponent(name)}`, "picture.png", "image/png")
+        ).slug;
       case "table":
         return (await server.json("POST", "/projects/site/tables", { name })).slug;
       case "column":
         return (await server.json("POST", "/tables/scratch/columns", { name })).column.slug;
       case "key":
-        return String((await server.json("POST", "/tables/units/records", { values: { code: name } })).key);
+        return String(
+          (await server.json("POST", "/tables/units/records", { values: { code: name } })).key,
+        );
       case "attachment":
         return String(
-          (await this.#post(`/tables/units/records/2/attachments?name=${encodeURIComponent(`${name}.txt`)}`, "letter.txt")).attachments[0]
-            .id,
+          (
+            await this.#post(
+              `/tables/units/records/2/attachments?name=${encodeURIComponent(`${name}.txt`)}`,
+              "letter.txt",
+            )
+          ).attachments[0].id,
         );
       case "view":
         return (await this.#view(name)).slug;
@@ -261,7 +381,14 @@ export class Site {
       case "kiosk":
         return String((await this.#kiosk(name)).kiosk.id);
       case "comment":
-        return String((await server.json("POST", "/models/wall/comments", { text: name, position: [50, 50, 0] })).id);
+        return String(
+          (
+            await server.json("POST", "/models/wall/comments", {
+              text: name,
+              position: [50, 50, 0],
+            })
+          ).id,
+        );
       case "user":
         return (await server.json("POST", "/users", { user: `spare-${this.#made}` })).user.user;
       case "group": {
@@ -274,12 +401,22 @@ export class Site {
       case "session":
         await fetch(`${server.url}/api/v1/login`, {
           method: "POST",
-          headers: { "Content-Type": "application/json", "X-Forwarded-For": `10.0.0.${this.#made % 250}` },
+          headers: {
+            "Content-Type": "application/json",
+            "X-Forwarded-For": `10.0.0.${this.#made % 250}`,
+          },
           body: JSON.stringify({ token: server.token }),
         });
         return String((await server.json("GET", "/me/sessions")).sessions[0]?.id ?? 1);
       case "job":
-        return String((await this.#post(`/models?filename=wall.ply&name=${encodeURIComponent(name)}`, "wall.ply")).id);
+        return String(
+          (
+            await this.#post(
+              `/models?filename=wall.ply&name=${encodeURIComponent(name)}`,
+              "wall.ply",
+            )
+          ).id,
+        );
       default:
         throw new Error(`there are no spare ones of ${kind}`);
     }

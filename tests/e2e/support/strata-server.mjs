@@ -1,4 +1,5 @@
-// A Strata server of the test's own, for the tests in JavaScript: see strata_server.py, which does the same.
+// A Strata server of the test's own, for the tests in JavaScript: see strata_server.py, which does
+// the same.
 import { execFileSync, spawn } from "node:child_process";
 import { randomBytes } from "node:crypto";
 import { chmodSync, existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -22,22 +23,32 @@ export class StrataServer {
     this.binary = process.env.STRATA_BINARY;
     if (!this.binary) throw new Error("STRATA_BINARY names the server");
     this.token = randomBytes(24).toString("hex");
-    // Under /tmp and open to all: PostgreSQL does not run as root, so its user must reach the folder.
+    // Under /tmp and open to all: PostgreSQL does not run as root, so its user must reach the
+    // folder.
     this.data = mkdtempSync("/tmp/strata-e2e-");
     chmodSync(this.data, 0o755);
     this.log = [];
     this.port = 0;
     process.on("exit", () => this.process?.kill("SIGKILL"));
-    if (demo) execFileSync(this.binary, ["demo", "--data", this.data], { stdio: ["ignore", "ignore", "pipe"] });
+    if (demo)
+      execFileSync(this.binary, ["demo", "--data", this.data], {
+        stdio: ["ignore", "ignore", "pipe"],
+      });
   }
 
   /** Starts it (again, on the port that it had) and returns once it listens. */
   async start() {
-    this.process = spawn(this.binary, ["serve", "--data", this.data, "--listen", `127.0.0.1:${this.port}`], {
-      env: { ...process.env, STRATA_OWNER_TOKEN: this.token },
-      stdio: ["ignore", "pipe", "pipe"],
-    });
-    this.ended = new Promise((resolve) => this.process.once("exit", (code, signal) => resolve(code ?? signal)));
+    this.process = spawn(
+      this.binary,
+      ["serve", "--data", this.data, "--listen", `127.0.0.1:${this.port}`],
+      {
+        env: { ...process.env, STRATA_OWNER_TOKEN: this.token },
+        stdio: ["ignore", "pipe", "pipe"],
+      },
+    );
+    this.ended = new Promise((resolve) =>
+      this.process.once("exit", (code, signal) => resolve(code ?? signal)),
+    );
     createInterface({ input: this.process.stderr }).on("line", (line) => this.log.push(line));
     const started = new Promise((resolve) => {
       createInterface({ input: this.process.stdout }).on("line", (line) => {
@@ -46,7 +57,8 @@ export class StrataServer {
       });
     });
     const early = await Promise.race([started, this.ended]);
-    if (early !== this.link) throw new Error(`the server ended with ${early}:\n${this.log.slice(-50).join("\n")}`);
+    if (early !== this.link)
+      throw new Error(`the server ended with ${early}:\n${this.log.slice(-50).join("\n")}`);
     this.port = Number(new URL(this.url).port);
     return this;
   }
@@ -63,23 +75,35 @@ export class StrataServer {
   }
 
   async remove() {
-    if (this.process?.exitCode === null && this.process.signalCode === null) await this.signal("SIGKILL");
+    if (this.process?.exitCode === null && this.process.signalCode === null)
+      await this.signal("SIGKILL");
     await wait_for(() => !this.postmaster_runs(), "the private PostgreSQL to end");
     rmSync(this.data, { recursive: true, force: true });
   }
 
-  /** No errors, and only those warnings that contain one of the words (of a fault that the test made). */
+  /**
+   * No errors, and only those warnings that contain one of the words (of a fault that the test
+   * made).
+   */
   assert_clean_log(words = []) {
     const bad = this.log.filter((line) => {
       const level = line.split(" ")[1];
-      return !(["I", "D"].includes(level) || (level === "W" && words.some((word) => line.includes(word))));
+      return !(
+        ["I", "D"].includes(level) ||
+        (level === "W" && words.some((word) => line.includes(word)))
+      );
     });
-    if (bad.length > 0) throw new Error(`the log of the server is not clean:\n${bad.slice(0, 50).join("\n")}`);
+    if (bad.length > 0)
+      throw new Error(`the log of the server is not clean:\n${bad.slice(0, 50).join("\n")}`);
   }
 
-  /** What a call of the owner's carries: the token, or for accounts a session, since tokens for scripts change none, the owner's among them once an administrator has a password. */
+  /**
+   * What a call of the owner's carries: the token, or for accounts a session, since tokens for
+   * scripts change none, the owner's among them once an administrator has a password.
+   */
   async owners_secret(path) {
-    if (!/^\/(users|groups|me\/)|^\/projects\/[^/]+\/(members|groups)(\/|$)|\/kiosks$/.test(path)) return this.token;
+    if (!/^\/(users|groups|me\/)|^\/projects\/[^/]+\/(members|groups)(\/|$)|\/kiosks$/.test(path))
+      return this.token;
     if (!this.session) await this.sign_in_owner({ token: this.token });
     return this.session;
   }
@@ -105,7 +129,11 @@ export class StrataServer {
       });
     const joined = await post("/invitations/accept", { invitation, password });
     if (!joined.ok) throw new Error(`joining: ${joined.status} ${await joined.text()}`);
-    const made = await post("/me/tokens", { name: "tests" }, { Cookie: joined.headers.get("set-cookie").split(";")[0] });
+    const made = await post(
+      "/me/tokens",
+      { name: "tests" },
+      { Cookie: joined.headers.get("set-cookie").split(";")[0] },
+    );
     if (!made.ok) throw new Error(`a token: ${made.status} ${await made.text()}`);
     return { user, password, token: (await made.json()).secret };
   }
@@ -115,7 +143,11 @@ export class StrataServer {
     const secret = await this.owners_secret(path);
     const answer = await fetch(`${this.url}/api/v1${path}`, {
       method,
-      headers: { Authorization: `Bearer ${secret}`, ...(body === undefined ? {} : { "Content-Type": "application/json" }), ...headers },
+      headers: {
+        Authorization: `Bearer ${secret}`,
+        ...(body === undefined ? {} : { "Content-Type": "application/json" }),
+        ...headers,
+      },
       ...(body === undefined ? {} : { body: JSON.stringify(body) }),
     });
     if (answer.status === 401 && secret !== this.token && tries > 1) {

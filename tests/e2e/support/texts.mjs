@@ -9,7 +9,13 @@ export function texts_of(language) {
     export { texts } from "./app/texts/${language}";
     set_locale("${language}", true, []);`;
   const stdin = { contents, resolveDir: join(kRoot, "web-client", "src"), loader: "ts" };
-  const [{ text }] = buildSync({ stdin, bundle: true, write: false, format: "cjs", target: "node18" }).outputFiles;
+  const [{ text }] = buildSync({
+    stdin,
+    bundle: true,
+    write: false,
+    format: "cjs",
+    target: "node18",
+  }).outputFiles;
   const made = { exports: {} };
   new Function("module", "exports", text)(made, made.exports);
   return made.exports.texts;

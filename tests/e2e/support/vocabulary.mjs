@@ -1,5 +1,5 @@
-// What the contract's schemas cannot say to those who make calls of them: which things the site has, what conditions and cells look like, and
-// what an operation wants besides.
+// What the contract's schemas cannot say to those who make calls of them: which things the site
+// has, what conditions and cells look like, and what an operation wants besides.
 import { fc, strange_text } from "./arbitraries.mjs";
 import { kColumnSlugs, kLayers } from "./site.mjs";
 
@@ -9,9 +9,16 @@ export const kSpare = "(a spare one)";
 
 export const one = (...values) => fc.constantFrom(...values);
 export const mostly = (...values) =>
-  fc.oneof({ weight: 12, arbitrary: one(...values) }, { weight: 1, arbitrary: one("nothing", "999999", "0") });
+  fc.oneof(
+    { weight: 12, arbitrary: one(...values) },
+    { weight: 1, arbitrary: one("nothing", "999999", "0") },
+  );
 
-const point = fc.tuple(fc.integer({ min: 0, max: 100 }), fc.integer({ min: 0, max: 100 }), one(0, 0.5, 20));
+const point = fc.tuple(
+  fc.integer({ min: 0, max: 100 }),
+  fc.integer({ min: 0, max: 100 }),
+  one(0, 0.5, 20),
+);
 const pixel = fc.tuple(fc.integer({ min: 0, max: 160 }), fc.integer({ min: 0, max: 120 }));
 /** Straight at the wall, orthographic, 160 × 120 mm. */
 const camera = fc
@@ -69,7 +76,10 @@ const palette = one(
       { at: 1, color: "#fde725ff" },
     ],
   },
-  { mode: "categorical", points: [{ at: 3, color: "#d55e00", label: "Crack", pattern: "hatch", angle: 30 }] },
+  {
+    mode: "categorical",
+    points: [{ at: 3, color: "#d55e00", label: "Crack", pattern: "hatch", angle: 30 }],
+  },
   {
     mode: "step",
     points: [
@@ -110,7 +120,8 @@ export const words = {
     property: mostly("quality"),
     rays: one(16),
     order: one(-1, 0, 7),
-    require_if_match: one(false), // all other changes would be refused (428); versions_test.py demands it
+    // all other changes would be refused (428); versions_test.py demands it
+    require_if_match: one(false),
     language: mostly("es", "en"),
   },
 };
@@ -190,11 +201,16 @@ export const content_of = {
 
 const spare = (name, ...others) => ({ [name]: one(kSpare, kSpare, kSpare, ...others, "nothing") });
 const json = (schema_words) => ({
-  words: { by_schema: { ...by_schema, ...schema_words.by_schema }, by_name: { ...words.by_name, ...schema_words.by_name } },
+  words: {
+    by_schema: { ...by_schema, ...schema_words.by_schema },
+    by_name: { ...words.by_name, ...schema_words.by_name },
+  },
 });
 const world = "4,0,0,-4,2,90"; // of the picture of 24 × 16 pixels
 const scratch = { path: { table: one("scratch") } };
-const units_layer = { path: { model: one("wall"), layer: one("units", "units", "units", "cracks") } };
+const units_layer = {
+  path: { model: one("wall"), layer: one("units", "units", "units", "cracks") },
+};
 const new_record = fc.record({ values: cells });
 const new_records = {
   ...json({
@@ -214,36 +230,70 @@ const attach = { content: { "application/octet-stream": file("letter.txt", "pict
 const tour_stop = fc.record(
   {
     view: mostly("west", "1"),
-    title: fc.oneof({ weight: 12, arbitrary: one({ en: "Here", es: "Aquí" }) }, { weight: 1, arbitrary: one({ fr: "Ici" }) }),
+    title: fc.oneof(
+      { weight: 12, arbitrary: one({ en: "Here", es: "Aquí" }) },
+      { weight: 1, arbitrary: one({ fr: "Ici" }) },
+    ),
     text: one({}, { en: "Broken\nin 2019." }),
     layers: one([], ["cracks"], ["cracks", "moisture"], ["moisture", "units"]),
-    records: one([], [{ table: "units", keys: [1, 2], columns: [{ column: "code", labels: { es: "Código" } }] }]),
+    records: one(
+      [],
+      [{ table: "units", keys: [1, 2], columns: [{ column: "code", labels: { es: "Código" } }] }],
+    ),
     transition: one("cut", "move"),
   },
   { requiredKeys: ["view", "title"] },
 );
 const tour = {
   path: { model: one("wall", "wall", "wall", "nothing") },
-  ...json({ by_name: { languages: one(["en", "es"], ["es", "en"]), stops: fc.array(tour_stop, { minLength: 1, maxLength: 2 }) } }),
+  ...json({
+    by_name: {
+      languages: one(["en", "es"], ["es", "en"]),
+      stops: fc.array(tour_stop, { minLength: 1, maxLength: 2 }),
+    },
+  }),
 };
 
 const what_of_texels = one({}, { texels: "clear" }, { texels: "reassign", to: "2" });
 
-/** What an operation wants that its schema and the words above do not say. What takes something away takes a spare one; what changes how things are called or kept is done to what others do not need. */
+/**
+ * What an operation wants that its schema and the words above do not say. What takes something away
+ * takes a spare one; what changes how things are called or kept is done to what others do not need.
+ */
 export const particulars = {
   login: json({ by_name: { token: fc.oneof(one("(the owner's token)"), strange_text) } }),
-  change_password: json({ by_schema: { PasswordChange: one({ password: "short" }, { current: kPassword, password: "short" }) } }),
+  change_password: json({
+    by_schema: {
+      PasswordChange: one({ password: "short" }, { current: kPassword, password: "short" }),
+    },
+  }),
   end_session: { path: spare("session") },
   revoke_token: { path: spare("token") },
   get_user: { path: { user: mostly("guest", "VERA", "owner") } },
   change_user: { path: spare("user", "guest") },
   delete_user: { path: spare("user", "owner") },
   invite_again: { path: spare("user", "owner") },
-  show_invitation: json({ by_name: { invitation: one("(an invitation)", "(an invitation)", "guess") } }),
-  accept_invitation: json({ by_name: { invitation: one("(an invitation to accept)", "guess"), password: one(kPassword, "short") } }),
+  show_invitation: json({
+    by_name: { invitation: one("(an invitation)", "(an invitation)", "guess") },
+  }),
+  accept_invitation: json({
+    by_name: {
+      invitation: one("(an invitation to accept)", "guess"),
+      password: one(kPassword, "short"),
+    },
+  }),
   invite_user: json({ by_name: { groups: one([1], [1], [987654321]) } }),
   create_group: json({ by_name: { members: one(["guest"], [], ["guest", "VERA"], ["nobody"]) } }),
-  change_group: { path: spare("group", "1"), ...json({ by_name: { name: fc.uuid(), add: one(["guest"], ["Vera"], ["nobody"]), remove: one(["guest"], ["vera"]) } }) },
+  change_group: {
+    path: spare("group", "1"),
+    ...json({
+      by_name: {
+        name: fc.uuid(),
+        add: one(["guest"], ["Vera"], ["nobody"]),
+        remove: one(["guest"], ["vera"]),
+      },
+    }),
+  },
   delete_group: { path: spare("group") },
   remove_project_group: { path: { project: mostly("site"), ...spare("group", "1") } },
   delete_project: { path: spare("project", "site") },
@@ -254,10 +304,15 @@ export const particulars = {
   delete_tool: { path: spare("tool") },
   delete_table: { path: spare("table", "units") },
   delete_record: { path: { table: one("units"), ...spare("key", "1") }, queries: what_of_texels },
-  delete_layer_record: { path: { model: one("wall"), layer: one("units"), ...spare("key", "1") }, queries: what_of_texels },
+  delete_layer_record: {
+    path: { model: one("wall"), layer: one("units"), ...spare("key", "1") },
+    queries: what_of_texels,
+  },
   delete_attachment: { path: spare("attachment") },
   delete_comment: { path: spare("comment") },
-  login_kiosk: json({ by_name: { link: fc.oneof(one("(a kiosk's link)"), one("(a kiosk's link)"), strange_text) } }),
+  login_kiosk: json({
+    by_name: { link: fc.oneof(one("(a kiosk's link)"), one("(a kiosk's link)"), strange_text) },
+  }),
   create_tour: tour,
   change_tour: { ...tour, path: { model: one("wall"), tour: mostly("round", "1") } },
   restore_from_bin: { path: { project: one("site"), ...spare("entry") } },
@@ -274,21 +329,47 @@ export const particulars = {
     ...json({
       by_schema: {
         CommentCreate: fc
-          .tuple(point, one({}, { layer: "cracks" }, { layer: "units", record: 1 }, { layer: "cracks", record: 1 }))
-          .map(([position, about]) => ({ text: "Since when?\nSee https://example.org, @guest", position, ...about })),
+          .tuple(
+            point,
+            one(
+              {},
+              { layer: "cracks" },
+              { layer: "units", record: 1 },
+              { layer: "cracks", record: 1 },
+            ),
+          )
+          .map(([position, about]) => ({
+            text: "Since when?\nSee https://example.org, @guest",
+            position,
+            ...about,
+          })),
       },
     }),
   },
   drop_column: { path: { table: one("scratch"), ...spare("column") } },
-  change_column: { path: { table: one("scratch"), ...spare("column", "note") }, ...json({ by_name: { target: one("units", "scratch") } }) },
+  change_column: {
+    path: { table: one("scratch"), ...spare("column", "note") },
+    ...json({ by_name: { target: one("units", "scratch") } }),
+  },
   cancel_job: { path: spare("job", "(a job)") },
   get_job_file: { path: { job: mostly("(a figure's job)", "(a figure's job)", "(a job)") } },
   make_figure: {
     path: { model: one("wall") },
     // Small ones: larger ones are the same code and take long to draw.
     ...json({
-      by_name: { dpi: one(50, 60, 20), view: one("west", "nothing"), scale: one(0.5, 1, 20, 0), normal: one([0, 0, 1], [0, -1, 1], [0, 0, 0]) },
-      by_schema: { FigureLabels: one({ layer: "units", column: "code" }, { layer: "cracks", column: "code" }, { layer: "units", column: "nothing" }) },
+      by_name: {
+        dpi: one(50, 60, 20),
+        view: one("west", "nothing"),
+        scale: one(0.5, 1, 20, 0),
+        normal: one([0, 0, 1], [0, -1, 1], [0, 0, 0]),
+      },
+      by_schema: {
+        FigureLabels: one(
+          { layer: "units", column: "code" },
+          { layer: "cracks", column: "code" },
+          { layer: "units", column: "nothing" },
+        ),
+      },
     }),
   },
   change_model: { path: { model: one("wall-2") } },
@@ -298,12 +379,17 @@ export const particulars = {
     queries: one({ name: "Orthophoto", world }),
     content: { "image/jpeg": file("picture.png"), ...form_of("picture.png") },
   },
-  import_model: { content: { "application/octet-stream": file("wall.ply", "wall.ply", "noise.bin") } },
+  import_model: {
+    content: { "application/octet-stream": file("wall.ply", "wall.ply", "noise.bin") },
+  },
   create_table: json({ by_schema: { TableRef: one("damage") } }),
   change_table: scratch,
   undo_table: scratch,
   redo: { path: { model: one("wall-2"), layer: one("undone", "cracks") } },
-  list_review: { path: { model: one("wall-2"), layer: one("reviewed", "reviewed", "cracks") }, queries: one({}, { user: "rita" }) },
+  list_review: {
+    path: { model: one("wall-2"), layer: one("reviewed", "reviewed", "cracks") },
+    queries: one({}, { user: "rita" }),
+  },
   review_edits: {
     path: { model: one("wall-2"), layer: one("reviewed", "reviewed", "reviewed", "cracks") },
     ...json({
@@ -319,7 +405,10 @@ export const particulars = {
   },
   redo_table: { path: { table: one("undone", "scratch") } },
   compute_layer: { path: { model: one("wall"), layer: one("risk", "risk", "cracks") } },
-  transfer_layers: { path: { model: one("wall-2") }, ...json({ by_name: { layers: one(["cracks"], ["moisture"], ["cracks", "units"]) } }) },
+  transfer_layers: {
+    path: { model: one("wall-2") },
+    ...json({ by_name: { layers: one(["cracks"], ["moisture"], ["cracks", "units"]) } }),
+  },
   import_vertex_values: {
     path: { model: one("wall"), layer: one("cracks", "cracks", "moisture", "moisture", "risk") },
     content: { "text/csv": file("vertices.csv", "vertices.csv", "readings.csv") },
@@ -330,22 +419,38 @@ export const particulars = {
   },
   paint_polygons: {
     path: { model: one("wall"), layer: one("cracks", "cracks", "moisture", "moisture", "risk") },
-    queries: one({ value: "1" }, { attribute: "zone" }, { attribute: "zone", names: "zone", along: "+z" }),
+    queries: one(
+      { value: "1" },
+      { attribute: "zone" },
+      { attribute: "zone", names: "zone", along: "+z" },
+    ),
     content: form_of("map.geojson"),
   },
   paint_picture: {
     path: { model: one("wall"), layer: one("cracks", "cracks", "moisture", "moisture", "risk") },
     content: { "image/jpeg": file("picture.png"), ...form_of("picture.png") },
-    queries: one({ world }, { world, colors: "auto" }, { world, along: "+z", tolerance: "20", colors: '{"#c81e1e": 1}' }),
+    queries: one(
+      { world },
+      { world, colors: "auto" },
+      { world, along: "+z", tolerance: "20", colors: '{"#c81e1e": 1}' },
+    ),
   },
   put_texels: {
     path: { model: one("wall"), layer: one("cracks"), format: one("png", "png", "npy") },
-    content: { "image/png": file("cracks.png"), "application/x-npy": file("cracks.npy"), "image/tiff": file("cracks.png") },
+    content: {
+      "image/png": file("cracks.png"),
+      "application/x-npy": file("cracks.npy"),
+      "image/tiff": file("cracks.png"),
+    },
   },
   get_texel_lines: { path: units_layer.path },
   use_template: {
     path: { project: one(kSpare, kSpare, "site", "nothing") },
-    ...json({ by_schema: { TemplateUse: one({}, { language: "es" }, { language: "pt-BR" }, { model: "wall" }) } }),
+    ...json({
+      by_schema: {
+        TemplateUse: one({}, { language: "es" }, { language: "pt-BR" }, { model: "wall" }),
+      },
+    }),
   },
   create_records: { path: { table: mostly("units") }, ...new_records },
   import_terms: { path: { table: one("damage", "damage", "damage", "units") } },
@@ -365,7 +470,9 @@ export const particulars = {
   record_extent: units_layer,
   list_layer_records: units_layer,
   create_layer_records: { ...units_layer, ...new_records },
-  cross_table: json({ by_name: { rows: mostly("cracks", "units"), columns: mostly("units", "cracks", "risk") } }),
+  cross_table: json({
+    by_name: { rows: mostly("cracks", "units"), columns: mostly("units", "cracks", "risk") },
+  }),
   get_layer_record: units_layer,
   change_layer_record: units_layer,
   list_layer_attachments: units_layer,

@@ -1,11 +1,18 @@
-// <strata-account-dialog>: what somebody is called, their password, where they are signed in, and their tokens for scripts.
+// <strata-account-dialog>: what somebody is called, their password, where they are signed in, and
+// their tokens for scripts.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ApiError, type Api } from "../core/api";
 import { format_list } from "../core/locale";
-import { browser_of, kLeastPasswordLength, password_mistake, roles_of_tokens, roles_of_tokens_in } from "../core/people";
+import {
+  browser_of,
+  kLeastPasswordLength,
+  password_mistake,
+  roles_of_tokens,
+  roles_of_tokens_in,
+} from "../core/people";
 import type { Project, ScriptToken, ScriptTokenMade, SignInSession } from "../core/protocol.gen";
 import { kRoles, type Me, type Role } from "../core/types";
 import "./copy-field";
@@ -130,7 +137,9 @@ export class StrataAccountDialog extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    void this.attempt("sessions", () => Promise.all([this.read_projects(), this.read_sessions(), this.read_tokens()]));
+    void this.attempt("sessions", () =>
+      Promise.all([this.read_projects(), this.read_sessions(), this.read_tokens()]),
+    );
   }
 
   private async read_projects(): Promise<void> {
@@ -146,16 +155,19 @@ export class StrataAccountDialog extends LitElement {
   override render(): TemplateResult {
     const { me } = this;
     const rank = (role: Role | undefined): number => kRoles.indexOf(role ?? "guest");
-    const with_more = this.projects_.filter(({ role }) => rank(role) > rank(me.role)); // than everywhere
+    // than everywhere
+    const with_more = this.projects_.filter(({ role }) => rank(role) > rank(me.role));
     return html`<strata-dialog wide heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <section>
         <p class="hint">${words.about(me.user, texts.roles[me.role])}</p>
-        ${with_more.length > 0
-          ? html`<p class="caption" id="in_projects">${words.in_projects}</p>
+        ${
+          with_more.length > 0
+            ? html`<p class="caption" id="in_projects">${words.in_projects}</p>
               <ul aria-labelledby="in_projects">
               ${with_more.map((project) => this.project_row(project))}
             </ul>`
-          : nothing}
+            : nothing
+        }
         ${this.name_form(me)} ${this.note("name")}
       </section>
       <section aria-labelledby="password_heading">
@@ -171,9 +183,11 @@ export class StrataAccountDialog extends LitElement {
             (session) => this.session_row(session),
           )}
         </ul>
-        ${this.sessions_.length > 1
-          ? html`<button class="end" ?disabled=${this.busy_} @click=${() => void this.end_others()}>${words.sign_out_others}</button>`
-          : nothing}
+        ${
+          this.sessions_.length > 1
+            ? html`<button class="end" ?disabled=${this.busy_} @click=${() => void this.end_others()}>${words.sign_out_others}</button>`
+            : nothing
+        }
         ${this.note("sessions")}
       </section>
       <section aria-labelledby="tokens">
@@ -188,9 +202,11 @@ export class StrataAccountDialog extends LitElement {
             (token) => this.token_row(token),
           )}
         </ul>
-        ${this.adding_
-          ? this.token_form()
-          : html`<button class="end" @click=${this.begin_to_add}>${icon("plus")}${words.token_new}</button>`}
+        ${
+          this.adding_
+            ? this.token_form()
+            : html`<button class="end" @click=${this.begin_to_add}>${icon("plus")}${words.token_new}</button>`
+        }
         ${this.note("tokens")}
       </section>
     </strata-dialog>`;
@@ -220,9 +236,16 @@ export class StrataAccountDialog extends LitElement {
     const problems = this.field_problems_;
     return html`<form class="password-change" @submit=${this.on_password} novalidate>
       <input type="text" name="user" autocomplete="username" hidden .value=${me.user} />
-      ${me.has_password
-        ? password_field({ name: "current", label: words.current, autocomplete: "current-password", problem: problems.current ?? "" })
-        : html`<p class="hint">${words.password_set}</p>`}
+      ${
+        me.has_password
+          ? password_field({
+              name: "current",
+              label: words.current,
+              autocomplete: "current-password",
+              problem: problems.current ?? "",
+            })
+          : html`<p class="hint">${words.password_set}</p>`
+      }
       ${password_field({
         name: "password",
         label: words.new,
@@ -246,20 +269,35 @@ export class StrataAccountDialog extends LitElement {
   private session_row(session: SignInSession): TemplateResult {
     const { browser, system } = browser_of(session.agent);
     const where = words.browser(browser, system);
-    const when = session.last_used ? words.last_used(told_time(session.last_used)) : words.since(told_time(session.created));
+    const when = session.last_used
+      ? words.last_used(told_time(session.last_used))
+      : words.since(told_time(session.created));
     return html`<li>
       <div class="grow"><b title=${session.agent}>${where}</b> <span class="hint">${when}</span></div>
-      ${session.current
-        ? html`<span class="chip">${words.this_browser}</span>`
-        : html`<button ?disabled=${this.busy_} aria-label=${words.sign_out_of(where)} @click=${() => void this.end_session(session)}>${words.sign_out}</button>`}
+      ${
+        session.current
+          ? html`<span class="chip">${words.this_browser}</span>`
+          : html`<button ?disabled=${this.busy_} aria-label=${words.sign_out_of(where)} @click=${() => void this.end_session(session)}>${words.sign_out}</button>`
+      }
     </li>`;
   }
 
   private token_row(token: ScriptToken): TemplateResult {
     const expired = token.expires !== undefined && new Date(token.expires) < new Date();
-    const until = token.expires === undefined ? "" : (expired ? words.token_expired : words.token_until)(told_date(token.expires));
-    const used = token.last_used === undefined ? words.token_unused : words.token_used(told_time(token.last_used));
-    const where = token.project === undefined ? "" : words.token_only(this.projects_.find(({ slug }) => slug === token.project)?.name ?? token.project);
+    const until =
+      token.expires === undefined
+        ? ""
+        : (expired ? words.token_expired : words.token_until)(told_date(token.expires));
+    const used =
+      token.last_used === undefined
+        ? words.token_unused
+        : words.token_used(told_time(token.last_used));
+    const where =
+      token.project === undefined
+        ? ""
+        : words.token_only(
+            this.projects_.find(({ slug }) => slug === token.project)?.name ?? token.project,
+          );
     return html`<li>
       <div class="grow"><b>${token.name}</b> <span class="hint">${words.token_line(texts.roles[token.role], where, until, used)}</span></div>
       <button ?disabled=${this.busy_} aria-label=${words.token_revoke(token.name)} @click=${() => void this.revoke(token)}>${words.revoke}</button>
@@ -365,7 +403,10 @@ export class StrataAccountDialog extends LitElement {
     const mistake = password_mistake(me.user, password, text_of(event, "repeat"));
     if (me.has_password && current === "") this.refuse("current", words.current_missing);
     else if (mistake) this.refuse(mistake.field, password_words(mistake));
-    else void this.attempt("password", () => this.set_password({ password, ...(me.has_password ? { current } : {}) }));
+    else
+      void this.attempt("password", () =>
+        this.set_password({ password, ...(me.has_password ? { current } : {}) }),
+      );
   }
 
   private async set_password(change: { password: string; current?: string }): Promise<void> {
@@ -381,7 +422,9 @@ export class StrataAccountDialog extends LitElement {
     this.role_ = "viewer";
     this.only_ = "";
     this.made_ = null;
-    void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLInputElement>("input[name=name]")?.focus());
+    void this.updateComplete.then(() =>
+      this.renderRoot.querySelector<HTMLInputElement>("input[name=name]")?.focus(),
+    );
   }
 
   private on_token(event: Event): void {
@@ -393,7 +436,12 @@ export class StrataAccountDialog extends LitElement {
       return;
     }
     void this.attempt("tokens", async () => {
-      this.made_ = await this.api.create_token({ name, role, days, ...(only ? { project: only } : {}) });
+      this.made_ = await this.api.create_token({
+        name,
+        role,
+        days,
+        ...(only ? { project: only } : {}),
+      });
       this.adding_ = false;
       await this.read_tokens();
     });
@@ -415,7 +463,15 @@ export class StrataAccountDialog extends LitElement {
   }
 
   private async revoke({ id, name }: ScriptToken): Promise<void> {
-    if (!(await ask({ heading: words.token_revoke_title(name), lead: words.token_revoke_lead, yes: words.revoke, danger: true }))) return;
+    if (
+      !(await ask({
+        heading: words.token_revoke_title(name),
+        lead: words.token_revoke_lead,
+        yes: words.revoke,
+        danger: true,
+      }))
+    )
+      return;
     await this.attempt("tokens", async () => {
       await this.api.revoke_token(id).catch(unless_gone);
       if (this.made_?.token.id === id) this.made_ = null;
@@ -443,13 +499,15 @@ export class StrataAccountDialog extends LitElement {
 
   private refused(section: Section, error: ApiError): void {
     const { field } = error.problem;
-    if (field === "full_name" || field === "current" || field === "password" || field === "name") this.refuse(field, error.message);
+    if (field === "full_name" || field === "current" || field === "password" || field === "name")
+      this.refuse(field, error.message);
     else if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
     else this.note_ = { section, kind: "error", text: error.message };
   }
 }
 
-const text_of = (event: Event, name: string): string => String(new FormData(event.target as HTMLFormElement).get(name) ?? "");
+const text_of = (event: Event, name: string): string =>
+  String(new FormData(event.target as HTMLFormElement).get(name) ?? "");
 
 /** What was to be ended has ended by itself. */
 function unless_gone(error: unknown): void {

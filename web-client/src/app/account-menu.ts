@@ -1,4 +1,5 @@
-// <strata-account-menu>: the initials of who is signed in, and what they can ask for. Others hear of it by the event "account".
+// <strata-account-menu>: the initials of who is signed in, and what they can ask for. Others hear
+// of it by the event "account".
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -14,7 +15,9 @@ export type AccountRequest = "account" | "people" | "kiosks" | "preferences" | "
 
 /** To whatever element of the page takes it. */
 export const ask_account = (from: EventTarget, detail: AccountRequest): boolean =>
-  from.dispatchEvent(new CustomEvent<AccountRequest>("account", { detail, bubbles: true, composed: true }));
+  from.dispatchEvent(
+    new CustomEvent<AccountRequest>("account", { detail, bubbles: true, composed: true }),
+  );
 
 @customElement("strata-account-menu")
 export class StrataAccountMenu extends LitElement {
@@ -62,12 +65,16 @@ export class StrataAccountMenu extends LitElement {
       <div class="who"><b>${called(me)}</b><span>${me.full_name.trim() ? `${me.user} · ${role}` : role}</span></div>
       <hr />
       <button class="quiet" role="menuitem" @click=${() => ask_account(this, "account")}>${icon("person")}${words.open}</button>
-      ${may_administer(me.role)
-        ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "people")}>${icon("people")}${words.people}</button>`
-        : nothing}
-      ${this.kiosks
-        ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "kiosks")}>${icon("picture")}${texts.kiosks.open}</button>`
-        : nothing}
+      ${
+        may_administer(me.role)
+          ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "people")}>${icon("people")}${words.people}</button>`
+          : nothing
+      }
+      ${
+        this.kiosks
+          ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "kiosks")}>${icon("picture")}${texts.kiosks.open}</button>`
+          : nothing
+      }
       <button class="quiet" role="menuitem" @click=${() => ask_account(this, "preferences")}>${icon("language")}${texts.settings.open}</button>
       <hr />
       <button class="quiet" role="menuitem" @click=${() => ask_account(this, "sign-out")}>${icon("leave")}${words.sign_out}</button>

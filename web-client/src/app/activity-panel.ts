@@ -19,8 +19,10 @@ import { told_clock, told_day } from "./times";
 const words = texts.activity;
 
 /** That of the first key which has one. */
-const text_of = (all: { readonly [key: string]: string; other: string }, ...keys: string[]): string =>
-  keys.map((key) => all[key]).find((text) => text !== undefined) ?? all.other;
+const text_of = (
+  all: { readonly [key: string]: string; other: string },
+  ...keys: string[]
+): string => keys.map((key) => all[key]).find((text) => text !== undefined) ?? all.other;
 
 @customElement("strata-activity-panel")
 export class StrataActivityPanel extends FoldingPanel {
@@ -79,19 +81,21 @@ export class StrataActivityPanel extends FoldingPanel {
   protected content(): TemplateResult {
     const { activity } = this.session;
     return html`${radio_group({
-        label: words.of,
-        class: "segments",
-        choices: [
-          { value: false, content: words.of_model },
-          { value: true, content: words.of_project },
-        ],
-        chosen: activity.whole,
-        choose: (whole) => (activity.whole = whole),
-      })}
-      ${activity.failed
-        ? html`<p class="error" role="alert">${words.failed}</p>
+      label: words.of,
+      class: "segments",
+      choices: [
+        { value: false, content: words.of_model },
+        { value: true, content: words.of_project },
+      ],
+      chosen: activity.whole,
+      choose: (whole) => (activity.whole = whole),
+    })}
+      ${
+        activity.failed
+          ? html`<p class="error" role="alert">${words.failed}</p>
             <button @click=${() => void activity.load()}>${texts.try_again}</button>`
-        : nothing}
+          : nothing
+      }
       ${activity.lines.length === 0 && !activity.failed ? html`<p class="hint">${activity.loaded ? words.none : texts.loading}</p>` : nothing}
       ${by_day(activity.lines, (time) => told_day(time)).map(
         ({ day, lines }) =>
@@ -119,18 +123,39 @@ export class StrataActivityPanel extends FoldingPanel {
   }
 
   private done({ kind, op, name, person, group }: Activity): TemplateResult {
-    const about = kind === "member" && group !== undefined ? (person === undefined ? "group" : "in_group") : kind;
+    const about =
+      kind === "member" && group !== undefined
+        ? person === undefined
+          ? "group"
+          : "in_group"
+        : kind;
     const what = kind === "member" ? (person ?? group) : name;
     return html`${text_of(words.done, `${about} ${op}`, kind)}${what === undefined ? nothing : html` <b>${what}</b>`}`;
   }
 
   private details(line: Activity): string {
-    const { kind, op, count, area_m2, text, record, table, role, changed, model_name, model, person, group } = line;
+    const {
+      kind,
+      op,
+      count,
+      area_m2,
+      text,
+      record,
+      table,
+      role,
+      changed,
+      model_name,
+      model,
+      person,
+      group,
+    } = line;
     const is_elsewhere = model !== undefined && model !== this.session.model?.id;
     const parts = [
-      kind === "edit" && (op === "stroke" ? words.strokes(count) : count > 1 ? words.times(count) : ""),
+      kind === "edit" &&
+        (op === "stroke" ? words.strokes(count) : count > 1 ? words.times(count) : ""),
       kind === "edit" && area_m2 ? format_area(area_m2) : "",
-      kind === "records" && (record === undefined ? texts.tables.records(count) : this.record_name(table, record)),
+      kind === "records" &&
+        (record === undefined ? texts.tables.records(count) : this.record_name(table, record)),
       kind === "columns" && words.columns(count),
       person !== undefined && group !== undefined ? group : "",
       kind === "member" && role ? texts.roles[role] : "",
@@ -142,6 +167,9 @@ export class StrataActivityPanel extends FoldingPanel {
   }
 
   private record_name(table: number | undefined, record: number): string {
-    return (table === undefined ? null : this.session.tables.label(table, record)) ?? texts.tables.record(record);
+    return (
+      (table === undefined ? null : this.session.tables.label(table, record)) ??
+      texts.tables.record(record)
+    );
   }
 }

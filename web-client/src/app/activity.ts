@@ -1,5 +1,5 @@
-// What was done on the open model, or in its whole project: what is known of it, and where its lines lead. It is read when somebody looks at it,
-// and again after something happened here.
+// What was done on the open model, or in its whole project: what is known of it, and where its
+// lines lead. It is read when somebody looks at it, and again after something happened here.
 
 import { with_first_page, with_next_page, type ActivityLog } from "../core/activity";
 import { ApiError, type Api } from "../core/api";
@@ -93,7 +93,11 @@ export class Activities {
     this.busy = true;
     this.host_.changed();
     try {
-      const page = await this.api_.activity(model.project, { limit: kAtOnce, before, model: this.whole_ ? undefined : model.id });
+      const page = await this.api_.activity(model.project, {
+        limit: kAtOnce,
+        before,
+        model: this.whole_ ? undefined : model.id,
+      });
       if (question !== this.asked_) return;
       take({ lines: page.activity, next: page.next });
       this.loaded = true;
@@ -107,17 +111,22 @@ export class Activities {
     this.host_.changed();
   }
 
-  // ── where a line leads ────────────────────────────────────────────────────────────────────────────────────────────
+  // ── where a line leads
+  // ────────────────────────────────────────────────────────────────────────────────────────────
 
   leads_somewhere(line: Activity): boolean {
     if (line.kind === "comment") return line.comment !== undefined;
-    return line.layer !== undefined || this.layer_of_table(line) !== null || this.is_elsewhere(line);
+    return (
+      line.layer !== undefined || this.layer_of_table(line) !== null || this.is_elsewhere(line)
+    );
   }
 
   /** To the comment, record or layer; to another model where it is on that. */
   async go_to(line: Activity): Promise<void> {
     if (this.is_elsewhere(line)) {
-      navigate(path_of_model(line.model!) + (line.comment === undefined ? "" : `#comment=${line.comment}`));
+      navigate(
+        path_of_model(line.model!) + (line.comment === undefined ? "" : `#comment=${line.comment}`),
+      );
       return;
     }
     if (line.comment !== undefined) {
@@ -139,7 +148,9 @@ export class Activities {
   }
 
   private layer_of_table({ table }: Activity): Layer | null {
-    return table === undefined ? null : (this.host_.layers.all.find((layer) => layer.table === table) ?? null);
+    return table === undefined
+      ? null
+      : (this.host_.layers.all.find((layer) => layer.table === table) ?? null);
   }
 
   private async fly_to(layer: Layer, record: number | undefined): Promise<void> {

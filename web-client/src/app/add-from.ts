@@ -17,9 +17,15 @@ export const add_from_styles = css`
 `;
 
 /** `label`: of the choice, and on the button. */
-export function add_from(label: string, options: readonly { value: string; name: string }[], add: (value: string) => void): TemplateResult {
+export function add_from(
+  label: string,
+  options: readonly { value: string; name: string }[],
+  add: (value: string) => void,
+): TemplateResult {
   const add_chosen = (event: Event): void => {
-    const value = (event.currentTarget as HTMLElement).parentElement?.querySelector("select")?.value;
+    const value = (event.currentTarget as HTMLElement).parentElement?.querySelector(
+      "select",
+    )?.value;
     if (value) add(value);
   };
   return html`<div class="add">

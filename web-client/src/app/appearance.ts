@@ -1,9 +1,16 @@
-// How this person sees the model: its looks, the light and the section. Nothing of it is kept but by named views, and others see it their way.
+// How this person sees the model: its looks, the light and the section. Nothing of it is kept but
+// by named views, and others see it their way.
 
 import type { Api } from "../core/api";
 import type { Bounds } from "../core/camera";
 import type { Light, Look, LookEvent, LookShown, Plane } from "../core/protocol.gen";
-import { no_section, section_choice, section_planes, type SectionChoice, type SectionMode } from "../core/section";
+import {
+  no_section,
+  section_choice,
+  section_planes,
+  type SectionChoice,
+  type SectionMode,
+} from "../core/section";
 import { looks_of_view, type LookSettings } from "../core/views";
 import { notices } from "./notices";
 import { reorder } from "./reorder";
@@ -30,7 +37,8 @@ export class Appearance {
   section: SectionChoice = no_section();
 
   private overrides_ = new Map<number, LookSettings>();
-  private stack_: number[] = []; // looks of a named view, bottom to top; others lie above them in their own order
+  // looks of a named view, bottom to top; others lie above them in their own order
+  private stack_: number[] = [];
 
   constructor(
     private readonly api_: Api,
@@ -38,7 +46,8 @@ export class Appearance {
     private readonly host_: AppearanceHost,
   ) {}
 
-  // ── looks ─────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── looks
+  // ─────────────────────────────────────────────────────────────────────────────────────────────────────────
 
   visible(look: Look): boolean {
     return this.overrides_.get(look.id)?.visible ?? look.visible;
@@ -67,7 +76,8 @@ export class Appearance {
 
   /** A look that work made for this person: they see it at once. */
   async show_made(id: number): Promise<void> {
-    if (!this.looks.some((look) => look.id === id)) this.take_looks(await this.api_.looks(this.model_id_));
+    if (!this.looks.some((look) => look.id === id))
+      this.take_looks(await this.api_.looks(this.model_id_));
     const look = this.looks.find((each) => each.id === id);
     if (look && !this.visible(look)) this.set_visible(look, true);
   }
@@ -80,7 +90,8 @@ export class Appearance {
   async move(look: Look, index: number): Promise<void> {
     await reorder(this.looks, look, index, {
       show: (looks) => this.take_looks(looks),
-      save: async (each) => this.put(await this.api_.change_look(this.model_id_, each.id, { order: each.order })),
+      save: async (each) =>
+        this.put(await this.api_.change_look(this.model_id_, each.id, { order: each.order })),
       reload: () => this.api_.looks(this.model_id_),
     });
   }
@@ -101,14 +112,19 @@ export class Appearance {
   }
 
   get has_look_overrides(): boolean {
-    const is_own = (look: Look): boolean => this.visible(look) !== look.visible || Math.abs(this.opacity(look) - look.opacity) > 1e-6;
+    const is_own = (look: Look): boolean =>
+      this.visible(look) !== look.visible || Math.abs(this.opacity(look) - look.opacity) > 1e-6;
     const visible = this.looks.filter((look) => this.visible(look));
-    return this.looks.some(is_own) || this.stacked(visible).some((look, place) => look !== visible[place]);
+    return (
+      this.looks.some(is_own) ||
+      this.stacked(visible).some((look, place) => look !== visible[place])
+    );
   }
 
   take_looks(looks: Look[]): void {
     this.put_all(looks);
-    for (const id of this.overrides_.keys()) if (!looks.some((look) => look.id === id)) this.overrides_.delete(id);
+    for (const id of this.overrides_.keys())
+      if (!looks.some((look) => look.id === id)) this.overrides_.delete(id);
     this.send();
   }
 
@@ -117,7 +133,8 @@ export class Appearance {
     else if (event.look) this.put(event.look);
   }
 
-  // ── light and section ─────────────────────────────────────────────────────────────────────────────────────────────
+  // ── light and section
+  // ─────────────────────────────────────────────────────────────────────────────────────────────
 
   set_light(change: Partial<Light>): void {
     this.light = { ...this.light, ...change };
@@ -148,7 +165,8 @@ export class Appearance {
     return this.light.mode === "museum" && this.section.mode === "off" && !this.has_look_overrides;
   }
 
-  // ── named views ───────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── named views
+  // ───────────────────────────────────────────────────────────────────────────────────────────────────
 
   /** What a named view keeps of all this, apart from the section, which is the camera's. */
   to_keep(): { looks: LookShown[]; light: Light } {
@@ -156,15 +174,29 @@ export class Appearance {
   }
 
   /** As a named view has it. Returns the way back. */
-  show_view(view: { camera: { section?: Plane[] }; looks?: LookShown[]; light: Light }): () => void {
+  show_view(view: {
+    camera: { section?: Plane[] };
+    looks?: LookShown[];
+    light: Light;
+  }): () => void {
     const { overrides_, stack_, light, section } = this;
     const { settings, stack } = looks_of_view(view, this.looks);
     const bounds = this.host_.bounds();
     const of_view = bounds ? section_choice(view.camera.section ?? [], bounds) : section;
-    this.take({ overrides_: settings, stack_: stack, light: { direction: kFirstRaking, ...view.light }, section: of_view });
+    this.take({
+      overrides_: settings,
+      stack_: stack,
+      light: { direction: kFirstRaking, ...view.light },
+      section: of_view,
+    });
     return () => this.take({ overrides_, stack_, light, section });
   }
-  private take(all: { overrides_: Map<number, LookSettings>; stack_: number[]; light: Required<Light>; section: SectionChoice }): void {
+  private take(all: {
+    overrides_: Map<number, LookSettings>;
+    stack_: number[];
+    light: Required<Light>;
+    section: SectionChoice;
+  }): void {
     Object.assign(this, all);
     this.send();
     this.send_section();
@@ -194,13 +226,16 @@ export class Appearance {
   }
 
   private shown_looks(): LookShown[] {
-    const shown = this.stacked(this.looks.filter((look) => this.visible(look))).slice(-kMostLooksShown);
+    const shown = this.stacked(this.looks.filter((look) => this.visible(look))).slice(
+      -kMostLooksShown,
+    );
     return shown.map((look) => ({ look: look.id, opacity: this.opacity(look) }));
   }
 
   /** Bottom to top. */
   private stacked(looks: Look[]): Look[] {
-    const place = ({ id }: Look): number => (this.stack_.includes(id) ? this.stack_.indexOf(id) : this.stack_.length);
+    const place = ({ id }: Look): number =>
+      this.stack_.includes(id) ? this.stack_.indexOf(id) : this.stack_.length;
     return [...looks].sort((a, b) => place(a) - place(b) || looks.indexOf(a) - looks.indexOf(b));
   }
 

@@ -1,4 +1,5 @@
-// <strata-bin-dialog>: what was deleted in a project, to restore or to delete for ever. Opened by open_bin().
+// <strata-bin-dialog>: what was deleted in a project, to restore or to delete for ever. Opened by
+// open_bin().
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -18,7 +19,11 @@ import { told_ago, told_date } from "./times";
 
 const words = texts.bin;
 const kAtOnce = 100;
-const kIcons: Record<BinEntry["kind"], IconName> = { layer: "layers", model: "cube", record: "table" };
+const kIcons: Record<BinEntry["kind"], IconName> = {
+  layer: "layers",
+  model: "cube",
+  record: "table",
+};
 
 @customElement("strata-bin-dialog")
 export class StrataBinDialog extends LitElement {
@@ -99,10 +104,12 @@ export class StrataBinDialog extends LitElement {
     return html`<strata-dialog broad heading=${words.title_of(this.project.name)} way_out=${texts.close} @closed=${() => this.finish()}>
       ${bin ? html`<p class="hint">${bin.days === 0 ? words.not_kept_lead : words.lead(bin.days)}</p>` : nothing}
       <p class=${note?.kind ?? "done"} role=${note?.kind === "error" ? "alert" : "status"} tabindex="-1" ?hidden=${!note}>${note?.text}</p>
-      ${bin
-        ? this.entries(bin)
-        : html`<p class="hint" role="status" ?hidden=${note !== null}>${texts.loading}</p>
-            ${note ? html`<div><button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button></div>` : nothing}`}
+      ${
+        bin
+          ? this.entries(bin)
+          : html`<p class="hint" role="status" ?hidden=${note !== null}>${texts.loading}</p>
+            ${note ? html`<div><button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button></div>` : nothing}`
+      }
     </strata-dialog>`;
   }
 
@@ -122,7 +129,10 @@ export class StrataBinDialog extends LitElement {
     const { kind, name, user, full_name, deleted, erased, bytes } = entry;
     const where = entry.model_name ?? entry.table_name;
     const facts = [
-      words.deleted_when(told_ago(deleted), user === undefined ? undefined : called({ user, ...(full_name ? { full_name } : {}) })),
+      words.deleted_when(
+        told_ago(deleted),
+        user === undefined ? undefined : called({ user, ...(full_name ? { full_name } : {}) }),
+      ),
       words.erased_on(told_date(erased)),
       bytes === undefined ? "" : format_bytes(bytes),
     ];
@@ -135,9 +145,11 @@ export class StrataBinDialog extends LitElement {
       </div>
       <div class="buttons">
         <button ?disabled=${this.busy_} aria-label=${words.restore_of(name)} @click=${() => void this.restore(entry)}>${icon("undo")}${words.restore}</button>
-        ${kind === "record"
-          ? nothing
-          : html`<button class="icon quiet" ?disabled=${this.busy_} aria-label=${words.erase_of(name)} title=${words.erase} @click=${() => void this.erase(entry)}>${icon("trash")}</button>`}
+        ${
+          kind === "record"
+            ? nothing
+            : html`<button class="icon quiet" ?disabled=${this.busy_} aria-label=${words.erase_of(name)} title=${words.erase} @click=${() => void this.erase(entry)}>${icon("trash")}</button>`
+        }
       </div>
     </li>`;
   }
@@ -161,7 +173,15 @@ export class StrataBinDialog extends LitElement {
   }
 
   private async erase(entry: BinEntry): Promise<void> {
-    if (!(await ask({ heading: words.erase_title(entry.name), lead: words.erase_lead, yes: words.erase_yes, danger: true }))) return;
+    if (
+      !(await ask({
+        heading: words.erase_title(entry.name),
+        lead: words.erase_lead,
+        yes: words.erase_yes,
+        danger: true,
+      }))
+    )
+      return;
     await this.attempt(async () => {
       await this.api.erase_from_bin(this.project.slug, entry.id);
       this.take_out(entry, words.erased(entry.name));
@@ -170,10 +190,17 @@ export class StrataBinDialog extends LitElement {
 
   /** Who went through the list by keys goes on at what was done. */
   private take_out({ id }: BinEntry, text: string): void {
-    if (this.bin_) this.bin_ = { ...this.bin_, entries: this.bin_.entries.filter((each) => each.id !== id), total: this.bin_.total - 1 };
+    if (this.bin_)
+      this.bin_ = {
+        ...this.bin_,
+        entries: this.bin_.entries.filter((each) => each.id !== id),
+        total: this.bin_.total - 1,
+      };
     this.changed_ = true;
     this.note_ = { kind: "done", text };
-    void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLElement>("p[tabindex]")?.focus());
+    void this.updateComplete.then(() =>
+      this.renderRoot.querySelector<HTMLElement>("p[tabindex]")?.focus(),
+    );
   }
 
   private async attempt(task: () => Promise<void>): Promise<void> {
@@ -185,7 +212,8 @@ export class StrataBinDialog extends LitElement {
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.note_ = { kind: "error", text: error.message };
-      if (error.status === 404 && this.bin_) await this.read().catch(() => {}); // somebody else was faster
+      // somebody else was faster
+      if (error.status === 404 && this.bin_) await this.read().catch(() => {});
     } finally {
       this.busy_ = false;
     }
@@ -207,7 +235,13 @@ export function open_bin(api: BinApi, project: Pick<Project, "slug" | "name">): 
 }
 
 /** That of the open model's project. */
-export async function open_bin_of({ api, model }: { api: Api; model: Pick<Model, "project"> | null }): Promise<void> {
+export async function open_bin_of({
+  api,
+  model,
+}: {
+  api: Api;
+  model: Pick<Model, "project"> | null;
+}): Promise<void> {
   if (!model) return;
   try {
     await open_bin(api, (await api.project(model.project)).value);

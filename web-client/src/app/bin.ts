@@ -15,8 +15,15 @@ export interface Deletable {
   project: string; // its slug
 }
 
-/** Whether to go on, told what can be undone: for how long things stay in the Bin is the server's to say. */
-export async function ask_to_bin(api: BinApi, { name, project }: Deletable, words: { title: (name: string) => string; lead: string }): Promise<boolean> {
+/**
+ * Whether to go on, told what can be undone: for how long things stay in the Bin is the server's to
+ * say.
+ */
+export async function ask_to_bin(
+  api: BinApi,
+  { name, project }: Deletable,
+  words: { title: (name: string) => string; lead: string },
+): Promise<boolean> {
   const days = await api.bin(project, { limit: 1, offset: 0 }).then(
     (bin) => bin.days,
     (error: unknown) => {
@@ -24,11 +31,20 @@ export async function ask_to_bin(api: BinApi, { name, project }: Deletable, word
       return null; // whoever deletes is told what is wrong
     },
   );
-  return ask({ heading: words.title(name), lead: `${words.lead} ${days === 0 ? texts.bin.not_kept : texts.bin.kept(days)}`, yes: texts.delete, danger: true });
+  return ask({
+    heading: words.title(name),
+    lead: `${words.lead} ${days === 0 ? texts.bin.not_kept : texts.bin.kept(days)}`,
+    yes: texts.delete,
+    danger: true,
+  });
 }
 
 /** Says that it was deleted, with a button that brings it back. `came_back`: once it did. */
-export function tell_binned(api: BinApi, gone: Deletable, came_back: (restored: BinRestored) => void = () => {}): void {
+export function tell_binned(
+  api: BinApi,
+  gone: Deletable,
+  came_back: (restored: BinRestored) => void = () => {},
+): void {
   const undo = async (): Promise<void> => {
     try {
       const restored = await api.restore_from_bin(gone.project, gone.entry);
@@ -38,8 +54,13 @@ export function tell_binned(api: BinApi, gone: Deletable, came_back: (restored: 
       notices.error(error);
     }
   };
-  notices.show("success", texts.bin.deleted[gone.kind](gone.name), "", { label: texts.model.undo, act: () => void undo() });
+  notices.show("success", texts.bin.deleted[gone.kind](gone.name), "", {
+    label: texts.model.undo,
+    act: () => void undo(),
+  });
 }
 
 export const told_restored = ({ name, slug, former_slug }: BinRestored): string =>
-  slug === undefined || former_slug === undefined ? texts.bin.restored(name) : texts.bin.restored_as(name, former_slug, slug);
+  slug === undefined || former_slug === undefined
+    ? texts.bin.restored(name)
+    : texts.bin.restored_as(name, former_slug, slug);

@@ -1,4 +1,5 @@
-// <strata-brush-panel>: what the chosen painting tool paints in the selected layer, how wide, and what it reaches.
+// <strata-brush-panel>: what the chosen painting tool paints in the selected layer, how wide, and
+// what it reaches.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -99,7 +100,8 @@ export class StrataBrushPanel extends LitElement {
 
   private locked(layer: Layer): TemplateResult {
     const { layers, can_curate } = this.session;
-    const unlock = (): void => void layers.change(layer, { locked: false }).catch((error: unknown) => notices.error(error));
+    const unlock = (): void =>
+      void layers.change(layer, { locked: false }).catch((error: unknown) => notices.error(error));
     return html`<h2>${texts.tools[this.session.tools.active]}</h2>
       <p class="locked" role="status">${icon("lock")}<span>${why_locked(layer)}</span></p>
       ${can_curate ? html`<button @click=${unlock}>${icon("unlock")}${unlock_label(layer)}</button>` : nothing}`;
@@ -128,18 +130,20 @@ export class StrataBrushPanel extends LitElement {
         choose: (chosen) => painting.set_brush((brush) => (brush.areas.erases = chosen)),
       })}
       ${erases ? html`<p class="hint">${texts.brush.erases(label_of(layer))}</p>` : this.value(layer)}
-      ${tool === "bucket"
-        ? radio_group<typeof reach>({
-            label: words.reach,
-            class: "segments",
-            choices: [
-              { value: "connected", content: words.connected, title: words.connected_hint },
-              { value: "island", content: words.island, title: words.island_hint },
-            ],
-            chosen: reach,
-            choose: (chosen) => painting.set_brush((brush) => (brush.areas.reach = chosen)),
-          })
-        : this.through()}
+      ${
+        tool === "bucket"
+          ? radio_group<typeof reach>({
+              label: words.reach,
+              class: "segments",
+              choices: [
+                { value: "connected", content: words.connected, title: words.connected_hint },
+                { value: "island", content: words.island, title: words.island_hint },
+              ],
+              chosen: reach,
+              choose: (chosen) => painting.set_brush((brush) => (brush.areas.reach = chosen)),
+            })
+          : this.through()
+      }
       ${this.whole(layer)}`;
   }
 
@@ -149,22 +153,27 @@ export class StrataBrushPanel extends LitElement {
     const words = texts.marks;
     const columns = marks.columns(kind);
     const { table } = layer;
-    if (table === undefined || columns.length === 0) return html`<h2>${texts.tools[kind]}</h2><p class="hint">${words.no_column[kind]}</p>`;
+    if (table === undefined || columns.length === 0)
+      return html`<h2>${texts.tools[kind]}</h2><p class="hint">${words.no_column[kind]}</p>`;
     const choose = (event: Event): void => {
-      const chosen = columns.find(({ id }) => `${id}` === (event.target as HTMLSelectElement).value);
+      const chosen = columns.find(
+        ({ id }) => `${id}` === (event.target as HTMLSelectElement).value,
+      );
       if (chosen) marks.choose_column(table, chosen);
     };
     return html`<h2>${texts.tools[kind]}</h2>
       <p class="hint">${words.how[kind]}</p>
       ${this.value(layer)}
-      ${columns.length > 1
-        ? html`<label class="field">
+      ${
+        columns.length > 1
+          ? html`<label class="field">
             <span>${words.into}</span>
             <select @change=${choose}>
               ${columns.map((column) => html`<option value=${column.id} ?selected=${column.id === marks.column(kind)?.id}>${label_of(column)}</option>`)}
             </select>
           </label>`
-        : nothing}`;
+          : nothing
+      }`;
   }
 
   private value(layer: Layer): TemplateResult {
@@ -242,7 +251,8 @@ export class StrataBrushPanel extends LitElement {
   /** What needs no pointer. */
   private whole(layer: Layer): TemplateResult {
     const detail: WhereRequest = { dialog: "where", layer };
-    const ask_where = (): void => void this.dispatchEvent(new CustomEvent<WhereRequest>("request", { detail }));
+    const ask_where = (): void =>
+      void this.dispatchEvent(new CustomEvent<WhereRequest>("request", { detail }));
     return html`<div class="pair">
       <button class="quiet" @click=${() => void this.fill(layer)}>${icon("drop")}${texts.brush.fill}</button>
       <button class="quiet" @click=${ask_where}>${icon("formula")}${texts.areas.where}</button>
@@ -304,7 +314,8 @@ export class StrataBrushPanel extends LitElement {
     const { session } = this;
     if (!session.model) return "";
     const radius_px = session.painting.radius_window_px();
-    if (unit === "mm") return `≈ ${format_number((2 * radius_px) / session.view.scale, 2)} ${texts.brush.width_px} ${texts.brush.on_screen}`;
+    if (unit === "mm")
+      return `≈ ${format_number((2 * radius_px) / session.view.scale, 2)} ${texts.brush.width_px} ${texts.brush.on_screen}`;
     const metres = session.painting.width_metres();
     return `≈ ${format_length(metres)} ${texts.brush.on_object}`;
   }
@@ -327,9 +338,19 @@ export class StrataBrushPanel extends LitElement {
   }
 
   private async fill(layer: Layer): Promise<void> {
-    const what = describe_value(layer, this.session.painting.brush.value_of(layer), this.session.tables);
+    const what = describe_value(
+      layer,
+      this.session.painting.brush.value_of(layer),
+      this.session.tables,
+    );
     const words = texts.brush;
-    if (await ask({ heading: words.fill_title(label_of(layer)), lead: words.fill_lead(`“${what}”`), yes: words.fill })) {
+    if (
+      await ask({
+        heading: words.fill_title(label_of(layer)),
+        lead: words.fill_lead(`“${what}”`),
+        yes: words.fill,
+      })
+    ) {
       this.session.painting.fill(layer);
     }
   }

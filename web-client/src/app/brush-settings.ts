@@ -16,7 +16,10 @@ export class BrushSettings {
   shape: ToolShape = "disc";
   through = false; // what is hidden, too
   pressure = true; // a pen that is pressed less paints a narrower line
-  /** What is seen at more of a slant is left out, where that is wanted. Not together with what is hidden. */
+  /**
+   * What is seen at more of a slant is left out, where that is wanted. Not together with what is
+   * hidden.
+   */
   slant = { limited: false, max_deg: 60 };
   /** Of polygon, lasso and bucket. */
   areas: { erases: boolean; reach: "connected" | "island" } = { erases: false, reach: "connected" };
@@ -34,7 +37,10 @@ export class BrushSettings {
   /** One step of the [ and ] keys. */
   step_width(direction: 1 | -1): void {
     const grown = this.width[this.unit] * (direction > 0 ? 1.15 : 1 / 1.15);
-    this.set_width(this.unit, this.unit === "px" ? Math.round(grown + direction * 0.5) : Number(grown.toPrecision(3)));
+    this.set_width(
+      this.unit,
+      this.unit === "px" ? Math.round(grown + direction * 0.5) : Number(grown.toPrecision(3)),
+    );
   }
 
   value_of(layer: Layer): number {
@@ -65,7 +71,8 @@ export function value_problem(layer: Layer, value: number): string | null {
   if (!Number.isFinite(value)) return texts.brush.bad_value;
   if (!holds_fractions(layer.type) && !Number.isInteger(value)) return texts.brush.whole_number;
   const [low, high] = value_range(layer.type);
-  if (value < low || value > high) return texts.brush.out_of_range(format_number(low), format_number(high));
+  if (value < low || value > high)
+    return texts.brush.out_of_range(format_number(low), format_number(high));
   return null;
 }
 
@@ -76,15 +83,25 @@ export interface RecordLabels {
   term(table: number, key: number): string | null;
 }
 
-/** A value as people read it: its term, the label of its class, the name of its record, or the number with its unit. */
-export function describe_value(layer: Layer, value: number, records: RecordLabels | null = null): string {
+/**
+ * A value as people read it: its term, the label of its class, the name of its record, or the
+ * number with its unit.
+ */
+export function describe_value(
+  layer: Layer,
+  value: number,
+  records: RecordLabels | null = null,
+): string {
   const term = layer.table === undefined ? null : (records?.term(layer.table, value) ?? null);
   if (term !== null) return term;
   const by_value = layer.palette.mode === "categorical" && !layer.palette.column;
   const label = by_value ? layer.palette.points.find((p) => p.at === value)?.label : "";
   if (label) return label;
   if (layer.kind === "database") {
-    return (layer.table === undefined ? null : records?.label(layer.table, value)) ?? texts.layers.record_number(value);
+    return (
+      (layer.table === undefined ? null : records?.label(layer.table, value)) ??
+      texts.layers.record_number(value)
+    );
   }
   if (layer.palette.mode === "categorical") return texts.layers.class_number(value);
   return `${format_number(value, 4)}${layer.unit ? ` ${layer.unit}` : ""}`;

@@ -1,4 +1,5 @@
-// Cells that this person wrote and that are not in the table yet: on their way, refused, or changed by somebody else meanwhile.
+// Cells that this person wrote and that are not in the table yet: on their way, refused, or changed
+// by somebody else meanwhile.
 
 import { ApiError, type Api } from "../core/api";
 import { same_value } from "../core/cells";
@@ -8,7 +9,10 @@ import { texts } from "./texts";
 export interface CellEdit {
   key: number;
   slug: string;
-  /** What the cell may hold that it goes onto: as the person saw it, and what they wrote into it since. */
+  /**
+   * What the cell may hold that it goes onto: as the person saw it, and what they wrote into it
+   * since.
+   */
   onto: CellValue[];
   value: CellValue;
   state: "saving" | "refused" | "conflict";
@@ -29,7 +33,8 @@ const id_of = (key: number, slug: string): string => `${key} ${slug}`;
 
 export class CellEdits {
   private readonly edits_ = new Map<string, CellEdit>();
-  private readonly chains_ = new Map<number, Promise<void>>(); // by record: one change after the other
+  // by record: one change after the other
+  private readonly chains_ = new Map<number, Promise<void>>();
 
   constructor(
     private readonly api_: Api,
@@ -65,7 +70,12 @@ export class CellEdits {
 
   /** Mine goes over theirs. */
   insist(edit: CellEdit): Promise<void> {
-    return this.send({ ...edit, onto: [edit.theirs?.value ?? null], state: "saving", theirs: null });
+    return this.send({
+      ...edit,
+      onto: [edit.theirs?.value ?? null],
+      state: "saving",
+      theirs: null,
+    });
   }
 
   private send(edit: CellEdit): Promise<void> {
@@ -81,17 +91,25 @@ export class CellEdits {
     if (this.of(key, slug) !== edit) return; // written again since
     try {
       for (let tries = 1; ; ++tries) {
-        const row = this.host_.row(key) ?? (await this.api_.record({ table: this.host_.table }, key));
+        const row =
+          this.host_.row(key) ?? (await this.api_.record({ table: this.host_.table }, key));
         if (!edit.onto.some((value) => same_value(row.values[slug], value))) {
           await this.tell_conflict(edit, row);
           return;
         }
         try {
-          this.host_.put(await this.api_.change_record(this.host_.table, key, { version: row.version, values: { [slug]: value } }));
+          this.host_.put(
+            await this.api_.change_record(this.host_.table, key, {
+              version: row.version,
+              values: { [slug]: value },
+            }),
+          );
           break;
         } catch (error) {
-          if (!(error instanceof ApiError) || error.status !== 412 || tries === kMostTries) throw error;
-          this.host_.put(await this.api_.record({ table: this.host_.table }, key)); // another cell of it may be all that changed
+          if (!(error instanceof ApiError) || error.status !== 412 || tries === kMostTries)
+            throw error;
+          // another cell of it may be all that changed
+          this.host_.put(await this.api_.record({ table: this.host_.table }, key));
         }
       }
       if (this.of(key, slug) === edit) this.forget(key, slug);
@@ -105,7 +123,11 @@ export class CellEdits {
   private async tell_conflict(edit: CellEdit, row: TableRecord): Promise<void> {
     const [newest] = await this.api_.record_edits(this.host_.table, edit.key, 1);
     edit.state = "conflict";
-    edit.theirs = { value: row.values[edit.slug] ?? null, user: newest?.user ?? "", time: newest?.time ?? "" };
+    edit.theirs = {
+      value: row.values[edit.slug] ?? null,
+      user: newest?.user ?? "",
+      time: newest?.time ?? "",
+    };
     this.host_.changed();
   }
 }

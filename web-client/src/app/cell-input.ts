@@ -1,8 +1,17 @@
-// <strata-cell-input>: the field for a value of a column, by its kind. In a cell of the table and in the form of a record alike.
+// <strata-cell-input>: the field for a value of a column, by its kind. In a cell of the table and
+// in the form of a record alike.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
-import { cell_text, holds_files, is_number, label_of, named_keys, names_records, parse_cell } from "../core/cells";
+import {
+  cell_text,
+  holds_files,
+  is_number,
+  label_of,
+  named_keys,
+  names_records,
+  parse_cell,
+} from "../core/cells";
 import { holds_marks, marks_of } from "../core/marks";
 import type { CellValue, Column } from "../core/protocol.gen";
 import type { ModelSession } from "./model-session";
@@ -18,9 +27,17 @@ export type CellRead = { value: CellValue } | { problem: string };
 
 /** Whether what is typed can begin a new value; the others are chosen. */
 export const takes_typing = (column: Column): boolean =>
-  !names_records(column) && !holds_marks(column) && !holds_files(column) && column.kind !== "boolean" && column.kind !== "enumeration" && column.kind !== "date";
+  !names_records(column) &&
+  !holds_marks(column) &&
+  !holds_files(column) &&
+  column.kind !== "boolean" &&
+  column.kind !== "enumeration" &&
+  column.kind !== "date";
 
-/** Whether a character may be meant as text in a cell of the column. What may not is left to the keys of the page. */
+/**
+ * Whether a character may be meant as text in a cell of the column. What may not is left to the
+ * keys of the page.
+ */
 export function may_be_text(column: Column, character: string): boolean {
   if (is_number(column)) return /[-+.,\d]/.test(character);
   if (column.kind === "timestamp" || column.kind === "date") return /\d/.test(character);
@@ -42,10 +59,7 @@ export class StrataCellInput extends LitElement {
   @query("strata-files-field") private files_!: StrataFilesField | null;
   @query("strata-marks-field") private marks_!: StrataMarksField | null;
   @query("input, select, textarea, strata-record-chooser") private control_!:
-    | HTMLInputElement
-    | HTMLSelectElement
-    | HTMLTextAreaElement
-    | StrataRecordChooser;
+    HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement | StrataRecordChooser;
 
   static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
 
@@ -90,7 +104,8 @@ export class StrataCellInput extends LitElement {
   ];
 
   override firstUpdated(): void {
-    if (this.typed !== null && takes_typing(this.column)) (this.control_ as HTMLInputElement).value = this.typed;
+    if (this.typed !== null && takes_typing(this.column))
+      (this.control_ as HTMLInputElement).value = this.typed;
   }
 
   /** What is in the field now. */
@@ -100,7 +115,9 @@ export class StrataCellInput extends LitElement {
     if (this.marks_) return { value: this.marks_.marks.length > 0 ? [...this.marks_.marks] : null };
     if (names_records(column)) {
       const keys = [...(this.control_ as StrataRecordChooser).chosen];
-      return { value: column.kind === "relation" ? (keys.length > 0 ? keys : null) : (keys[0] ?? null) };
+      return {
+        value: column.kind === "relation" ? (keys.length > 0 ? keys : null) : (keys[0] ?? null),
+      };
     }
     const control = this.control_ as HTMLInputElement;
     if (control.validity.badInput) return { problem: texts.tables.bad_date };
@@ -133,9 +150,15 @@ export class StrataCellInput extends LitElement {
   begin(): void {
     this.focus({ preventScroll: true });
     const control = this.control_;
-    const is_text = control instanceof HTMLTextAreaElement || (control instanceof HTMLInputElement && control.type === "text");
+    const is_text =
+      control instanceof HTMLTextAreaElement ||
+      (control instanceof HTMLInputElement && control.type === "text");
     if (control instanceof StrataRecordChooser) control.open();
-    if (is_text) control.setSelectionRange(this.typed === null ? 0 : control.value.length, control.value.length);
+    if (is_text)
+      control.setSelectionRange(
+        this.typed === null ? 0 : control.value.length,
+        control.value.length,
+      );
   }
 
   override render(): TemplateResult {

@@ -19,8 +19,20 @@ export interface ColumnWanted {
 }
 
 export const kColumnKinds: readonly ColumnKind[] = [
-  "text", "integer", "numeric", "boolean", "date", "timestamp", "period", "enumeration", "url", "term", "relation", "line", "point",
-]; // prettier-ignore
+  "text",
+  "integer",
+  "numeric",
+  "boolean",
+  "date",
+  "timestamp",
+  "period",
+  "enumeration",
+  "url",
+  "term",
+  "relation",
+  "line",
+  "point",
+];
 
 export const has_limits = (kind: ColumnKind): boolean => kind === "integer" || kind === "numeric";
 export const has_target = (kind: ColumnKind): boolean => kind === "term" || kind === "relation";
@@ -35,7 +47,9 @@ export function of_kind(wanted: ColumnWanted): ColumnPatch {
     required,
     unique,
     comment,
-    ...(has_limits(kind) ? { unit: wanted.unit, minimum: wanted.minimum, maximum: wanted.maximum } : {}),
+    ...(has_limits(kind)
+      ? { unit: wanted.unit, minimum: wanted.minimum, maximum: wanted.maximum }
+      : {}),
     ...(kind === "enumeration" ? { choices: wanted.choices } : {}),
     ...(has_target(kind) && wanted.target !== null ? { target: wanted.target } : {}),
   };
@@ -45,10 +59,13 @@ export function of_kind(wanted: ColumnWanted): ColumnPatch {
 export function column_changes(column: Column, wanted: ColumnWanted): ColumnPatch {
   const now: Record<string, unknown> = { unit: "", minimum: null, maximum: null, ...column };
   const entries = Object.entries(of_kind(wanted)).filter(([member, value]) =>
-    member === "labels" ? !same_labels(wanted.labels, column.labels) : !same_value(value as CellValue, (now[member] ?? null) as CellValue),
+    member === "labels"
+      ? !same_labels(wanted.labels, column.labels)
+      : !same_value(value as CellValue, (now[member] ?? null) as CellValue),
   );
   return Object.fromEntries(entries) as ColumnPatch;
 }
 
 /** In whatever order. */
-const same_labels = (a: Labels, b: Labels): boolean => JSON.stringify(rows_of(a)) === JSON.stringify(rows_of(b));
+const same_labels = (a: Labels, b: Labels): boolean =>
+  JSON.stringify(rows_of(a)) === JSON.stringify(rows_of(b));

@@ -5,8 +5,22 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import { cell_text, label_of, parse_cell } from "../core/cells";
 import { format_list } from "../core/locale";
-import type { Column, ColumnChanged, ColumnCreate, ColumnKind, Table, Visibility } from "../core/protocol.gen";
-import { column_changes, has_limits, has_target, kColumnKinds, of_kind, type ColumnWanted } from "./column-changes";
+import type {
+  Column,
+  ColumnChanged,
+  ColumnCreate,
+  ColumnKind,
+  Table,
+  Visibility,
+} from "../core/protocol.gen";
+import {
+  column_changes,
+  has_limits,
+  has_target,
+  kColumnKinds,
+  of_kind,
+  type ColumnWanted,
+} from "./column-changes";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
 import "./labels-field";
@@ -57,22 +71,27 @@ export class StrataColumnDialog extends LitElement {
     this.visibility_ = this.column?.visibility ?? "public";
     void this.session.tables.all().then(
       (tables) => (this.tables_ = tables),
-      (error: unknown) => (this.problem_ = error instanceof ApiError ? error.message : texts.problems.unexpected),
+      (error: unknown) =>
+        (this.problem_ = error instanceof ApiError ? error.message : texts.problems.unexpected),
     );
   }
 
   override render(): TemplateResult {
     const { column, outcome_: outcome } = this;
-    const heading = column ? words.edit_title(label_of(column)) : words.create_title(label_of(this.table));
+    const heading = column
+      ? words.edit_title(label_of(column))
+      : words.create_title(label_of(this.table));
     return html`<strata-dialog heading=${heading} way_out=${outcome ? "" : texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       ${outcome ? this.lost(outcome) : this.form()}
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      ${outcome
-        ? html`<button slot="actions" ?disabled=${this.busy_} @click=${() => void this.take_back()}>${words.take_back}</button>
+      ${
+        outcome
+          ? html`<button slot="actions" ?disabled=${this.busy_} @click=${() => void this.take_back()}>${words.take_back}</button>
             <button slot="actions" class="primary" @click=${() => this.dialog_.close()}>${words.keep}</button>`
-        : html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
+          : html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
             ${column ? texts.save : words.create}
-          </button>`}
+          </button>`
+      }
     </strata-dialog>`;
   }
 
@@ -97,8 +116,9 @@ export class StrataColumnDialog extends LitElement {
         </select>
       </label>
       ${column && column.kind !== kind ? html`<p class="hint" role="status">${words.retype_hint}</p>` : nothing}
-      ${has_limits(kind)
-        ? html`<div class="three">
+      ${
+        has_limits(kind)
+          ? html`<div class="three">
             <label class="field"><span>${words.unit}</span><input type="text" name="unit" maxlength="40" .value=${column?.unit ?? ""} /></label>
             <label class="field"
               ><span>${words.minimum}</span><input type="text" inputmode="decimal" name="minimum" .value=${cell_text(column?.minimum)}
@@ -107,23 +127,29 @@ export class StrataColumnDialog extends LitElement {
               ><span>${words.maximum}</span><input type="text" inputmode="decimal" name="maximum" .value=${cell_text(column?.maximum)}
             /></label>
           </div>`
-        : nothing}
-      ${kind === "enumeration"
-        ? html`<label class="field">
+          : nothing
+      }
+      ${
+        kind === "enumeration"
+          ? html`<label class="field">
             <span>${words.choices}</span>
             <textarea name="choices" rows="4" .value=${(column?.choices ?? []).join("\n")}></textarea>
           </label>`
-        : nothing}
-      ${has_target(kind)
-        ? html`<label class="field">
+          : nothing
+      }
+      ${
+        has_target(kind)
+          ? html`<label class="field">
             <span>${words.target}</span>
             <select name="target">
               ${this.tables_.map(
-                (table) => html`<option value=${table.id} ?selected=${table.id === (column?.target ?? this.table.id)}>${label_of(table)}</option>`,
+                (table) =>
+                  html`<option value=${table.id} ?selected=${table.id === (column?.target ?? this.table.id)}>${label_of(table)}</option>`,
               )}
             </select>
           </label>`
-        : nothing}
+          : nothing
+      }
       <div class="checks">
         <label class="check"><input type="checkbox" name="required" .checked=${column?.required ?? false} />${words.required}</label>
         <label class="check"><input type="checkbox" name="unique" .checked=${column?.unique ?? false} />${words.unique}</label>
@@ -152,8 +178,12 @@ export class StrataColumnDialog extends LitElement {
   private wanted(): ColumnWanted | string {
     const data = new FormData(this.form_);
     const text = (name: string): string => String(data.get(name) ?? "").trim();
-    const limits = ["minimum", "maximum"].map((name) => parse_cell({ kind: "numeric" }, text(name)));
-    const [minimum, maximum] = limits.map((parsed) => ("value" in parsed ? (parsed.value as number | null) : undefined));
+    const limits = ["minimum", "maximum"].map((name) =>
+      parse_cell({ kind: "numeric" }, text(name)),
+    );
+    const [minimum, maximum] = limits.map((parsed) =>
+      "value" in parsed ? (parsed.value as number | null) : undefined,
+    );
     if (text("name") === "") return words.name_missing;
     if (minimum === undefined || maximum === undefined) return texts.tables.bad_number;
     const labels = this.labels_.read();
@@ -183,12 +213,20 @@ export class StrataColumnDialog extends LitElement {
     const { column, table, session } = this;
     await this.work(async () => {
       if (!column) {
-        await session.api.create_column(table.id, { ...of_kind(wanted), visibility: this.visibility_ } as ColumnCreate);
+        await session.api.create_column(table.id, {
+          ...of_kind(wanted),
+          visibility: this.visibility_,
+        } as ColumnCreate);
       } else {
-        // In a call of its own, which is no entry of the journal; the first, so that what follows is seen by none who should not.
-        if (this.visibility_ !== column.visibility) await session.api.change_column(table.id, column.id, { visibility: this.visibility_ });
+        // In a call of its own, which is no entry of the journal; the first, so that what follows
+        // is seen by none who should not.
+        if (this.visibility_ !== column.visibility)
+          await session.api.change_column(table.id, column.id, { visibility: this.visibility_ });
         const change = column_changes(column, wanted);
-        const outcome = Object.keys(change).length > 0 ? await session.api.change_column(table.id, column.id, change) : null;
+        const outcome =
+          Object.keys(change).length > 0
+            ? await session.api.change_column(table.id, column.id, change)
+            : null;
         if (outcome?.lost) this.outcome_ = outcome;
       }
       await session.tables.reload(table.id);

@@ -1,11 +1,19 @@
-// <strata-column-filter>: what the rows of a table must hold in one column, chosen from what there is: values with how many records have them, a range, a part
-// of the text, nothing or anything. Tells by "filter" what the filter of the table says then.
+// <strata-column-filter>: what the rows of a table must hold in one column, chosen from what there
+// is: values with how many records have them, a range, a part of the text, nothing or anything.
+// Tells by "filter" what the filter of the table says then.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import { is_number, label_of, names_records } from "../core/cells";
-import { chosen_in, filter_kinds, with_choice, type ColumnFilter, type FilterKind, type FilterValue } from "../core/column-filter";
+import {
+  chosen_in,
+  filter_kinds,
+  with_choice,
+  type ColumnFilter,
+  type FilterKind,
+  type FilterValue,
+} from "../core/column-filter";
 import { count_values, type ValueCounts } from "../core/value-counts";
 import { compare_words, format_count, read_number, typed_number } from "../core/locale";
 import type { Column } from "../core/protocol.gen";
@@ -127,7 +135,17 @@ export class StrataColumnFilter extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.take(chosen_in(this.filter, this.column) ?? { is: filter_kinds(this.column)[0]!, values: [], empty: false, from: "", to: "", text: "" } as ColumnFilter);
+    this.take(
+      chosen_in(this.filter, this.column) ??
+        ({
+          is: filter_kinds(this.column)[0]!,
+          values: [],
+          empty: false,
+          from: "",
+          to: "",
+          text: "",
+        } as ColumnFilter),
+    );
     void this.count();
   }
 
@@ -147,7 +165,8 @@ export class StrataColumnFilter extends LitElement {
       this.values_ = new Set(choice.values);
       this.empty_ = choice.empty;
     } else if (choice.is === "range") {
-      const shown = (end: string): string => (end !== "" && is_number(this.column) ? typed_number(Number(end)) : end);
+      const shown = (end: string): string =>
+        end !== "" && is_number(this.column) ? typed_number(Number(end)) : end;
       [this.from_, this.to_] = [shown(choice.from), shown(choice.to)];
     } else if (choice.is === "contains") this.text_ = choice.text;
   }
@@ -156,7 +175,10 @@ export class StrataColumnFilter extends LitElement {
   private async count(): Promise<void> {
     try {
       const filter = with_choice(this.filter, this.column, null);
-      this.counts_ = await count_values((query) => this.session.api.records({ table: this.table }, { ...query, filter }), this.column.slug);
+      this.counts_ = await count_values(
+        (query) => this.session.api.records({ table: this.table }, { ...query, filter }),
+        this.column.slug,
+      );
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.problem_ = error.message;
@@ -168,7 +190,9 @@ export class StrataColumnFilter extends LitElement {
     const at = this.anchor.getBoundingClientRect();
     const box = this.sheet_.getBoundingClientRect();
     const below = at.bottom + 4 + box.height <= innerHeight - margin;
-    const top = below ? at.bottom + 4 : Math.max(margin, Math.min(at.top - box.height - 4, innerHeight - box.height - margin));
+    const top = below
+      ? at.bottom + 4
+      : Math.max(margin, Math.min(at.top - box.height - 4, innerHeight - box.height - margin));
     this.sheet_.style.top = `${Math.max(margin, top)}px`;
     this.sheet_.style.left = `${Math.max(margin, Math.min(at.right - box.width, innerWidth - box.width - margin))}px`;
   }
@@ -195,21 +219,40 @@ export class StrataColumnFilter extends LitElement {
     </div>`;
   }
 
-  // ── values ────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── values
+  // ────────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private lines(): Line[] {
     const { column, counts_: counts } = this;
-    const lines = [...(counts?.of_value ?? [])].map(([value, count]) => ({ value, count, text: this.text_of(value) }));
+    const lines = [...(counts?.of_value ?? [])].map(([value, count]) => ({
+      value,
+      count,
+      text: this.text_of(value),
+    }));
     const known = new Set(lines.map(({ value }) => value));
     // What is chosen and what could be stand there, too.
-    const also = [...this.values_, ...(column.kind === "enumeration" ? (column.choices ?? []) : column.kind === "boolean" ? [true, false] : [])];
-    for (const value of new Set(also)) if (!known.has(value)) lines.push({ value, count: 0, text: this.text_of(value) });
+    const also = [
+      ...this.values_,
+      ...(column.kind === "enumeration"
+        ? (column.choices ?? [])
+        : column.kind === "boolean"
+          ? [true, false]
+          : []),
+    ];
+    for (const value of new Set(also))
+      if (!known.has(value)) lines.push({ value, count: 0, text: this.text_of(value) });
     const by_number = is_number(column);
-    return lines.sort((a, b) => (by_number ? Number(a.value) - Number(b.value) : compare_words(a.text, b.text)));
+    return lines.sort((a, b) =>
+      by_number ? Number(a.value) - Number(b.value) : compare_words(a.text, b.text),
+    );
   }
 
   private text_of(value: FilterValue): string {
-    if (names_records(this.column)) return this.session.tables.label(this.column.target ?? 0, Number(value)) ?? texts.tables.record(Number(value));
+    if (names_records(this.column))
+      return (
+        this.session.tables.label(this.column.target ?? 0, Number(value)) ??
+        texts.tables.record(Number(value))
+      );
     if (typeof value === "boolean") return value ? texts.tables.yes : texts.tables.no;
     return typeof value === "number" ? typed_number(value) : value;
   }
@@ -226,9 +269,11 @@ export class StrataColumnFilter extends LitElement {
       else chosen.delete(value);
       this.values_ = chosen;
     };
-    return html`${all.length > kSearched
+    return html`${
+      all.length > kSearched
         ? html`<input type="text" aria-label=${words.search} placeholder=${words.search} .value=${this.search_} @input=${(event: Event) => (this.search_ = (event.target as HTMLInputElement).value)} />`
-        : nothing}
+        : nothing
+    }
       <ul class="values" aria-label=${words.kinds.one_of}>
         ${found.slice(0, kMostShown).map(
           ({ value, text, count }) =>
@@ -236,14 +281,16 @@ export class StrataColumnFilter extends LitElement {
               <label><input type="checkbox" .checked=${this.values_.has(value)} @change=${choose(value)} /><span class="ellipsis" title=${text}>${text}</span><span class="count numeric">${format_count(count)}</span></label>
             </li>`,
         )}
-        ${counts.empty > 0 || this.empty_
-          ? html`<li>
+        ${
+          counts.empty > 0 || this.empty_
+            ? html`<li>
               <label
                 ><input type="checkbox" .checked=${this.empty_} @change=${(event: Event) => (this.empty_ = (event.target as HTMLInputElement).checked)} /><span><i>${words.no_value}</i></span
                 ><span class="count numeric">${format_count(counts.empty)}</span></label
               >
             </li>`
-          : nothing}
+            : nothing
+        }
       </ul>
       <p class="hint" role="status">
         ${found.length > kMostShown ? words.more(found.length - kMostShown) : found.length === 0 && counts.empty === 0 ? texts.tables.nothing_matches : nothing}
@@ -251,23 +298,32 @@ export class StrataColumnFilter extends LitElement {
       </p>`;
   }
 
-  // ── ranges and texts ──────────────────────────────────────────────────────────────────────────────────────────────
+  // ── ranges and texts
+  // ──────────────────────────────────────────────────────────────────────────────────────────────
 
   private range(): TemplateResult {
     const { column } = this;
     const { least, greatest } = this.counts_ ?? { least: null, greatest: null };
-    const shown = (value: FilterValue | null): string => (value === null ? "" : this.text_of(value));
-    const field = (label: string, value: string, hint: string, typed: (text: string) => void): TemplateResult =>
+    const shown = (value: FilterValue | null): string =>
+      value === null ? "" : this.text_of(value);
+    const field = (
+      label: string,
+      value: string,
+      hint: string,
+      typed: (text: string) => void,
+    ): TemplateResult =>
       html`<label class="field">
         <span>${label}${column.unit ? ` (${column.unit})` : ""}</span>
-        ${is_number(column)
-          ? number_input({ value, placeholder: hint, typed })
-          : html`<input
+        ${
+          is_number(column)
+            ? number_input({ value, placeholder: hint, typed })
+            : html`<input
               type=${column.kind === "date" ? "date" : "text"}
               .value=${value}
               placeholder=${hint}
               @input=${(event: Event) => typed((event.target as HTMLInputElement).value)}
-            />`}
+            />`
+        }
       </label>`;
     return html`<div class="ends">
       ${field(words.from, this.from_, shown(least), (text) => (this.from_ = text))} ${field(words.to, this.to_, shown(greatest), (text) => (this.to_ = text))}
@@ -281,7 +337,8 @@ export class StrataColumnFilter extends LitElement {
     </label>`;
   }
 
-  // ── what becomes of it ────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what becomes of it
+  // ────────────────────────────────────────────────────────────────────────────────────────────
 
   /** Null: an end is no number. */
   private chosen(): ColumnFilter | null {
@@ -291,7 +348,11 @@ export class StrataColumnFilter extends LitElement {
       case "contains":
         return { is: "contains", text: this.text_.trim() };
       case "range": {
-        const ends = [this.from_, this.to_].map((typed) => (typed.trim() === "" || !is_number(this.column) ? typed.trim() : String(read_number(typed))));
+        const ends = [this.from_, this.to_].map((typed) =>
+          typed.trim() === "" || !is_number(this.column)
+            ? typed.trim()
+            : String(read_number(typed)),
+        );
         return ends.includes("NaN") ? null : { is: "range", from: ends[0]!, to: ends[1]! };
       }
       default:
@@ -307,7 +368,9 @@ export class StrataColumnFilter extends LitElement {
   };
 
   private apply(choice: ColumnFilter | null): void {
-    this.dispatchEvent(new CustomEvent("filter", { detail: with_choice(this.filter, this.column, choice) }));
+    this.dispatchEvent(
+      new CustomEvent("filter", { detail: with_choice(this.filter, this.column, choice) }),
+    );
     this.sheet_.hidePopover();
   }
 

@@ -1,4 +1,5 @@
-// <strata-comment-card>: a thread beside its pin, or the one that is being begun; on a phone: a sheet from below.
+// <strata-comment-card>: a thread beside its pin, or the one that is being begun; on a phone: a
+// sheet from below.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -205,7 +206,8 @@ export class StrataCommentCard extends LitElement {
   /** Whoever came by the keyboard goes on from where they came. */
   override disconnectedCallback(): void {
     super.disconnectedCallback();
-    if (has_keyboard() === null && this.opener_?.isConnected) this.opener_.focus({ preventScroll: true });
+    if (has_keyboard() === null && this.opener_?.isConnected)
+      this.opener_.focus({ preventScroll: true });
   }
 
   override willUpdate(changed: PropertyValues<this>): void {
@@ -243,19 +245,32 @@ export class StrataCommentCard extends LitElement {
     const { section_: section, session } = this;
     if (!section || matchMedia(kNarrow).matches) return;
     const { comments, view } = session;
-    const place = comments.card === "new" ? comments.draft("new")?.position : comments.card === null ? null : comments.find(comments.card)?.first.position;
+    const place =
+      comments.card === "new"
+        ? comments.draft("new")?.position
+        : comments.card === null
+          ? null
+          : comments.find(comments.card)?.first.position;
     const at = place ? view.camera.project(place) : null;
     const frame = { width: this.clientWidth, height: this.clientHeight };
     const [x, y] = at ? [at.x / view.scale, at.y / view.scale] : [-1, -1];
     const in_view = x >= 0 && y >= 0 && x <= frame.width && y <= frame.height;
     const size = { width: section.offsetWidth, height: section.offsetHeight };
     const margin = 14;
-    const found = in_view ? beside([x - margin, y - margin], size, { width: frame.width - 2 * margin, height: frame.height - 2 * margin }, kGap_px + margin) : null;
+    const found = in_view
+      ? beside(
+          [x - margin, y - margin],
+          size,
+          { width: frame.width - 2 * margin, height: frame.height - 2 * margin },
+          kGap_px + margin,
+        )
+      : null;
     section.style.left = `${found ? found.left + margin : frame.width - size.width - margin}px`;
     section.style.top = `${found ? found.top + margin : margin}px`;
   }
 
-  // ── a new thread ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── a new thread
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
   private composer(): TemplateResult {
     const { comments } = this.session;
@@ -273,9 +288,10 @@ export class StrataCommentCard extends LitElement {
         }}
       >
         ${this.field("new", words.text, words.text_hint)}
-        ${subjects.length === 0
-          ? nothing
-          : html`<label class="field">
+        ${
+          subjects.length === 0
+            ? nothing
+            : html`<label class="field">
               <span>${words.about}</span>
               <select
                 @change=${(event: Event) => {
@@ -286,7 +302,8 @@ export class StrataCommentCard extends LitElement {
                 <option value="" ?selected=${draft?.subject === undefined}>${words.about_nothing}</option>
                 ${subjects.map(({ label }, index) => html`<option value=${index} ?selected=${draft?.subject === index}>${label}</option>`)}
               </select>
-            </label>`}
+            </label>`
+        }
         ${this.problem("new")}
         <div class="row">
           <button
@@ -305,7 +322,8 @@ export class StrataCommentCard extends LitElement {
     </section>`;
   }
 
-  // ── a thread ──────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── a thread
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private thread(thread: Thread): TemplateResult {
     const { session } = this;
@@ -316,18 +334,22 @@ export class StrataCommentCard extends LitElement {
     return html`<section role="dialog" aria-label=${words.thread(called(first))} tabindex="-1" @keydown=${this.on_key}>
       <div class="row head">
         <h2 class="grow">${words.heading}</h2>
-        ${session.can_paint
-          ? html`<button class="quiet" ?disabled=${this.busy_} @click=${() => void this.turn(first, resolved ? "open" : "resolved")}>
+        ${
+          session.can_paint
+            ? html`<button class="quiet" ?disabled=${this.busy_} @click=${() => void this.turn(first, resolved ? "open" : "resolved")}>
               ${icon(resolved ? "undo" : "check")}${resolved ? words.reopen : words.resolve}
             </button>`
-          : nothing}
+            : nothing
+        }
         <button class="icon quiet" aria-label=${words.fly} title=${words.fly} @click=${() => comments.fly_to(thread)}>${icon("fit")}</button>
         ${this.close_button()}
       </div>
       <div class="list">
-        ${first.resolved
-          ? html`<div class="settled">${icon("check")}<span>${words.resolved_by(called(first.resolved), told_time(first.resolved.time))}</span></div>`
-          : nothing}
+        ${
+          first.resolved
+            ? html`<div class="settled">${icon("check")}<span>${words.resolved_by(called(first.resolved), told_time(first.resolved.time))}</span></div>`
+            : nothing
+        }
         ${this.about(first)}
         ${repeat(
           comments_in(thread),
@@ -336,8 +358,9 @@ export class StrataCommentCard extends LitElement {
         )}
         ${this.problem("thread")}
       </div>
-      ${session.can_paint
-        ? html`<form
+      ${
+        session.can_paint
+          ? html`<form
             class="foot"
             @submit=${(event: Event) => {
               event.preventDefault();
@@ -349,14 +372,16 @@ export class StrataCommentCard extends LitElement {
               <button class="primary" ?disabled=${this.busy_ || !comments.draft(reply)?.text.trim()}>${words.send_reply}</button>
             </div>
           </form>`
-        : html`<div></div>`}
+          : html`<div></div>`
+      }
     </section>`;
   }
 
   private about({ layer: layer_id, table, record }: Comment): TemplateResult | typeof nothing {
     const { session } = this;
     const layer = session.layers.find(layer_id ?? null);
-    if (table === undefined || record === undefined) return layer ? html`<div class="about">${words.about_is(label_of(layer))}</div>` : nothing;
+    if (table === undefined || record === undefined)
+      return layer ? html`<div class="about">${words.about_is(label_of(layer))}</div>` : nothing;
     const called = session.tables.label(table, record) ?? texts.tables.record(record);
     if (!layer) return html`<div class="about">${words.about_is(called)}</div>`;
     const what = words.about_is(words.record_of(called, label_of(layer)));
@@ -382,10 +407,11 @@ export class StrataCommentCard extends LitElement {
         <a class="hint" href=${link} title=${words.link}>${told_time(time)}</a>
         ${edited ? html`<span class="hint" title=${told_time(edited)}>${words.edited(told_time(edited))}</span>` : nothing}
       </div>
-      ${deleted
-        ? html`<p class="words gone">${words.deleted}</p>`
-        : is_own && is_written
-          ? html`<form
+      ${
+        deleted
+          ? html`<p class="words gone">${words.deleted}</p>`
+          : is_own && is_written
+            ? html`<form
               @submit=${(event: Event) => {
                 event.preventDefault();
                 void this.save(comment);
@@ -397,11 +423,13 @@ export class StrataCommentCard extends LitElement {
                 <button class="primary" ?disabled=${this.busy_ || !(comments.draft(edit)?.text ?? text).trim()}>${texts.save}</button>
               </div>
             </form>`
-          : html`${comment_text(text, comments.people)} ${is_own || session.can_curate ? acts : nothing}`}
+            : html`${comment_text(text, comments.people)} ${is_own || session.can_curate ? acts : nothing}`
+      }
     </article>`;
   }
 
-  // ── writing ───────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── writing
+  // ───────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private field(of: DraftOf, label: string, hint: string, text = ""): TemplateResult {
     const { comments } = this.session;
@@ -426,7 +454,8 @@ export class StrataCommentCard extends LitElement {
         @click=${look}
         @keydown=${(event: KeyboardEvent) => this.names_.on_key(event)}
         @keyup=${({ key, target }: KeyboardEvent) => {
-          if (/^(Arrow(Left|Right)|Home|End)$/.test(key)) void this.names_.look(target as HTMLTextAreaElement);
+          if (/^(Arrow(Left|Right)|Home|End)$/.test(key))
+            void this.names_.look(target as HTMLTextAreaElement);
         }}
         @blur=${() => this.names_.close()}
       ></textarea>
@@ -434,7 +463,9 @@ export class StrataCommentCard extends LitElement {
   }
 
   private problem(of: DraftOf | "thread"): TemplateResult | typeof nothing {
-    return this.problem_?.of === of ? html`<p class="error" role="alert">${this.problem_.text}</p>` : nothing;
+    return this.problem_?.of === of
+      ? html`<p class="error" role="alert">${this.problem_.text}</p>`
+      : nothing;
   }
 
   private close_button(): TemplateResult {
@@ -445,7 +476,11 @@ export class StrataCommentCard extends LitElement {
     if (event.key === "Escape") {
       event.preventDefault();
       this.session.comments.close();
-    } else if (event.key === "Enter" && (event.ctrlKey || event.metaKey) && event.target instanceof HTMLTextAreaElement) {
+    } else if (
+      event.key === "Enter" &&
+      (event.ctrlKey || event.metaKey) &&
+      event.target instanceof HTMLTextAreaElement
+    ) {
       event.preventDefault();
       event.target.form?.requestSubmit();
     }
@@ -470,15 +505,24 @@ export class StrataCommentCard extends LitElement {
     const { comments } = this.session;
     const of: DraftOf = `edit ${comment.id}`;
     const text = comments.draft(of)?.text ?? comment.text;
-    await this.send(of, async () => {
-      if (text !== comment.text) await comments.change(comment, { text });
-      this.end_edit(comment);
-    }, text);
+    await this.send(
+      of,
+      async () => {
+        if (text !== comment.text) await comments.change(comment, { text });
+        this.end_edit(comment);
+      },
+      text,
+    );
   }
 
-  private async send(of: DraftOf, work: () => Promise<void>, text = this.session.comments.draft(of)?.text ?? ""): Promise<void> {
+  private async send(
+    of: DraftOf,
+    work: () => Promise<void>,
+    text = this.session.comments.draft(of)?.text ?? "",
+  ): Promise<void> {
     if (text.trim() === "" || this.busy_) return;
-    if ([...text].length > kMostCharacters) this.problem_ = { of, text: words.too_long(kMostCharacters) };
+    if ([...text].length > kMostCharacters)
+      this.problem_ = { of, text: words.too_long(kMostCharacters) };
     else await this.attempt(of, work);
   }
 
@@ -487,8 +531,14 @@ export class StrataCommentCard extends LitElement {
   }
 
   private async delete_comment(comment: Comment): Promise<void> {
-    const question = { heading: words.delete_title, lead: words.delete_lead, yes: words.delete, danger: true };
-    if (await ask(question)) await this.attempt("thread", () => this.session.comments.remove(comment));
+    const question = {
+      heading: words.delete_title,
+      lead: words.delete_lead,
+      yes: words.delete,
+      danger: true,
+    };
+    if (await ask(question))
+      await this.attempt("thread", () => this.session.comments.remove(comment));
   }
 
   /** What was written stays where it is, also when it was refused. */

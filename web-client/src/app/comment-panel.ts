@@ -78,12 +78,16 @@ export class StrataCommentPanel extends FoldingPanel {
 
   protected override beside_heading(): TemplateResult {
     const { open_count, unread_count } = this.session.comments;
-    return html`${open_count > 0
-      ? html`<span class="number numeric" aria-label=${words.open_count(open_count)} role="img">${format_count(open_count)}</span>`
-      : nothing}
-    ${unread_count > 0
-      ? html`<span class="dot" role="img" aria-label=${words.unread(unread_count)} title=${words.unread(unread_count)}></span>`
-      : nothing}`;
+    return html`${
+      open_count > 0
+        ? html`<span class="number numeric" aria-label=${words.open_count(open_count)} role="img">${format_count(open_count)}</span>`
+        : nothing
+    }
+    ${
+      unread_count > 0
+        ? html`<span class="dot" role="img" aria-label=${words.unread(unread_count)} title=${words.unread(unread_count)}></span>`
+        : nothing
+    }`;
   }
 
   protected override tools(): TemplateResult {
@@ -103,12 +107,12 @@ export class StrataCommentPanel extends FoldingPanel {
     const listed = comments.listed;
     const shown = listed.slice(0, this.most_);
     return html`${radio_group({
-        label: words.state,
-        class: "segments",
-        choices: kStates.map((value) => ({ value, content: words.states[value] })),
-        chosen: comments.state,
-        choose: (value) => comments.choose_state(value),
-      })}
+      label: words.state,
+      class: "segments",
+      choices: kStates.map((value) => ({ value, content: words.states[value] })),
+      chosen: comments.state,
+      choose: (value) => comments.choose_state(value),
+    })}
       <div class="row">
         <input
           type="text"
@@ -123,15 +127,17 @@ export class StrataCommentPanel extends FoldingPanel {
         </button>
       </div>
       ${comments.unread_count > 0 ? html`<div><button class="link" @click=${() => comments.mark_all_read()}>${words.mark_all_read}</button></div>` : nothing}
-      ${shown.length === 0
-        ? html`<p class="hint">${this.nothing_there()}</p>`
-        : html`<ul>
+      ${
+        shown.length === 0
+          ? html`<p class="hint">${this.nothing_there()}</p>`
+          : html`<ul>
             ${repeat(
               shown,
               ({ first }) => first.id,
               (thread) => this.row(thread),
             )}
-          </ul>`}
+          </ul>`
+      }
       ${listed.length > shown.length ? html`<button @click=${() => (this.most_ += kAtOnce)}>${words.more(listed.length - shown.length)}</button>` : nothing}`;
   }
 

@@ -1,4 +1,5 @@
-// <strata-comment-pins>: where people wrote something, over the picture. What is behind the surface has no pin.
+// <strata-comment-pins>: where people wrote something, over the picture. What is behind the surface
+// has no pin.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -108,7 +109,11 @@ export class StrataCommentPins extends LitElement {
     if (view.frames_drawn === 0) return html``;
     const placed = comments.pins.flatMap((thread) => this.place(thread));
     // Nearer ones lie over those behind; the keyboard goes by their age.
-    const order = new Map([...placed].sort((a, b) => b.depth - a.depth).map(({ thread }, index) => [thread.first.id, index]));
+    const order = new Map(
+      [...placed]
+        .sort((a, b) => b.depth - a.depth)
+        .map(({ thread }, index) => [thread.first.id, index]),
+    );
     placed.sort((a, b) => a.thread.first.id - b.thread.first.id);
     return html`<div class=${kPaintingTools.includes(tools.active) ? "aside" : ""} role="group" aria-label=${words.title}>
         ${repeat(
@@ -140,7 +145,9 @@ export class StrataCommentPins extends LitElement {
     const unread = comments.is_unread(thread);
     const resolved = state === "resolved";
     const about = deleted ? words.deleted_line : text.replace(/\s+/g, " ").slice(0, kMostSaid);
-    const states = [resolved ? words.resolved : "", unread ? words.unread_here : ""].filter(Boolean).join(", ");
+    const states = [resolved ? words.resolved : "", unread ? words.unread_here : ""]
+      .filter(Boolean)
+      .join(", ");
     return html`<button
       class="${resolved ? "resolved" : ""} ${comments.card === id ? "chosen" : ""}"
       data-comment=${id}
@@ -174,4 +181,6 @@ export class StrataCommentPins extends LitElement {
 }
 
 /** The lower left corner is the tip. */
-const tip_at = (x: number, y: number): Record<string, string> => ({ transform: `translate(${x.toFixed(1)}px, ${(y - 30).toFixed(1)}px)` });
+const tip_at = (x: number, y: number): Record<string, string> => ({
+  transform: `translate(${x.toFixed(1)}px, ${(y - 30).toFixed(1)}px)`,
+});

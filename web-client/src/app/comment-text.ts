@@ -23,7 +23,8 @@ export const comment_text_styles = css`
 
 export function comment_text(text: string, people: ReadonlySet<string>): TemplateResult {
   const parts = text_parts(text, people).map((part) => {
-    if (part.kind === "link") return html`<a href=${part.href} target="_blank" rel="noopener noreferrer nofollow">${part.text}</a>`;
+    if (part.kind === "link")
+      return html`<a href=${part.href} target="_blank" rel="noopener noreferrer nofollow">${part.text}</a>`;
     return part.kind === "mention" ? html`<span class="mention">${part.text}</span>` : part.text;
   });
   return html`<p class="words">${parts}</p>`; // nothing between the tags: spaces count

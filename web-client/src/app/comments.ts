@@ -1,4 +1,5 @@
-// The comments of the open model: what is known of them, which thread is open, what is written and not sent yet, and what was read.
+// The comments of the open model: what is known of them, which thread is open, what is written and
+// not sent yet, and what was read.
 
 import { label_of } from "../core/cells";
 import { ApiError, new_id, type Api } from "../core/api";
@@ -16,7 +17,13 @@ import {
   type ThreadState,
 } from "../core/comments";
 import { called } from "../core/people";
-import type { Comment, CommentEvent, PresenceUser, ProjectPerson, SurfacePoint } from "../core/protocol.gen";
+import type {
+  Comment,
+  CommentEvent,
+  PresenceUser,
+  ProjectPerson,
+  SurfacePoint,
+} from "../core/protocol.gen";
 import type { Layer, Model } from "../core/types";
 import type { Vec3 } from "../core/vector";
 import { Kept } from "./kept";
@@ -103,7 +110,8 @@ export class Comments {
     return this.me_;
   }
 
-  // ── what there is ─────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what there is
+  // ─────────────────────────────────────────────────────────────────────────────────────────────────
 
   get loaded(): boolean {
     return this.known_.loaded;
@@ -119,14 +127,20 @@ export class Comments {
     return this.threads_.find(({ first }) => first.id === id) ?? null;
   }
   get listed(): Thread[] {
-    return find_threads(this.threads_, { state: this.state, of: this.mine ? this.me_ : null, words: this.words });
+    return find_threads(this.threads_, {
+      state: this.state,
+      of: this.mine ? this.me_ : null,
+      words: this.words,
+    });
   }
   get open_count(): number {
     return this.threads_.filter(({ first }) => first.state === "open").length;
   }
   /** Those of the chosen state, and the one that is looked at. */
   get pins(): Thread[] {
-    const shown = this.pins_shown ? find_threads(this.threads_, { state: this.state, of: null, words: "" }) : [];
+    const shown = this.pins_shown
+      ? find_threads(this.threads_, { state: this.state, of: null, words: "" })
+      : [];
     const looked_at = typeof this.card === "number" ? this.find(this.card) : null;
     return looked_at && !shown.includes(looked_at) ? [...shown, looked_at] : shown;
   }
@@ -147,7 +161,10 @@ export class Comments {
     return names;
   }
 
-  /** Whom one may name: the people of the project but oneself. They are asked for once a page, and again where that failed. */
+  /**
+   * Whom one may name: the people of the project but oneself. They are asked for once a page, and
+   * again where that failed.
+   */
   async load_people(): Promise<readonly ProjectPerson[]> {
     const model = this.host_.model();
     if (this.people_.length === 0 && model) {
@@ -169,8 +186,16 @@ export class Comments {
     if (user !== this.me_) {
       const name = `${user}.${this.model_id_}`;
       this.me_ = user;
-      this.drafts_ = new Kept<Marks>(() => globalThis.sessionStorage, `strata.comment_drafts.${name}`, {});
-      this.reads_ = new Kept<ReadMarks>(() => globalThis.localStorage, `strata.comments_read.${name}`, { upto: 0, threads: {} });
+      this.drafts_ = new Kept<Marks>(
+        () => globalThis.sessionStorage,
+        `strata.comment_drafts.${name}`,
+        {},
+      );
+      this.reads_ = new Kept<ReadMarks>(
+        () => globalThis.localStorage,
+        `strata.comments_read.${name}`,
+        { upto: 0, threads: {} },
+      );
     }
     void this.load();
   }
@@ -189,9 +214,13 @@ export class Comments {
     this.put(comment);
     if (event !== "created" || !is_new || user === this.me_) return;
     this.said = words.said(called(comment), comment.text);
-    if (!mentions(comment.text, this.me_) || this.card === comment.thread) return; // who reads the thread sees it there
+    // who reads the thread sees it there
+    if (!mentions(comment.text, this.me_) || this.card === comment.thread) return;
     const act = (): void => this.go_to(comment.id);
-    notices.show("info", words.mentioned(called(comment)), comment.text.slice(0, 200), { label: words.show, act });
+    notices.show("info", words.mentioned(called(comment)), comment.text.slice(0, 200), {
+      label: words.show,
+      act,
+    });
   }
 
   private put(comment: Comment): void {
@@ -204,7 +233,8 @@ export class Comments {
     this.look_again();
   }
 
-  // ── what is looked at ─────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is looked at
+  // ─────────────────────────────────────────────────────────────────────────────────────────────
 
   show(thread: number): void {
     this.card = thread;
@@ -231,7 +261,10 @@ export class Comments {
     const { min, max } = this.host_.view.camera.bounds;
     const half = (kAround * Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2])) / 2;
     const [x, y, z] = first.position;
-    this.host_.view.fly_to({ min: [x - half, y - half, z - half], max: [x + half, y + half, z + half] }, first.normal);
+    this.host_.view.fly_to(
+      { min: [x - half, y - half, z - half], max: [x + half, y + half, z + half] },
+      first.normal,
+    );
   }
 
   /** Opens the thread of a comment and goes there. */
@@ -254,7 +287,8 @@ export class Comments {
   look_again(): void {
     this.host_.changed();
     this.sight.look().catch((error: unknown) => {
-      if (!(error instanceof ApiError)) throw error; // until the camera rests next, they count as seen where they face it
+      // until the camera rests next, they count as seen where they face it
+      if (!(error instanceof ApiError)) throw error;
     });
   }
 
@@ -263,7 +297,8 @@ export class Comments {
     return samples.map(({ point }) => (point.hit && point.position ? point.position : null));
   }
 
-  // ── what was read ─────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what was read
+  // ─────────────────────────────────────────────────────────────────────────────────────────────────
 
   is_unread(thread: Thread): boolean {
     return this.reads_ !== null && is_unread(thread, this.reads_.value, this.me_);
@@ -282,7 +317,8 @@ export class Comments {
     this.host_.changed();
   }
 
-  // ── what is written ───────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is written
+  // ───────────────────────────────────────────────────────────────────────────────────────────────
 
   draft(of: DraftOf): Draft | null {
     return this.drafts_?.value[of] ?? null;
@@ -311,11 +347,15 @@ export class Comments {
     this.look_again();
   }
 
-  /** A new thread begins where somebody points to. What was written elsewhere and not sent moves there. */
+  /**
+   * A new thread begins where somebody points to. What was written elsewhere and not sent moves
+   * there.
+   */
   async begin({ x, y }: PointerSample): Promise<void> {
     try {
       const found = await this.api_.pick(this.model_id_, this.host_.view.camera.message(), [x, y]);
-      if (found.hit && found.position && found.normal) this.begin_at(found.position, found.normal, this.subjects_at(found));
+      if (found.hit && found.position && found.normal)
+        this.begin_at(found.position, found.normal, this.subjects_at(found));
       else notices.show("info", words.missed);
     } catch (error) {
       notices.error(error);
@@ -340,9 +380,15 @@ export class Comments {
       if (!here?.valid || here.value === undefined) return layer === layers.selected ? [own] : [];
       if (layer.table === undefined || tables.lacks(layer.table, here.value)) return [own];
       const called = tables.label(layer.table, here.value) ?? texts.tables.record(here.value);
-      return [{ layer: layer.id, record: here.value, label: words.record_of(called, label_of(layer)) }, own];
+      return [
+        { layer: layer.id, record: here.value, label: words.record_of(called, label_of(layer)) },
+        own,
+      ];
     };
-    return layers.all.filter((layer) => layers.visible(layer)).reverse().flatMap(subject_of);
+    return layers.all
+      .filter((layer) => layers.visible(layer))
+      .reverse()
+      .flatMap(subject_of);
   }
 
   async send_new(): Promise<void> {
@@ -350,8 +396,17 @@ export class Comments {
     if (!draft?.position) return;
     const { text, position, key } = draft;
     const subject = draft.subject === undefined ? undefined : draft.subjects?.[draft.subject];
-    const about = subject ? { layer: subject.layer, ...(subject.record === undefined ? {} : { record: subject.record }) } : {};
-    const made = await this.api_.create_comment(this.model_id_, { text, position: position as [number, number, number], ...about }, key);
+    const about = subject
+      ? {
+          layer: subject.layer,
+          ...(subject.record === undefined ? {} : { record: subject.record }),
+        }
+      : {};
+    const made = await this.api_.create_comment(
+      this.model_id_,
+      { text, position: position as [number, number, number], ...about },
+      key,
+    );
     this.set_draft("new", null);
     this.put(made);
     if (this.card === "new") this.show(made.id);
@@ -365,16 +420,25 @@ export class Comments {
     this.put(made);
   }
 
-  /** Of what was read: another's change in between is an ApiError of status 412, and the comment is then as it is now. */
-  async change(comment: Comment, change: { text?: string; state?: "open" | "resolved" }): Promise<void> {
-    await this.newest_after(comment, async () => this.put(await this.api_.change_comment(comment.id, change, comment.version)));
+  /**
+   * Of what was read: another's change in between is an ApiError of status 412, and the comment is
+   * then as it is now.
+   */
+  async change(
+    comment: Comment,
+    change: { text?: string; state?: "open" | "resolved" },
+  ): Promise<void> {
+    await this.newest_after(comment, async () =>
+      this.put(await this.api_.change_comment(comment.id, change, comment.version)),
+    );
     if (change.text !== undefined) this.set_draft(`edit ${comment.id}`, null);
   }
 
   async remove(comment: Comment): Promise<void> {
     await this.newest_after(comment, () => this.api_.delete_comment(comment.id, comment.version));
     this.set_draft(`edit ${comment.id}`, null);
-    if (comment.thread === undefined && this.find(comment.id)?.replies.length) this.put(await this.api_.comment(comment.id));
+    if (comment.thread === undefined && this.find(comment.id)?.replies.length)
+      this.put(await this.api_.comment(comment.id));
     else this.on_event({ op: "comment", event: "deleted", comment_id: comment.id });
   }
 
@@ -388,4 +452,8 @@ export class Comments {
   }
 }
 
-const place_of = ({ first }: Thread): PinPlace => ({ id: first.id, position: first.position, normal: first.normal });
+const place_of = ({ first }: Thread): PinPlace => ({
+  id: first.id,
+  position: first.position,
+  normal: first.normal,
+});

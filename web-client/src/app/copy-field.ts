@@ -55,7 +55,10 @@ export class StrataCopyField extends LitElement {
   }
 }
 
-/** Returns whether the browser took it. `select`: selects the text in the page, which also works where the page came by plain HTTP; returns what lets go of it. */
+/**
+ * Returns whether the browser took it. `select`: selects the text in the page, which also works
+ * where the page came by plain HTTP; returns what lets go of it.
+ */
 export async function copy_text(text: string, select: () => () => void): Promise<boolean> {
   const by_selection = (): boolean => {
     const let_go = select();
@@ -63,5 +66,7 @@ export async function copy_text(text: string, select: () => () => void): Promise
     let_go();
     return copied;
   };
-  return navigator.clipboard ? navigator.clipboard.writeText(text).then(() => true, by_selection) : by_selection();
+  return navigator.clipboard
+    ? navigator.clipboard.writeText(text).then(() => true, by_selection)
+    : by_selection();
 }

@@ -1,4 +1,5 @@
-// <strata-cross-table>: how much surface each class of one layer has in common with each class of another.
+// <strata-cross-table>: how much surface each class of one layer has in common with each class of
+// another.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -89,21 +90,25 @@ export class StrataCrossTable extends LitElement {
   ];
 
   private get others(): Layer[] {
-    return [...this.session.layers.all].reverse().filter((layer) => layer.id !== this.layer.id && has_classes(layer));
+    return [...this.session.layers.all]
+      .reverse()
+      .filter((layer) => layer.id !== this.layer.id && has_classes(layer));
   }
 
   override render(): TemplateResult {
     const { others, with_: other } = this;
     return html`<h3>${words.title}</h3>
-      ${others.length === 0
-        ? html`<p class="hint">${words.no_other}</p>`
-        : html`<label class="field">
+      ${
+        others.length === 0
+          ? html`<p class="hint">${words.no_other}</p>`
+          : html`<label class="field">
             <span>${words.other}</span>
             <select @change=${(event: Event) => void this.choose(Number((event.target as HTMLSelectElement).value))}>
               <option value="0" ?selected=${other === null}>${words.choose}</option>
               ${others.map((layer) => html`<option value=${layer.id} ?selected=${layer.id === other?.id}>${label_of(layer)}</option>`)}
             </select>
-          </label>`}
+          </label>`
+      }
       ${this.problem_ ? html`<p class="error" role="alert">${this.problem_}</p>` : nothing}
       ${other && !this.table_ && !this.problem_ ? html`<p class="hint" role="status">${texts.loading}</p>` : nothing}
       ${other && this.table_ ? this.table(other, this.table_) : nothing}`;
@@ -116,7 +121,11 @@ export class StrataCrossTable extends LitElement {
     this.problem_ = "";
     if (!other) return;
     try {
-      const table = await this.session.api.cross_table(this.session.model_id, this.layer.id, other.id);
+      const table = await this.session.api.cross_table(
+        this.session.model_id,
+        this.layer.id,
+        other.id,
+      );
       if (this.with_ === other) this.table_ = table;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -125,17 +134,28 @@ export class StrataCrossTable extends LitElement {
   }
 
   private name(layer: Layer, key: number | null): string {
-    return key === null ? words.nothing(label_of(layer)) : describe_value(layer, key, this.session.tables);
+    return key === null
+      ? words.nothing(label_of(layer))
+      : describe_value(layer, key, this.session.tables);
   }
 
   /** As it is read, and copied: with sums. */
   private rows(other: Layer, { rows, columns, area_m2 }: CrossTable): string[][] {
-    const sum = (numbers: readonly number[]): number => numbers.reduce((all, each) => all + each, 0);
+    const sum = (numbers: readonly number[]): number =>
+      numbers.reduce((all, each) => all + each, 0);
     const shown = (area: number): string => (area > 0 ? format_area(area) : "");
-    const lines = rows.map((key, row) => [this.name(this.layer, key), ...area_m2[row]!.map(shown), shown(sum(area_m2[row]!))]);
+    const lines = rows.map((key, row) => [
+      this.name(this.layer, key),
+      ...area_m2[row]!.map(shown),
+      shown(sum(area_m2[row]!)),
+    ]);
     const sums = columns.map((_, column) => sum(area_m2.map((row) => row[column]!)));
     return [
-      [`${label_of(this.layer)} / ${label_of(other)}`, ...columns.map((key) => this.name(other, key)), words.sum],
+      [
+        `${label_of(this.layer)} / ${label_of(other)}`,
+        ...columns.map((key) => this.name(other, key)),
+        words.sum,
+      ],
       ...lines,
       [words.sum, ...sums.map(shown), shown(sum(sums))],
     ];
@@ -145,7 +165,10 @@ export class StrataCrossTable extends LitElement {
     if (table.rows.length === 0) return html`<p class="hint">${words.empty}</p>`;
     const all = this.rows(other, table);
     const what = words.of(label_of(this.layer), label_of(other));
-    const cut = <T>(list: readonly T[]): T[] => (list.length > kMostShown ? [...list.slice(0, kMostShown - 1), list[list.length - 1]!] : [...list]);
+    const cut = <T>(list: readonly T[]): T[] =>
+      list.length > kMostShown
+        ? [...list.slice(0, kMostShown - 1), list[list.length - 1]!]
+        : [...list];
     const [head, ...lines] = cut(all).map(cut);
     return html`<div class="row" role="group" aria-label=${what}>
         ${sheet_buttons({ what, rows: () => all, save: (f) => void this.save(other, f) })}
@@ -169,7 +192,12 @@ export class StrataCrossTable extends LitElement {
   private async save(other: Layer, f: SheetQuery["f"]): Promise<void> {
     this.problem_ = "";
     try {
-      const sheet = await this.session.api.cross_table_sheet(this.session.model_id, this.layer.id, other.id, sheet_query(f));
+      const sheet = await this.session.api.cross_table_sheet(
+        this.session.model_id,
+        this.layer.id,
+        other.id,
+        sheet_query(f),
+      );
       save_blob(sheet, `${this.layer.slug}-${other.slug}.${f}`);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

@@ -1,4 +1,5 @@
-// <strata-csv-dialog>: records from a CSV file: first what it would do, line by line where something is wrong, then it is done.
+// <strata-csv-dialog>: records from a CSV file: first what it would do, line by line where
+// something is wrong, then it is done.
 
 import { html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -51,7 +52,8 @@ export class StrataCsvDialog extends LitElement {
       this.dispatchEvent(new CustomEvent("closed"));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (error.problem.rows) this.report_ = error.problem.rows; // the table has changed since it was tried
+      // the table has changed since it was tried
+      if (error.problem.rows) this.report_ = error.problem.rows;
       else this.problem_ = error.message;
     } finally {
       this.busy_ = false;

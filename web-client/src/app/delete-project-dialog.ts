@@ -1,4 +1,5 @@
-// <strata-delete-project-dialog>: what deleting a project takes along. With models it stays; with tables its name is typed first. Opened by ask_to_delete_project().
+// <strata-delete-project-dialog>: what deleting a project takes along. With models it stays; with
+// tables its name is typed first. Opened by ask_to_delete_project().
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -67,25 +68,34 @@ class StrataDeleteProjectDialog extends LitElement {
     const { project, models } = this.listed;
     const { has_binned_: has_binned } = this;
     const is_kept = models.length > 0 || has_binned;
-    const heading = has_binned ? words.kept_by_bin_title : is_kept ? words.kept_title : words.delete_title;
+    const heading = has_binned
+      ? words.kept_by_bin_title
+      : is_kept
+        ? words.kept_title
+        : words.delete_title;
     return html`<strata-dialog heading=${heading(project.name)} way_out=${is_kept ? texts.close : texts.cancel} @closed=${() => this.finish()}>
-      ${has_binned
-        ? html`<p>${words.kept_by_bin_lead}</p>
+      ${
+        has_binned
+          ? html`<p>${words.kept_by_bin_lead}</p>
             <div><button @click=${() => void this.look_into_bin()}>${icon("trash")}${texts.bin.open}</button></div>`
-        : is_kept
-          ? html`<p>${words.kept_lead(models.length)}</p>`
-          : this.consequences()}
+          : is_kept
+            ? html`<p>${words.kept_lead(models.length)}</p>`
+            : this.consequences()
+      }
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
       ${this.problem_ && !this.tables_ ? html`<div><button @click=${() => void this.read()}>${texts.try_again}</button></div>` : nothing}
-      ${is_kept
-        ? nothing
-        : html`<button slot="actions" class="danger" ?disabled=${this.busy_ || !this.is_confirmed} @click=${() => void this.delete_project()}>${texts.delete}</button>`}
+      ${
+        is_kept
+          ? nothing
+          : html`<button slot="actions" class="danger" ?disabled=${this.busy_ || !this.is_confirmed} @click=${() => void this.delete_project()}>${texts.delete}</button>`
+      }
     </strata-dialog>`;
   }
 
   private consequences(): TemplateResult {
     const { tables_: tables } = this;
-    if (!tables) return html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`;
+    if (!tables)
+      return html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`;
     if (tables.length === 0) return html`<p>${words.delete_lead}</p>`;
     return html`<p>${words.delete_tables_lead(tables.length)}</p>
       <ul>

@@ -1,4 +1,5 @@
-// <strata-delete-record-dialog>: deletes a record; where its key is painted, asks what becomes of that.
+// <strata-delete-record-dialog>: deletes a record; where its key is painted, asks what becomes of
+// that.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -62,8 +63,9 @@ export class StrataDeleteRecordDialog extends LitElement {
       chosen: this.what_,
       choose: (what) => (this.what_ = what),
     })}
-    ${this.what_ === "reassign"
-      ? html`<strata-record-chooser
+    ${
+      this.what_ === "reassign"
+        ? html`<strata-record-chooser
           .session=${this.session}
           .table=${this.table}
           .chosen=${this.to_}
@@ -71,7 +73,8 @@ export class StrataDeleteRecordDialog extends LitElement {
           label=${words.texels_to}
           @chosen=${(event: CustomEvent<number[]>) => (this.to_ = event.detail)}
         ></strata-record-chooser>`
-      : nothing}`;
+        : nothing
+    }`;
   }
 
   private get texels(): TexelsOfDeleted {
@@ -82,7 +85,12 @@ export class StrataDeleteRecordDialog extends LitElement {
   private async delete_record(): Promise<void> {
     const { api, model, tables } = this.session;
     const name = tables.label(this.table, this.key) ?? words.record(this.key);
-    const gone = { kind: "record", entry: `record-${this.table}-${this.key}`, name, project: model?.project ?? "" } as const;
+    const gone = {
+      kind: "record",
+      entry: `record-${this.table}-${this.key}`,
+      name,
+      project: model?.project ?? "",
+    } as const;
     this.busy_ = true;
     this.problem_ = "";
     try {
@@ -92,7 +100,8 @@ export class StrataDeleteRecordDialog extends LitElement {
       this.dispatchEvent(new CustomEvent("closed"));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (error.status === 409 && error.problem.field === "texels") this.painted_ = words.painted(where_of(error.message));
+      if (error.status === 409 && error.problem.field === "texels")
+        this.painted_ = words.painted(where_of(error.message));
       else this.problem_ = error.message;
     } finally {
       this.busy_ = false;

@@ -1,4 +1,5 @@
-// <strata-dialog>: a modal sheet with a heading, content and a row of buttons: the way out of it, then what it does (slot "actions").
+// <strata-dialog>: a modal sheet with a heading, content and a row of buttons: the way out of it,
+// then what it does (slot "actions").
 
 import { css, html, LitElement, nothing, ReactiveElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -9,7 +10,10 @@ import { texts } from "./texts";
 
 const open_dialogs = new Set<HTMLDialogElement>();
 
-/** Keys that reach the page while a dialog is open, because nothing in it has the focus, are not for the page. */
+/**
+ * Keys that reach the page while a dialog is open, because nothing in it has the focus, are not for
+ * the page.
+ */
 export const modal_is_open = (): boolean => open_dialogs.size > 0;
 
 const docked_dialogs = new Set<HTMLDialogElement>();
@@ -33,9 +37,15 @@ export class StrataDialog extends LitElement {
   @property({ type: Boolean, reflect: true }) long = false;
   /** Leaves the picture behind it visible: for questions about what is seen. */
   @property({ type: Boolean, reflect: true }) aside = false;
-  /** Stands beside the picture, which is neither dimmed nor out of reach: for questions that one answers by looking at the model. */
+  /**
+   * Stands beside the picture, which is neither dimmed nor out of reach: for questions that one
+   * answers by looking at the model.
+   */
   @property({ type: Boolean, reflect: true }) docked = false;
-  /** Asked before a person closes it by Escape, its cross or beside it; null: it closes. close() does not ask. */
+  /**
+   * Asked before a person closes it by Escape, its cross or beside it; null: it closes. close()
+   * does not ask.
+   */
   @property({ attribute: false }) may_close: (() => Promise<boolean>) | null = null;
   @state() private acts_ = false; // has buttons of its own
   private asking_ = false;
@@ -170,7 +180,10 @@ export class StrataDialog extends LitElement {
     void this.begin();
   }
 
-  /** Where the keyboard begins: what asks for it, or else the first control, or the way out; never the cross, which is the browser's choice. */
+  /**
+   * Where the keyboard begins: what asks for it, or else the first control, or the way out; never
+   * the cross, which is the browser's choice.
+   */
   private async begin(): Promise<void> {
     const asks = this.querySelector<HTMLElement>("[autofocus]");
     if (asks) return asks.focus();
@@ -212,7 +225,8 @@ export class StrataDialog extends LitElement {
     const used = (): void => void (this.used_ = true);
     const on_key = (event: KeyboardEvent): void => {
       used();
-      if (!this.docked || event.key !== "Escape" || event.defaultPrevented) return; // of others the browser takes care
+      // of others the browser takes care
+      if (!this.docked || event.key !== "Escape" || event.defaultPrevented) return;
       event.preventDefault();
       event.stopPropagation();
       void this.leave();
@@ -256,7 +270,8 @@ export class StrataDialog extends LitElement {
   }
 
   private on_cancel(event: Event): void {
-    if (!this.may_close || event.target !== this.dialog_) return; // a file field, too, tells that nothing was chosen
+    // a file field, too, tells that nothing was chosen
+    if (!this.may_close || event.target !== this.dialog_) return;
     event.preventDefault();
     void this.leave();
   }
@@ -279,12 +294,21 @@ export class StrataDialog extends LitElement {
 
 const kStops = "a[href], button, input, select, textarea, summary, [tabindex]";
 
-/** The first control that the Tab key reaches in it, within elements of their own and slots, too. */
+/**
+ * The first control that the Tab key reaches in it, within elements of their own and slots, too.
+ */
 async function first_stop(root: Element): Promise<HTMLElement | null> {
-  const is_stop = root instanceof HTMLElement && root.matches(kStops) && root.tabIndex >= 0 && !root.matches(":disabled") && root.checkVisibility();
+  const is_stop =
+    root instanceof HTMLElement &&
+    root.matches(kStops) &&
+    root.tabIndex >= 0 &&
+    !root.matches(":disabled") &&
+    root.checkVisibility();
   if (is_stop) return root;
   if (root instanceof ReactiveElement) await root.updateComplete;
-  for (const each of root instanceof HTMLSlotElement ? root.assignedElements() : (root.shadowRoot ?? root).children) {
+  for (const each of root instanceof HTMLSlotElement
+    ? root.assignedElements()
+    : (root.shadowRoot ?? root).children) {
     const found = await first_stop(each);
     if (found) return found;
   }
@@ -292,7 +316,8 @@ async function first_stop(root: Element): Promise<HTMLElement | null> {
 }
 
 /** On touch screens fields bring up a keyboard that covers half of the dialog. */
-const opens_keyboard = (element: HTMLElement): boolean => has_fingers() && element.matches("input[type=text], input[type=password], textarea");
+const opens_keyboard = (element: HTMLElement): boolean =>
+  has_fingers() && element.matches("input[type=text], input[type=password], textarea");
 
 /** A question with two answers; asked by ask(). */
 @customElement("strata-question")
@@ -330,7 +355,12 @@ class StrataQuestion extends LitElement {
   }
 }
 
-export function ask(question: { heading: string; lead: string; yes: string; danger?: boolean }): Promise<boolean> {
+export function ask(question: {
+  heading: string;
+  lead: string;
+  yes: string;
+  danger?: boolean;
+}): Promise<boolean> {
   return new Promise((resolve) => {
     const element = new StrataQuestion();
     Object.assign(element, { danger: false, ...question, answer: resolve });
@@ -378,7 +408,12 @@ class StrataTextQuestion extends LitElement {
 }
 
 /** The text; null: none was given. */
-export function ask_text(question: { heading: string; label: string; text: string; yes: string }): Promise<string | null> {
+export function ask_text(question: {
+  heading: string;
+  label: string;
+  text: string;
+  yes: string;
+}): Promise<string | null> {
   return new Promise((resolve) => {
     const element = new StrataTextQuestion();
     Object.assign(element, { ...question, answer: resolve });

@@ -1,4 +1,5 @@
-// A row of a list that is dragged by its grip to another place. For the mouse; menus or buttons say the same for keys and fingers.
+// A row of a list that is dragged by its grip to another place. For the mouse; menus or buttons say
+// the same for keys and fingers.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 

@@ -1,4 +1,5 @@
-// Files that a person drops, those in folders too, with the folders they lie in; and elements that take them.
+// Files that a person drops, those in folders too, with the folders they lie in; and elements that
+// take them.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 
@@ -12,12 +13,14 @@ const kMostFiles = 2000;
 export const without_folders = (files: readonly File[]): DroppedFile[] =>
   files.map((file) => ({ file, path: file.webkitRelativePath || file.name }));
 
-export const has_files = (event: DragEvent): boolean => event.dataTransfer?.types.includes("Files") ?? false;
+export const has_files = (event: DragEvent): boolean =>
+  event.dataTransfer?.types.includes("Files") ?? false;
 
 /** Must be called while the event is handled: what it carries is gone afterwards. */
 export function dropped_files(data: DataTransfer): Promise<DroppedFile[]> {
   const entries = [...data.items].map((item) => item.webkitGetAsEntry?.() ?? null);
-  if (!entries.some((entry) => entry?.isDirectory)) return Promise.resolve(without_folders([...data.files]));
+  if (!entries.some((entry) => entry?.isDirectory))
+    return Promise.resolve(without_folders([...data.files]));
   return all_files(entries.filter((entry) => entry !== null));
 }
 
@@ -27,19 +30,26 @@ async function all_files(entries: FileSystemEntry[]): Promise<DroppedFile[]> {
   for (let entry = waiting.shift(); entry && found.length < kMostFiles; entry = waiting.shift()) {
     if (entry.name.startsWith(".")) continue; // what systems hide among a person's files
     if (entry.isDirectory) waiting.push(...(await entries_in(entry as FileSystemDirectoryEntry)));
-    else found.push({ file: await file_of(entry as FileSystemFileEntry), path: entry.fullPath.replace(/^\//, "") });
+    else
+      found.push({
+        file: await file_of(entry as FileSystemFileEntry),
+        path: entry.fullPath.replace(/^\//, ""),
+      });
   }
   return found;
 }
 
-const file_of = (entry: FileSystemFileEntry): Promise<File> => new Promise((resolve, reject) => entry.file(resolve, reject));
+const file_of = (entry: FileSystemFileEntry): Promise<File> =>
+  new Promise((resolve, reject) => entry.file(resolve, reject));
 
 /** A reader gives a part at a time, and nothing at the end. */
 async function entries_in(folder: FileSystemDirectoryEntry): Promise<FileSystemEntry[]> {
   const reader = folder.createReader();
   const all: FileSystemEntry[] = [];
   for (;;) {
-    const some = await new Promise<FileSystemEntry[]>((resolve, reject) => reader.readEntries(resolve, reject));
+    const some = await new Promise<FileSystemEntry[]>((resolve, reject) =>
+      reader.readEntries(resolve, reject),
+    );
     if (some.length === 0 || all.length >= kMostFiles) return all;
     all.push(...some);
   }
@@ -90,6 +100,8 @@ export class FileDrop implements ReactiveController {
     this.set_over(false);
     if (!this.is_for_it(event)) return;
     event.preventDefault();
-    void dropped_files(event.dataTransfer!).then((dropped) => this.take_(dropped.map(({ file }) => file)));
+    void dropped_files(event.dataTransfer!).then((dropped) =>
+      this.take_(dropped.map(({ file }) => file)),
+    );
   }
 }

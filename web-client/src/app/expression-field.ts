@@ -1,11 +1,18 @@
-// <strata-expression-field>: a formula over layers, records and the surface, with completion of names and, while one writes, what it
-// holds for or what is wrong with it. Fires `input` and, on Enter, `submitted`.
+// <strata-expression-field>: a formula over layers, records and the surface, with completion of
+// names and, while one writes, what it holds for or what is wrong with it. Fires `input` and, on
+// Enter, `submitted`.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError } from "../core/api";
 import { label_of } from "../core/cells";
-import { complete, marked_at, name_in_text, type Completion, type Suggestion } from "../core/completion";
+import {
+  complete,
+  marked_at,
+  name_in_text,
+  type Completion,
+  type Suggestion,
+} from "../core/completion";
 import { format_area } from "../core/measure";
 import { follow_session } from "./follow-session";
 import type { ModelSession } from "./model-session";
@@ -142,9 +149,10 @@ export class StrataExpressionField extends LitElement {
             @blur=${() => (this.completion_ = kNone)}
           ></textarea>
         </label>
-        ${suggestions.length === 0
-          ? nothing
-          : html`<ul id="names" role="listbox" aria-label=${words.names}>
+        ${
+          suggestions.length === 0
+            ? nothing
+            : html`<ul id="names" role="listbox" aria-label=${words.names}>
               ${suggestions.map(
                 ({ text, hint }, index) =>
                   html`<li
@@ -159,13 +167,22 @@ export class StrataExpressionField extends LitElement {
                     <b>${text}</b><span>${hint}</span>
                   </li>`,
               )}
-            </ul>`}
+            </ul>`
+        }
       </div>
       ${this.problem_ ? this.told_problem(this.problem_) : nothing}
       <p class="hint" role="status" ?hidden=${this.told_ === ""}>${this.told_}</p>`;
   }
 
-  private told_problem({ text, offset, message }: { text: string; offset: number | null; message: string }): TemplateResult {
+  private told_problem({
+    text,
+    offset,
+    message,
+  }: {
+    text: string;
+    offset: number | null;
+    message: string;
+  }): TemplateResult {
     const [before, at, after] = marked_at(text, offset ?? 0);
     return html`${offset === null ? nothing : html`<pre aria-hidden="true">${before}<mark>${at}</mark>${after}</pre>`}
       <p class="error" role="alert">${message}</p>`;
@@ -173,7 +190,11 @@ export class StrataExpressionField extends LitElement {
 
   /** A problem that the server told of the text as a whole. */
   refuse(error: ApiError): void {
-    this.problem_ = { text: this.value, offset: error.problem.offset ?? null, message: error.message };
+    this.problem_ = {
+      text: this.value,
+      offset: error.problem.offset ?? null,
+      message: error.message,
+    };
     this.told_ = "";
     this.focus();
   }
@@ -185,7 +206,10 @@ export class StrataExpressionField extends LitElement {
       names.push({ text: slug, hint: layer.name });
       if (layer.table === undefined) continue;
       for (const column of this.session.tables.find(layer.table)?.columns ?? [])
-        names.push({ text: `${slug}.${name_in_text(column.slug)}`, hint: words.column(label_of(column), layer.name) });
+        names.push({
+          text: `${slug}.${name_in_text(column.slug)}`,
+          hint: words.column(label_of(column), layer.name),
+        });
     }
     const surface = this.computes ? kSurface : kSurface.slice(0, 4);
     for (const name of surface) names.push({ text: name, hint: words.surface[name] });
@@ -223,7 +247,12 @@ export class StrataExpressionField extends LitElement {
   private accept(index: number): void {
     const suggestion = this.completion_.suggestions[index];
     if (!suggestion) return;
-    this.field_.setRangeText(suggestion.text, this.completion_.from, this.field_.selectionStart, "end");
+    this.field_.setRangeText(
+      suggestion.text,
+      this.completion_.from,
+      this.field_.selectionStart,
+      "end",
+    );
     this.field_.dispatchEvent(new Event("input"));
     this.completion_ = kNone;
     this.focus();
@@ -236,18 +265,30 @@ export class StrataExpressionField extends LitElement {
     this.told_ = "";
     if (text === "") return;
     let tried = await this.try_out(text, words.holds, 0);
-    if (this.computes && tried.error?.message.startsWith(kWantsCondition)) tried = await this.try_out(`(${text}) is not null`, words.known, 1);
+    if (this.computes && tried.error?.message.startsWith(kWantsCondition))
+      tried = await this.try_out(`(${text}) is not null`, words.known, 1);
     if (asked !== this.asked_) return;
     const { error, told, before } = tried;
     this.told_ = told;
     if (!error || error.status !== 422 || (this.computes && is_for_computing(error))) return;
     const { offset } = error.problem;
-    const message = error.message.replace(/\(at character (\d+)\)/, (_, n: string) => `(at character ${Number(n) - before})`);
-    this.problem_ = { text, offset: offset === undefined ? null : Math.max(0, offset - before), message };
+    const message = error.message.replace(
+      /\(at character (\d+)\)/,
+      (_, n: string) => `(at character ${Number(n) - before})`,
+    );
+    this.problem_ = {
+      text,
+      offset: offset === undefined ? null : Math.max(0, offset - before),
+      message,
+    };
   }
 
   /** `before`: characters that stand before the person's own text. */
-  private async try_out(where: string, in_words: (area: string) => string, before: number): Promise<{ error?: ApiError; told: string; before: number }> {
+  private async try_out(
+    where: string,
+    in_words: (area: string) => string,
+    before: number,
+  ): Promise<{ error?: ApiError; told: string; before: number }> {
     const { api, model_id } = this.session;
     try {
       return { told: in_words(format_area((await api.select(model_id, where)).area_m2)), before };
@@ -260,4 +301,5 @@ export class StrataExpressionField extends LitElement {
 
 const kWantsCondition = "A condition is wanted, not a number";
 /** What only a computed layer can have cannot be tried out before it is made. */
-const is_for_computing = (error: ApiError): boolean => kSurface.slice(4).some((name) => error.message.startsWith(`'${name}' of the surface`));
+const is_for_computing = (error: ApiError): boolean =>
+  kSurface.slice(4).some((name) => error.message.startsWith(`'${name}' of the surface`));

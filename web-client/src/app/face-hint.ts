@@ -1,4 +1,5 @@
-// <strata-face-hint>: what to do while a face of the model is asked for, over the model; the dialog that asks has stepped aside.
+// <strata-face-hint>: what to do while a face of the model is asked for, over the model; the dialog
+// that asks has stepped aside.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";

@@ -1,4 +1,5 @@
-// A face of the surface that is asked for: the person taps it, takes what is in the middle of the picture, or gives up.
+// A face of the surface that is asked for: the person taps it, takes what is in the middle of the
+// picture, or gives up.
 
 import type { Api } from "../core/api";
 import { OrbitCamera } from "../core/camera";
@@ -36,7 +37,8 @@ export class FacePick {
   }
 
   async take_at({ x, y }: PointerSample): Promise<void> {
-    const camera = Object.assign(new OrbitCamera(), this.host_.view.camera); // which moves on until the answer comes
+    // which moves on until the answer comes
+    const camera = Object.assign(new OrbitCamera(), this.host_.view.camera);
     const asker = this.answer_;
     const model = this.host_.model();
     if (!asker || !model) return;
@@ -50,7 +52,8 @@ export class FacePick {
       }
       const outwards = normal ?? back;
       const to_eye = camera.perspective ? subtract(camera.eye(), position) : back;
-      const seen = dot(outwards, to_eye) < 0 ? scale(outwards, -1) : outwards; // of an open scan its inside
+      // of an open scan its inside
+      const seen = dot(outwards, to_eye) < 0 ? scale(outwards, -1) : outwards;
       this.finish({ center: position, normal: [seen[0], seen[1], seen[2]] });
     } catch (error) {
       notices.error(error);

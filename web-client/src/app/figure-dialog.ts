@@ -1,5 +1,6 @@
-// <strata-figure-dialog>: asks what a measured figure is to be like, shows the sheet while it is chosen, and has the file made. Of what this person sees, or
-// with `view` of what a named view shows.
+// <strata-figure-dialog>: asks what a measured figure is to be like, shows the sheet while it is
+// chosen, and has the file made. Of what this person sees, or with `view` of what a named view
+// shows.
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -7,9 +8,22 @@ import { ApiError } from "../core/api";
 import type { CameraMessage } from "../core/camera";
 import { holds_files, label_column, label_of } from "../core/cells";
 import {
-  figure_choices, figure_request, is_dpi, kDirections, kDpiRange, kFormats, kOrientations, kPapers, kResolutions, kScales, read_scale, scale_text,
-  type FigureChoices, type FigureFrom, type FigureWords,
-} from "../core/figures"; // prettier-ignore
+  figure_choices,
+  figure_request,
+  is_dpi,
+  kDirections,
+  kDpiRange,
+  kFormats,
+  kOrientations,
+  kPapers,
+  kResolutions,
+  kScales,
+  read_scale,
+  scale_text,
+  type FigureChoices,
+  type FigureFrom,
+  type FigureWords,
+} from "../core/figures";
 import { read_number } from "../core/locale";
 import { holds_marks } from "../core/marks";
 import type { FigureLabels, FigureRequest, View } from "../core/protocol.gen";
@@ -38,8 +52,25 @@ const kWords: readonly { name: keyof FigureWords; most: number }[] = [
   { name: "credit", most: 1000 },
 ];
 /** Which of the dialog's fields a part of the request is chosen in. */
-const kFieldOf: Readonly<Record<string, string>> = { direction: "from", normal: "from", center: "from", camera: "from", view: "from" };
-const kFields: readonly string[] = ["from", "scale", "paper", "orientation", "dpi", "format", "title", "caption", "credit", "labels"];
+const kFieldOf: Readonly<Record<string, string>> = {
+  direction: "from",
+  normal: "from",
+  center: "from",
+  camera: "from",
+  view: "from",
+};
+const kFields: readonly string[] = [
+  "from",
+  "scale",
+  "paper",
+  "orientation",
+  "dpi",
+  "format",
+  "title",
+  "caption",
+  "credit",
+  "labels",
+];
 
 @customElement("strata-figure-dialog")
 export class StrataFigureDialog extends LitElement {
@@ -69,8 +100,10 @@ export class StrataFigureDialog extends LitElement {
     const choices = figure_choices(this.kept_.value);
     const { face } = this.session.figures.draft;
     this.choices_ = choices.from === "face" && !face ? { ...choices, from: "camera" } : choices;
-    if (this.view) this.choices_ = { ...this.choices_, from: "camera" }; // the view is what was asked for
-    if (choices.scale !== null && !kScales.includes(choices.scale)) this.scale_typed_ = scale_text(choices.scale);
+    // the view is what was asked for
+    if (this.view) this.choices_ = { ...this.choices_, from: "camera" };
+    if (choices.scale !== null && !kScales.includes(choices.scale))
+      this.scale_typed_ = scale_text(choices.scale);
     if (!kResolutions.includes(choices.dpi)) this.dpi_typed_ = String(choices.dpi);
     this.see_camera();
   }
@@ -104,9 +137,17 @@ export class StrataFigureDialog extends LitElement {
   private get request_now(): FigureRequest | null {
     const { session, view } = this;
     const { words: written, face } = session.figures.draft;
-    const shown = view ? { view: String(view.id) } : { ...session.views.content(), ...(this.camera_ ? { camera: this.camera_ } : {}) };
+    const shown = view
+      ? { view: String(view.id) }
+      : { ...session.views.content(), ...(this.camera_ ? { camera: this.camera_ } : {}) };
     const request = figure_request(shown, this.choices_, written, face, this.labels_now);
-    return request && { ...request, provisional: texts.figures.provisional, continued: texts.figures.continued };
+    return (
+      request && {
+        ...request,
+        provisional: texts.figures.provisional,
+        continued: texts.figures.continued,
+      }
+    );
   }
 
   /** Null: none, or none yet. */
@@ -117,7 +158,8 @@ export class StrataFigureDialog extends LitElement {
     return layer && chosen ? { layer: layer.id, column: chosen } : null;
   }
 
-  // ── what is seen ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is seen
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
   override render(): TemplateResult {
     const { session, view } = this;
@@ -148,11 +190,13 @@ export class StrataFigureDialog extends LitElement {
           ${kFrom.map((each) => html`<option value=${each} ?selected=${each === from}>${each === "camera" && this.view ? words.as_view : words.froms[each]}</option>`)}
         </select>
       </label>
-      ${from === "face"
-        ? html`<div class="row">
+      ${
+        from === "face"
+          ? html`<div class="row">
             <button type="button" @click=${() => void this.ask_face()}>${icon("pick")}${face ? words.pick_again : words.pick}</button>
           </div>`
-        : nothing}
+          : nothing
+      }
       ${this.problem_of("from")}
     </div>`;
   }
@@ -169,9 +213,10 @@ export class StrataFigureDialog extends LitElement {
           <option value="own" ?selected=${own !== null}>${words.own_scale}</option>
         </select>
       </label>
-      ${own === null
-        ? nothing
-        : html`<input
+      ${
+        own === null
+          ? nothing
+          : html`<input
             type="text"
             name="own_scale"
             autocomplete="off"
@@ -180,7 +225,8 @@ export class StrataFigureDialog extends LitElement {
             .value=${own}
             aria-invalid=${this.is_wrong("scale")} aria-describedby=${this.told_at("scale")}
             @input=${(event: Event) => this.type_scale(value_of(event))}
-          />`}
+          />`
+      }
     </div>`;
   }
 
@@ -202,7 +248,10 @@ export class StrataFigureDialog extends LitElement {
         ${radio_group({
           label: { id: "orientation" },
           class: "segments",
-          choices: [{ value: null, content: words.fits }, ...kOrientations.map((value) => ({ value, content: words.orientations[value] }))],
+          choices: [
+            { value: null, content: words.fits },
+            ...kOrientations.map((value) => ({ value, content: words.orientations[value] })),
+          ],
           chosen: orientation,
           choose: (value) => this.choose({ orientation: value }),
         })}
@@ -217,13 +266,17 @@ export class StrataFigureDialog extends LitElement {
       ${radio_group<number | null>({
         label: { id: "dpi" },
         class: "segments",
-        choices: [...kResolutions.map((value) => ({ value, content: words.dpi_of(value) })), { value: null, content: words.own_dpi }],
+        choices: [
+          ...kResolutions.map((value) => ({ value, content: words.dpi_of(value) })),
+          { value: null, content: words.own_dpi },
+        ],
         chosen: own === null ? this.choices_.dpi : null,
         choose: (value) => this.choose_dpi(value),
       })}
-      ${own === null
-        ? nothing
-        : html`<label class="own">
+      ${
+        own === null
+          ? nothing
+          : html`<label class="own">
             ${number_input({
               value: own,
               name: "own_dpi",
@@ -234,7 +287,8 @@ export class StrataFigureDialog extends LitElement {
               typed: (text) => this.type_dpi(text),
             })}
             <span class="hint">${words.dpi_range(kDpiRange.least, kDpiRange.most)}</span>
-          </label>`}
+          </label>`
+      }
       ${this.problem_of("dpi")}
     </div>`;
   }
@@ -245,7 +299,10 @@ export class StrataFigureDialog extends LitElement {
       ${radio_group({
         label: { id: "format" },
         class: "formats",
-        choices: kFormats.map((value) => ({ value, content: html`<b>${value.toUpperCase()}</b><span class="hint">${words.formats[value]}</span>` })),
+        choices: kFormats.map((value) => ({
+          value,
+          content: html`<b>${value.toUpperCase()}</b><span class="hint">${words.formats[value]}</span>`,
+        })),
         chosen: this.choices_.format,
         choose: (value) => this.choose({ format: value }),
       })}
@@ -256,15 +313,22 @@ export class StrataFigureDialog extends LitElement {
   private written(): TemplateResult {
     const { model, figures } = this.session;
     const written = figures.draft.words;
-    const usual = { title: model?.name ?? "", caption: words.caption_hint, credit: model?.credit || words.credit_hint };
+    const usual = {
+      title: model?.name ?? "",
+      caption: words.caption_hint,
+      credit: model?.credit || words.credit_hint,
+    };
     return html`${kWords.map(({ name, most }) => {
-      const type = (event: Event): void => this.write({ ...written, [name]: value_of(event) }, name);
+      const type = (event: Event): void =>
+        this.write({ ...written, [name]: value_of(event) }, name);
       return html`<div class="group full">
         <label class="field">
           <span>${words.written[name]}</span>
-          ${name === "caption"
-            ? html`<textarea name=${name} maxlength=${most} placeholder=${usual[name]} .value=${written[name]} aria-invalid=${this.is_wrong(name)} aria-describedby=${this.told_at(name)} @input=${type}></textarea>`
-            : html`<input type="text" name=${name} maxlength=${most} autocomplete="off" placeholder=${usual[name]} .value=${written[name]} aria-invalid=${this.is_wrong(name)} aria-describedby=${this.told_at(name)} @input=${type} />`}
+          ${
+            name === "caption"
+              ? html`<textarea name=${name} maxlength=${most} placeholder=${usual[name]} .value=${written[name]} aria-invalid=${this.is_wrong(name)} aria-describedby=${this.told_at(name)} @input=${type}></textarea>`
+              : html`<input type="text" name=${name} maxlength=${most} autocomplete="off" placeholder=${usual[name]} .value=${written[name]} aria-invalid=${this.is_wrong(name)} aria-describedby=${this.told_at(name)} @input=${type} />`
+          }
         </label>
         ${this.problem_of(name)}
       </div>`;
@@ -274,7 +338,8 @@ export class StrataFigureDialog extends LitElement {
   private labels(): TemplateResult {
     const { layers, figures } = this.session;
     const { labels } = figures.draft;
-    const choices = layers.all.filter(({ table }) => table !== undefined).reverse(); // as in the list of layers
+    // as in the list of layers
+    const choices = layers.all.filter(({ table }) => table !== undefined).reverse();
     const layer = choices.find(({ id }) => id === labels?.layer) ?? null;
     return html`<div class="full group">
         <label class="check">
@@ -282,9 +347,10 @@ export class StrataFigureDialog extends LitElement {
           ${words.legend}
         </label>
       </div>
-      ${choices.length === 0
-        ? nothing
-        : html`<div class="group ${layer ? "" : "full"}">
+      ${
+        choices.length === 0
+          ? nothing
+          : html`<div class="group ${layer ? "" : "full"}">
               <label class="field">
                 <span>${words.labels}</span>
                 <select name="labels" aria-invalid=${this.is_wrong("labels")} aria-describedby=${this.told_at("labels")} @change=${(event: Event) => this.label(value_of(event) === "" ? null : { layer: Number(value_of(event)), column: "" })}>
@@ -294,14 +360,16 @@ export class StrataFigureDialog extends LitElement {
               </label>
             </div>
             ${layer ? this.label_column(layer) : nothing}
-            ${this.problem_of("labels")}`}`;
+            ${this.problem_of("labels")}`
+      }`;
   }
 
   private label_column(layer: Layer): TemplateResult {
     const columns = this.columns(layer);
     const chosen = this.labels_now?.column;
     const gone = chosen !== undefined && !columns.some(({ slug }) => slug === chosen);
-    if (this.session.tables.find(layer.table!) && columns.length === 0) return html`<p class="hint">${words.no_columns}</p>`;
+    if (this.session.tables.find(layer.table!) && columns.length === 0)
+      return html`<p class="hint">${words.no_columns}</p>`;
     return html`<label class="field">
       <span>${words.column}</span>
       <select name="column" aria-invalid=${this.is_wrong("labels")} aria-describedby=${this.told_at("labels")} @change=${(event: Event) => this.label({ layer: layer.id, column: value_of(event) })}>
@@ -326,16 +394,18 @@ export class StrataFigureDialog extends LitElement {
     const busy = job !== null && is_busy(job);
     const percent = Math.round((job?.job.progress ?? 0) * 100);
     const general = this.problem_?.field === "" ? this.problem_.text : "";
-    return html`${busy
-      ? html`<div slot="told" class="making">
+    return html`${
+      busy
+        ? html`<div slot="told" class="making">
           <div class="bar" role="progressbar" aria-label=${words.making} aria-valuemin="0" aria-valuemax="100" aria-valuenow=${percent}>
             <i ${styled({ width: `${percent}%` })}></i>
           </div>
           <span class="hint">${job.job.state === "queued" ? texts.layer_jobs.queued : job.job.message || words.making}</span>
         </div>`
-      : html`<div slot="told" class="told ${general || saved ? "" : "nothing"}">
+        : html`<div slot="told" class="told ${general || saved ? "" : "nothing"}">
           ${general ? html`<span class="error" role="alert">${general}</span>` : html`<span class="hint" role="status">${saved ? words.saved(saved) : ""}</span>`}
-        </div>`}
+        </div>`
+    }
     ${busy ? html`<button slot="actions" @click=${() => void this.cancel(job)}>${words.cancel}</button>` : nothing}
     <button slot="actions" class="primary" form="figure" ?disabled=${busy || this.sending_}>${words.make}</button>`;
   }
@@ -344,15 +414,21 @@ export class StrataFigureDialog extends LitElement {
   private description(): string {
     const { from, scale, paper } = this.choices_;
     const seen = from === "camera" && this.view ? words.as_view : words.froms[from];
-    return words.preview(paper.toUpperCase(), seen, scale === null ? words.fits : scale_text(scale));
+    return words.preview(
+      paper.toUpperCase(),
+      seen,
+      scale === null ? words.fits : scale_text(scale),
+    );
   }
 
-  // ── what is chosen ────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is chosen
+  // ────────────────────────────────────────────────────────────────────────────────────────────────
 
   private choose(change: Partial<FigureChoices>): void {
     this.choices_ = { ...this.choices_, ...change };
     this.kept_.value = this.choices_;
-    if (Object.keys(change).includes(this.problem_?.field ?? "") || this.problem_?.field === "") this.problem_ = null;
+    if (Object.keys(change).includes(this.problem_?.field ?? "") || this.problem_?.field === "")
+      this.problem_ = null;
   }
 
   private choose_from(from: FigureFrom): void {
@@ -423,7 +499,8 @@ export class StrataFigureDialog extends LitElement {
     this.dispatchEvent(new CustomEvent("correct"));
   }
 
-  // ── what is wrong ─────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is wrong
+  // ─────────────────────────────────────────────────────────────────────────────────────────────────
 
   private is_wrong(field: string): boolean {
     return this.problem_?.field === field;
@@ -432,7 +509,9 @@ export class StrataFigureDialog extends LitElement {
     return this.is_wrong(field) ? `${field}_problem` : nothing;
   }
   private problem_of(field: string): TemplateResult | typeof nothing {
-    return this.is_wrong(field) ? html`<p class="error" role="alert" id="${field}_problem">${this.problem_?.text}</p>` : nothing;
+    return this.is_wrong(field)
+      ? html`<p class="error" role="alert" id="${field}_problem">${this.problem_?.text}</p>`
+      : nothing;
   }
 
   private refuse({ field = "", title, detail }: ProblemBody): void {
@@ -453,11 +532,15 @@ export class StrataFigureDialog extends LitElement {
   /** A field holds what is none of its choices. */
   private get typing_problem(): { field: string; text: string } | null {
     const { scale_typed_: scale, dpi_typed_: dpi } = this;
-    if (scale !== null && Number.isNaN(read_scale(scale))) return { field: "scale", text: words.wrong_scale };
-    return dpi !== null && !is_dpi(read_number(dpi)) ? { field: "dpi", text: words.wrong_dpi(kDpiRange.least, kDpiRange.most) } : null;
+    if (scale !== null && Number.isNaN(read_scale(scale)))
+      return { field: "scale", text: words.wrong_scale };
+    return dpi !== null && !is_dpi(read_number(dpi))
+      ? { field: "dpi", text: words.wrong_dpi(kDpiRange.least, kDpiRange.most) }
+      : null;
   }
 
-  // ── what is made ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is made
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
   private readonly on_submit = (event: Event): void => {
     event.preventDefault();
@@ -505,7 +588,8 @@ export class StrataFigureDialog extends LitElement {
 
   private readonly on_closed = (): void => {
     this.dispatchEvent(new CustomEvent("closed"));
-    if (!has_keyboard()) this.opener_?.focus(); // the browser forgets it where the dialog stepped aside
+    // the browser forgets it where the dialog stepped aside
+    if (!has_keyboard()) this.opener_?.focus();
   };
 }
 

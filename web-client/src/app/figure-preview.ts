@@ -1,4 +1,5 @@
-// <strata-figure-preview>: the sheet as it would be now, drawn anew a moment after what is asked for has changed.
+// <strata-figure-preview>: the sheet as it would be now, drawn anew a moment after what is asked
+// for has changed.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -17,7 +18,11 @@ const kWait_ms = 350; // until somebody has stopped to type
 export class StrataFigurePreview extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   /** Null: nothing can be drawn yet. */
-  @property({ attribute: false, hasChanged: (now: FigureRequest | null, before?: FigureRequest | null) => before === undefined || JSON.stringify(now) !== JSON.stringify(before) })
+  @property({
+    attribute: false,
+    hasChanged: (now: FigureRequest | null, before?: FigureRequest | null) =>
+      before === undefined || JSON.stringify(now) !== JSON.stringify(before),
+  })
   request: FigureRequest | null = null;
   /** What the picture shows, for who does not see it. */
   @property() alt = "";
@@ -113,12 +118,14 @@ export class StrataFigurePreview extends LitElement {
       ${shows ? html`<img src=${picture} alt=${this.alt} />` : nothing}
       ${state === "waiting" ? html`<span class="working" role="status"><i></i>${words.drawing}</span>` : nothing}
       ${state === "nothing" ? html`<p class="told hint">${words.no_face}</p>` : nothing}
-      ${state === "failed"
-        ? html`<div class="told">
+      ${
+        state === "failed"
+          ? html`<div class="told">
             <p class="error" role="alert">${this.problem_ || words.see_field}</p>
             ${this.problem_ ? html`<button @click=${() => this.ask_soon()}>${texts.try_again}</button>` : nothing}
           </div>`
-        : nothing}
+          : nothing
+      }
     </figure>`;
   }
 
@@ -134,7 +141,10 @@ export class StrataFigurePreview extends LitElement {
     this.state_ = request ? "waiting" : "nothing";
     if (!request) return;
     const asked = (this.asked_ = new AbortController());
-    this.timer_ = window.setTimeout(() => void this.ask(request, asked), this.picture_ === "" ? 0 : kWait_ms);
+    this.timer_ = window.setTimeout(
+      () => void this.ask(request, asked),
+      this.picture_ === "" ? 0 : kWait_ms,
+    );
   }
 
   private async ask(request: FigureRequest, asked: AbortController): Promise<void> {
@@ -154,8 +164,13 @@ export class StrataFigurePreview extends LitElement {
     }
   }
 
-  /** What is wrong with the request, or null; who shows it at its field prevents the event's default. */
+  /**
+   * What is wrong with the request, or null; who shows it at its field prevents the event's
+   * default.
+   */
   private tell(problem: ProblemBody | null): boolean {
-    return this.dispatchEvent(new CustomEvent<ProblemBody | null>("told", { detail: problem, cancelable: true }));
+    return this.dispatchEvent(
+      new CustomEvent<ProblemBody | null>("told", { detail: problem, cancelable: true }),
+    );
   }
 }

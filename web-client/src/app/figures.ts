@@ -1,4 +1,5 @@
-// Measured figures that this person makes of the open model: the work on the server, the file that comes of it, and what was written for one until then.
+// Measured figures that this person makes of the open model: the work on the server, the file that
+// comes of it, and what was written for one until then.
 
 import type { Api } from "../core/api";
 import type { Face, FigureWords } from "../core/figures";
@@ -11,8 +12,15 @@ import { texts } from "./texts";
 
 export class Figures {
   /** Is there again when the dialog is opened anew, for as long as the model is open. */
-  draft: { words: FigureWords; labels: { layer: number; column: string } | null; face: Face | null } = { words: { title: "", caption: "", credit: "" }, labels: null, face: null };
-  /** Key of the job that somebody waits for: its file is saved as soon as it is there, and others are offered. */
+  draft: {
+    words: FigureWords;
+    labels: { layer: number; column: string } | null;
+    face: Face | null;
+  } = { words: { title: "", caption: "", credit: "" }, labels: null, face: null };
+  /**
+   * Key of the job that somebody waits for: its file is saved as soon as it is there, and others
+   * are offered.
+   */
   awaited: number | null = null;
   /** Name of the file that was saved last. */
   saved = "";
@@ -22,7 +30,10 @@ export class Figures {
     private readonly jobs_: LayerJobs,
   ) {}
 
-  /** Returns the key of the job, which is awaited. Throws an ApiError where the server refuses it at once. */
+  /**
+   * Returns the key of the job, which is awaited. Throws an ApiError where the server refuses it at
+   * once.
+   */
   async make(name: string, wish: FigureRequest): Promise<number> {
     this.saved = "";
     this.awaited = await this.jobs_.make_figure(name, wish, (key, job) => this.done(key, job));
@@ -44,6 +55,10 @@ export class Figures {
   private done(key: number, { file }: Job): void {
     if (!file) return;
     if (this.awaited === key) void this.save(key);
-    else notices.show("success", texts.figures.ready, file.name, { label: texts.figures.save, act: () => void this.save(key) });
+    else
+      notices.show("success", texts.figures.ready, file.name, {
+        label: texts.figures.save,
+        act: () => void this.save(key),
+      });
   }
 }

@@ -1,4 +1,5 @@
-// <strata-file-choice>: where a dialog takes files: a button, or they are dropped beside it. Tells them by "files".
+// <strata-file-choice>: where a dialog takes files: a button, or they are dropped beside it. Tells
+// them by "files".
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";

@@ -1,4 +1,5 @@
-// <strata-files-field>: the pictures or documents of a record in its form. Files that are added wait until the form is saved.
+// <strata-files-field>: the pictures or documents of a record in its form. Files that are added
+// wait until the form is saved.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -29,7 +30,10 @@ export class StrataFilesField extends LitElement {
   @state() private known_ = new Map<number, Attachment>();
   @state() private is_known_ = false; // which of the files this person sees
   @query("input") private input_!: HTMLInputElement;
-  private readonly drop_ = new FileDrop(this, (files) => (this.pending_ = [...this.pending_, ...files]));
+  private readonly drop_ = new FileDrop(
+    this,
+    (files) => (this.pending_ = [...this.pending_, ...files]),
+  );
 
   static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
 
@@ -101,7 +105,12 @@ export class StrataFilesField extends LitElement {
   ];
 
   override willUpdate(changed: PropertyValues<this>): void {
-    if ((changed.has("record") || changed.has("ids")) && this.record !== null && this.ids.some((id) => !this.known_.has(id))) void this.load();
+    if (
+      (changed.has("record") || changed.has("ids")) &&
+      this.record !== null &&
+      this.ids.some((id) => !this.known_.has(id))
+    )
+      void this.load();
   }
 
   /** Files that are to be sent once the record is there. */

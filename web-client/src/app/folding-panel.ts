@@ -1,4 +1,5 @@
-// A part of the side panel that folds: a heading, whose button says with aria-expanded whether it is open, and what is shown then. This browser keeps which are open.
+// A part of the side panel that folds: a heading, whose button says with aria-expanded whether it
+// is open, and what is shown then. This browser keeps which are open.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { property } from "lit/decorators.js";

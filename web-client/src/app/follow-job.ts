@@ -9,7 +9,10 @@ const kMostFailedPolls = 60; // some minutes: a server that restarts answers wha
 
 export const job_is_over = (job: Job): boolean => job.state !== "queued" && job.state !== "running";
 
-/** Tells every state of the job, and returns the last. A server that is away for a moment is asked again. */
+/**
+ * Tells every state of the job, and returns the last. A server that is away for a moment is asked
+ * again.
+ */
 export async function follow_job(api: Api, first: Job, tell: (job: Job) => void): Promise<Job> {
   let job = first;
   let failed_polls = 0;
@@ -22,7 +25,9 @@ export async function follow_job(api: Api, first: Job, tell: (job: Job) => void)
       job = await api.job(job.id);
       failed_polls = 0;
     } catch (error) {
-      const passing = error instanceof ApiError && (error.status === 0 || error.status >= 500 || error.status === 429);
+      const passing =
+        error instanceof ApiError &&
+        (error.status === 0 || error.status >= 500 || error.status === 429);
       if (!passing || ++failed_polls > kMostFailedPolls) throw error;
     }
   }

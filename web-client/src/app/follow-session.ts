@@ -3,7 +3,10 @@
 import type { ReactiveController, ReactiveControllerHost } from "lit";
 import type { ModelSession } from "./model-session";
 
-/** To be called in the constructor. Follows the session that the element has, for as long as the element is in the page. */
+/**
+ * To be called in the constructor. Follows the session that the element has, for as long as the
+ * element is in the page.
+ */
 export function follow_session(host: ReactiveControllerHost & { session: ModelSession }): void {
   host.addController(new SessionFollower(host));
 }
@@ -22,7 +25,8 @@ class SessionFollower implements ReactiveController {
 
   hostUpdate(): void {
     const { session } = this.host_;
-    if (!this.connected_ || session === this.followed_) return; // an update may still be due after the element has left
+    // an update may still be due after the element has left
+    if (!this.connected_ || session === this.followed_) return;
     this.unsubscribe_?.();
     this.followed_ = session;
     this.unsubscribe_ = session.subscribe(() => this.host_.requestUpdate());

@@ -1,5 +1,5 @@
-// <strata-group-list>: the groups of the site, made, renamed and deleted, and from here who is in one and what it may do in projects. Says
-// "regrouped" where people are in others than before.
+// <strata-group-list>: the groups of the site, made, renamed and deleted, and from here who is in
+// one and what it may do in projects. Says "regrouped" where people are in others than before.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -105,26 +105,32 @@ export class StrataGroupList extends LitElement {
         <button>${icon("plus")}${words.make}</button>
         <small class="error" id="name_problem" role="alert" ?hidden=${!this.name_problem_}>${this.name_problem_}</small>
       </form>
-      ${this.problem_
-        ? html`<p class="error" role="alert">${this.problem_}</p>
+      ${
+        this.problem_
+          ? html`<p class="error" role="alert">${this.problem_}</p>
             <button @click=${() => void this.read()}>${texts.try_again}</button>`
-        : this.groups_ === null
-          ? html`<p class="hint" role="status">${texts.loading}</p>`
-          : this.groups_.length === 0
-            ? html`<p class="hint">${words.none}</p>`
-            : html`<ul aria-label=${words.title}>
+          : this.groups_ === null
+            ? html`<p class="hint" role="status">${texts.loading}</p>`
+            : this.groups_.length === 0
+              ? html`<p class="hint">${words.none}</p>`
+              : html`<ul aria-label=${words.title}>
                 ${repeat(
                   this.groups_,
                   ({ id }) => id,
                   (group) => this.row(group),
                 )}
-              </ul>`}
-      ${this.members_of_
-        ? html`<strata-group-members-dialog .api=${this.api} .group=${this.members_of_} .people=${this.people} @closed=${() => this.closed()}></strata-group-members-dialog>`
-        : nothing}
-      ${this.roles_of_
-        ? html`<strata-project-roles-dialog .api=${this.api} .group=${this.roles_of_} @closed=${() => this.closed()}></strata-project-roles-dialog>`
-        : nothing}`;
+              </ul>`
+      }
+      ${
+        this.members_of_
+          ? html`<strata-group-members-dialog .api=${this.api} .group=${this.members_of_} .people=${this.people} @closed=${() => this.closed()}></strata-group-members-dialog>`
+          : nothing
+      }
+      ${
+        this.roles_of_
+          ? html`<strata-project-roles-dialog .api=${this.api} .group=${this.roles_of_} @closed=${() => this.closed()}></strata-project-roles-dialog>`
+          : nothing
+      }`;
   }
 
   private row(group: Group): TemplateResult {
@@ -163,7 +169,8 @@ export class StrataGroupList extends LitElement {
       const { id } = await this.api.create_group({ name });
       this.name_.value = "";
       await this.read();
-      this.members_of_ = this.groups_?.find((group) => group.id === id) ?? null; // nobody is in it yet
+      // nobody is in it yet
+      this.members_of_ = this.groups_?.find((group) => group.id === id) ?? null;
     } catch (error) {
       this.name_problem_ = this.told(error);
       this.name_.focus();
@@ -171,7 +178,12 @@ export class StrataGroupList extends LitElement {
   };
 
   private async rename({ id, name }: Group): Promise<void> {
-    const next = await ask_text({ heading: words.rename_title(name), label: words.name, text: name, yes: texts.save });
+    const next = await ask_text({
+      heading: words.rename_title(name),
+      label: words.name,
+      text: name,
+      yes: texts.save,
+    });
     if (next === null || next === name) return;
     await this.change(id, () => this.api.change_group(id, { name: next }));
   }
@@ -179,7 +191,15 @@ export class StrataGroupList extends LitElement {
   private async delete_group({ id, name }: Group): Promise<void> {
     await this.change(id, async () => {
       const { losing, members } = await this.api.group(id);
-      if (!(await ask({ heading: words.delete_title(name), lead: words.delete_lead(losing, members.length), yes: texts.delete, danger: true }))) return;
+      if (
+        !(await ask({
+          heading: words.delete_title(name),
+          lead: words.delete_lead(losing, members.length),
+          yes: texts.delete,
+          danger: true,
+        }))
+      )
+        return;
       await this.api.delete_group(id);
     });
   }

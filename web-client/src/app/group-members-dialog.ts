@@ -1,4 +1,5 @@
-// <strata-group-members-dialog>: who is in a group, of everybody on the site; each choice counts at once.
+// <strata-group-members-dialog>: who is in a group, of everybody on the site; each choice counts at
+// once.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -21,7 +22,8 @@ export class StrataGroupMembersDialog extends LitElement {
   @state() private filter_ = "";
   @state() private note_: { user: string; kind: "error" | "done"; text: string } | null = null;
   @state() private problem_ = "";
-  private last_: Promise<void> = Promise.resolve(); // one after the other, in the order of the clicks
+  // one after the other, in the order of the clicks
+  private last_: Promise<void> = Promise.resolve();
 
   static override styles = [
     shared_styles,
@@ -82,12 +84,14 @@ export class StrataGroupMembersDialog extends LitElement {
 
   override render(): TemplateResult {
     return html`<strata-dialog heading=${words.members_of(this.group.name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
-      ${this.problem_
-        ? html`<p class="error" role="alert">${this.problem_}</p>
+      ${
+        this.problem_
+          ? html`<p class="error" role="alert">${this.problem_}</p>
             <button @click=${() => void this.read()}>${texts.try_again}</button>`
-        : this.inside_
-          ? this.content(this.inside_)
-          : html`<p class="hint" role="status">${texts.loading}</p>`}
+          : this.inside_
+            ? this.content(this.inside_)
+            : html`<p class="hint" role="status">${texts.loading}</p>`
+      }
     </strata-dialog>`;
   }
 
@@ -104,15 +108,17 @@ export class StrataGroupMembersDialog extends LitElement {
         .value=${this.filter_}
         @input=${(event: Event) => (this.filter_ = (event.target as HTMLInputElement).value)}
       />
-      ${shown.length === 0
-        ? html`<p class="hint">${texts.site_people.none_found}</p>`
-        : html`<ul>
+      ${
+        shown.length === 0
+          ? html`<p class="hint">${texts.site_people.none_found}</p>`
+          : html`<ul>
             ${repeat(
               shown,
               ({ id }) => id,
               (person) => this.row(person, inside.has(person.user)),
             )}
-          </ul>`}`;
+          </ul>`
+      }`;
   }
 
   private row(person: Person, is_inside: boolean): TemplateResult {
@@ -131,9 +137,20 @@ export class StrataGroupMembersDialog extends LitElement {
     this.last_ = this.last_.then(() => this.put({ user: person.user, is_in, box }));
   }
 
-  private async put({ user, is_in, box }: { user: string; is_in: boolean; box: HTMLInputElement }): Promise<void> {
+  private async put({
+    user,
+    is_in,
+    box,
+  }: {
+    user: string;
+    is_in: boolean;
+    box: HTMLInputElement;
+  }): Promise<void> {
     try {
-      const { members } = await this.api.change_group(this.group.id, is_in ? { add: [user] } : { remove: [user] });
+      const { members } = await this.api.change_group(
+        this.group.id,
+        is_in ? { add: [user] } : { remove: [user] },
+      );
       this.inside_ = new Set(members.map((member) => member.user));
       this.note_ = { user, kind: "done", text: is_in ? words.put_in : words.taken_out };
     } catch (error) {

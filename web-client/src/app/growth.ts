@@ -1,9 +1,11 @@
-// Words are larger in the windows of walls (page.css). What is laid out around them in pixels grows with them.
+// Words are larger in the windows of walls (page.css). What is laid out around them in pixels grows
+// with them.
 
 const kUsualSize_px = 16;
 
 /** How much larger than usual. */
-export const growth = (): number => parseFloat(getComputedStyle(document.documentElement).fontSize) / kUsualSize_px;
+export const growth = (): number =>
+  parseFloat(getComputedStyle(document.documentElement).fontSize) / kUsualSize_px;
 
 /** A length in pixels where words have their usual size, as CSS has it when it grows with them. */
 export const growing = (length_px: number): string => `${length_px / kUsualSize_px}rem`;

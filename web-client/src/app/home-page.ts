@@ -1,4 +1,5 @@
-// <strata-home-page>: the projects, or the models of one of them, and the imports under way. Where there is one project only, its models.
+// <strata-home-page>: the projects, or the models of one of them, and the imports under way. Where
+// there is one project only, its models.
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -19,7 +20,13 @@ import "./menu";
 import { notices } from "./notices";
 import "./project-card";
 import { ask_project } from "./project-dialog";
-import { curates, kDefaultProject, list_projects, sees_to_kiosks, type ListedProject } from "./project-list";
+import {
+  curates,
+  kDefaultProject,
+  list_projects,
+  sees_to_kiosks,
+  type ListedProject,
+} from "./project-list";
 import { follow, path_of_model, path_of_project } from "./routes";
 import { styled } from "./styled";
 import { shared_styles } from "./styles";
@@ -72,7 +79,8 @@ export class StrataHomePage extends LitElement {
 
   /** Whoever came by the keyboard goes on at the head of what they came to. */
   override updated(changed: PropertyValues<this>): void {
-    if (changed.has("project") && changed.get("project") !== undefined && has_keyboard() === null) this.heading_?.focus({ preventScroll: true });
+    if (changed.has("project") && changed.get("project") !== undefined && has_keyboard() === null)
+      this.heading_?.focus({ preventScroll: true });
   }
 
   /** The project whose page this is; null: there is none of that name. */
@@ -89,14 +97,23 @@ export class StrataHomePage extends LitElement {
   /** There is something else than the one that is shown. */
   private get leads_up(): boolean {
     const { shown } = this;
-    return shown !== null && (this.has_several || (this.models_ !== null && this.listed[0]?.project !== shown));
+    return (
+      shown !== null &&
+      (this.has_several || (this.models_ !== null && this.listed[0]?.project !== shown))
+    );
   }
   /** There are several to choose among. Before it is known what is in them: surely. */
   private get has_several(): boolean {
-    return this.models_ ? this.listed.length > 1 : this.projects.filter(({ slug }) => slug !== kDefaultProject).length > 1;
+    return this.models_
+      ? this.listed.length > 1
+      : this.projects.filter(({ slug }) => slug !== kDefaultProject).length > 1;
   }
   private get is_gallery(): boolean {
-    return this.project === null && this.has_several && (this.models_?.length !== 0 || this.can_administer);
+    return (
+      this.project === null &&
+      this.has_several &&
+      (this.models_?.length !== 0 || this.can_administer)
+    );
   }
   private get is_missing(): boolean {
     return this.project !== null && !this.projects.some(({ slug }) => slug === this.project);
@@ -141,26 +158,32 @@ export class StrataHomePage extends LitElement {
         <strata-account-menu .me=${this.me} .kiosks=${sees_to_kiosks(this.me, this.projects)}></strata-account-menu>
       </header>
       <main>
-        ${this.me.has_password
-          ? nothing
-          : html`<p class="no-password">
+        ${
+          this.me.has_password
+            ? nothing
+            : html`<p class="no-password">
               <button class="link" @click=${() => ask_account(this, "account")}>${texts.account.no_password}</button>
               ${texts.account.no_password_why}
-            </p>`}
-        ${this.leads_up
-          ? html`<a class="up" href="/" @click=${follow}>${icon("back")}${texts.home.all_projects}</a>`
-          : nothing}
+            </p>`
+        }
+        ${
+          this.leads_up
+            ? html`<a class="up" href="/" @click=${follow}>${icon("back")}${texts.home.all_projects}</a>`
+            : nothing
+        }
         ${this.is_missing ? nothing : this.title_row()}
         ${this.shown?.description ? html`<p class="description">${this.shown.description}</p>` : nothing}
-        ${this.imports.entries.length > 0
-          ? html`<section class="imports" aria-live="polite">
+        ${
+          this.imports.entries.length > 0
+            ? html`<section class="imports" aria-live="polite">
               ${repeat(
                 this.imports.entries,
                 (entry) => entry.key,
                 (entry) => this.import_row(entry),
               )}
             </section>`
-          : nothing}
+            : nothing
+        }
         ${this.content()}
       </main>`;
   }
@@ -171,13 +194,17 @@ export class StrataHomePage extends LitElement {
       ${this.about ? this.project_menu(this.about) : nothing}
       <span class="hint grow">${this.counted}</span>
       ${this.project === null && this.curated.length > 1 ? this.project_choice(this.curated) : nothing}
-      ${this.can_curate
-        ? html`<button class=${this.has_none ? "" : "primary"} @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
+      ${
+        this.can_curate
+          ? html`<button class=${this.has_none ? "" : "primary"} @click=${() => this.file_input_.click()}>${icon("upload")}${texts.home.import}</button>
             <input type="file" accept=".ply,.obj,.stl,.gltf,.glb,.zip,.mtl,.bin,.png,.jpg,.jpeg,.tif,.tiff,.webp,.bmp,.tga" multiple hidden aria-label=${texts.home.import} @change=${this.on_files} />`
-        : nothing}
-      ${this.project === null && this.can_administer
-        ? html`<button @click=${() => void this.make_project()}>${icon("plus")}${texts.projects.new}</button>`
-        : nothing}
+          : nothing
+      }
+      ${
+        this.project === null && this.can_administer
+          ? html`<button @click=${() => void this.make_project()}>${icon("plus")}${texts.projects.new}</button>`
+          : nothing
+      }
     </div>`;
   }
 
@@ -188,7 +215,9 @@ export class StrataHomePage extends LitElement {
   private get counted(): string {
     const words = texts.home;
     if (!this.models_ || this.models.length === 0) return ""; // that is said below
-    return this.is_gallery ? words.count_projects(this.listed.length) : words.count(this.models.length);
+    return this.is_gallery
+      ? words.count_projects(this.listed.length)
+      : words.count(this.models.length);
   }
 
   private project_choice(projects: readonly Project[]): TemplateResult {
@@ -253,9 +282,11 @@ export class StrataHomePage extends LitElement {
       ${logo()}
       <h2>${in_none ? words.no_projects : words.empty_title}</h2>
       <p>${this.can_curate ? words.empty_lead : in_none ? words.empty_guest : words.empty_viewer}</p>
-      ${this.can_curate
-        ? html`<button class="primary" @click=${() => this.file_input_.click()}>${texts.home.choose_file}</button>`
-        : nothing}
+      ${
+        this.can_curate
+          ? html`<button class="primary" @click=${() => this.file_input_.click()}>${texts.home.choose_file}</button>`
+          : nothing
+      }
     </div>`;
   }
 
@@ -263,20 +294,26 @@ export class StrataHomePage extends LitElement {
     const { project } = listed;
     if (!curates(project)) return nothing; // who administers curates everywhere
     return html`<strata-menu class=${place} label=${texts.home.options(project.name)} .quiet=${place === ""}>
-      ${this.can_administer
-        ? html`<button class="quiet" role="menuitem" @click=${() => void this.describe_project(project)}>${icon("edit")}${texts.projects.describe}</button>`
-        : nothing}
+      ${
+        this.can_administer
+          ? html`<button class="quiet" role="menuitem" @click=${() => void this.describe_project(project)}>${icon("edit")}${texts.projects.describe}</button>`
+          : nothing
+      }
       <button class="quiet" role="menuitem" @click=${() => void this.look_into_bin(project)}>${icon("trash")}${texts.bin.open}</button>
-      ${project.slug === kDefaultProject || !this.can_administer
-        ? nothing
-        : html`<hr />
-            <button class="quiet" role="menuitem" @click=${() => void this.delete_project(listed)}>${icon("trash")}${texts.layers.delete}</button>`}
+      ${
+        project.slug === kDefaultProject || !this.can_administer
+          ? nothing
+          : html`<hr />
+            <button class="quiet" role="menuitem" @click=${() => void this.delete_project(listed)}>${icon("trash")}${texts.layers.delete}</button>`
+      }
     </strata-menu>`;
   }
 
   private card(model: Model): TemplateResult {
     const metres = metres_per(model.unit);
-    const sides = [0, 1, 2].map((axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres);
+    const sides = [0, 1, 2].map(
+      (axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres,
+    );
     return html`<li>
       <a href=${path_of_model(model.id)} aria-label=${texts.home.open(model.name)} @click=${follow}>
         <strata-thumbnail .api=${this.api} .model=${model}></strata-thumbnail>
@@ -287,19 +324,22 @@ export class StrataHomePage extends LitElement {
           ${model.scale_verified ? nothing : html`<span class="chip">${texts.home.scale_open}</span>`}
         </div>
       </a>
-      ${this.curated.some(({ slug }) => slug === model.project)
-        ? html`<strata-menu class="options" label=${texts.home.options(model.name)} .quiet=${false}>
+      ${
+        this.curated.some(({ slug }) => slug === model.project)
+          ? html`<strata-menu class="options" label=${texts.home.options(model.name)} .quiet=${false}>
             <button class="quiet" role="menuitem" @click=${() => void this.delete_model(model)}>
               ${icon("trash")}${texts.layers.delete}
             </button>
           </strata-menu>`
-        : nothing}
+          : nothing
+      }
     </li>`;
   }
 
   private import_row(entry: ImportEntry): TemplateResult {
     const words = texts.import;
-    const busy = entry.state === "uploading" || entry.state === "queued" || entry.state === "running";
+    const busy =
+      entry.state === "uploading" || entry.state === "queued" || entry.state === "running";
     const said =
       entry.state === "uploading"
         ? words.uploading(`${Math.round(entry.progress * 100)} %`)
@@ -310,8 +350,9 @@ export class StrataHomePage extends LitElement {
       <div class="grow">
         <b class="ellipsis">${entry.name}</b>
         <span class="said">${said}</span>
-        ${busy
-          ? html`<div
+        ${
+          busy
+            ? html`<div
               class="bar ${entry.state === "queued" ? "waiting" : ""}"
               role="progressbar"
               aria-label=${entry.name}
@@ -321,25 +362,30 @@ export class StrataHomePage extends LitElement {
             >
               <i ${styled({ width: `${(entry.progress * 100).toFixed(1)}%` })}></i>
             </div>`
-          : nothing}
+            : nothing
+        }
       </div>
-      ${busy
-        ? html`<button aria-label=${words.cancel(entry.name)} @click=${() => void this.cancel(entry)}>${texts.cancel}</button>`
-        : html`${entry.may_repeat
-              ? html`<button
+      ${
+        busy
+          ? html`<button aria-label=${words.cancel(entry.name)} @click=${() => void this.cancel(entry)}>${texts.cancel}</button>`
+          : html`${
+              entry.may_repeat
+                ? html`<button
                   aria-label=${words.repeat_named(entry.name)}
                   @click=${() => this.dispatchEvent(new CustomEvent<ImportEntry>("repeat-import", { detail: entry }))}
                 >
                   ${words.repeat}
                 </button>`
-              : nothing}
+                : nothing
+            }
           <button
             class="icon quiet"
             aria-label=${words.dismiss(entry.name)}
             @click=${() => this.imports.dismiss(entry.key)}
           >
             ${icon("close")}
-          </button>`}
+          </button>`
+      }
     </div>`;
   }
 
@@ -370,7 +416,8 @@ export class StrataHomePage extends LitElement {
   }
 
   private async delete_project(listed: ListedProject): Promise<void> {
-    if (!(await ask_to_delete_project(this.api, listed))) return this.load(); // something may have been restored
+    // something may have been restored
+    if (!(await ask_to_delete_project(this.api, listed))) return this.load();
     notices.show("success", texts.home.deleted(listed.project.name));
     this.projects_changed("/");
   }
@@ -381,8 +428,14 @@ export class StrataHomePage extends LitElement {
 
   private async delete_model(model: Model): Promise<void> {
     const words = texts.home;
-    const gone = { kind: "model", entry: `model-${model.id}`, name: model.name, project: model.project } as const;
-    if (!(await ask_to_bin(this.api, gone, { title: words.delete_title, lead: words.delete_lead }))) return;
+    const gone = {
+      kind: "model",
+      entry: `model-${model.id}`,
+      name: model.name,
+      project: model.project,
+    } as const;
+    if (!(await ask_to_bin(this.api, gone, { title: words.delete_title, lead: words.delete_lead })))
+      return;
     try {
       await this.api.delete_model(model.id);
       tell_binned(this.api, gone, () => void this.load());

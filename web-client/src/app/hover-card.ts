@@ -1,5 +1,5 @@
-// <strata-hover-card>: what is known at a glance of the record that the mouse rests on. It only shows: the pointer passes through it, and who
-// does not see it has the card of a tap.
+// <strata-hover-card>: what is known at a glance of the record that the mouse rests on. It only
+// shows: the pointer passes through it, and who does not see it has the card of a tap.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -123,15 +123,17 @@ export class StrataHoverCard extends LitElement {
         <b class="ellipsis">${session.tables.title(table, record) || texts.tables.record(record.key)}</b>
       </div>
       ${picture === null ? nothing : html`<img src=${session.api.attachment_url(picture, 256)} alt="" />`}
-      ${told.length === 0
-        ? nothing
-        : html`<dl>
+      ${
+        told.length === 0
+          ? nothing
+          : html`<dl>
             ${told.map(
               (column) =>
                 html`<dt class="ellipsis">${label_of(column)}</dt>
                   <dd>${shown_value(session, column, record.values[column.slug] ?? null)}${column.unit ? ` ${column.unit}` : nothing}</dd>`,
             )}
-          </dl>`}
+          </dl>`
+      }
     </section>`;
   }
 
@@ -142,7 +144,12 @@ export class StrataHoverCard extends LitElement {
     if (!section || !at) return;
     const { scale } = this.session.view;
     const size = { width: section.offsetWidth, height: section.offsetHeight };
-    const place = beside([at.x / scale, at.y / scale], size, { width: this.clientWidth, height: this.clientHeight }, kGap_px);
+    const place = beside(
+      [at.x / scale, at.y / scale],
+      size,
+      { width: this.clientWidth, height: this.clientHeight },
+      kGap_px,
+    );
     section.style.visibility = place ? "visible" : "hidden";
     section.style.left = `${place?.left ?? 0}px`;
     section.style.top = `${place?.top ?? 0}px`;

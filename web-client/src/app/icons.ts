@@ -67,7 +67,8 @@ export type IconName = keyof typeof shapes;
 export const icon = (name: IconName): TemplateResult =>
   html`<svg class="glyph" viewBox="0 0 24 24" aria-hidden="true">${shapes[name]}</svg>`;
 
-export const logo = (): TemplateResult => html`<svg class="logo" viewBox="0 0 32 32" aria-hidden="true">
+export const logo =
+  (): TemplateResult => html`<svg class="logo" viewBox="0 0 32 32" aria-hidden="true">
   <rect width="32" height="32" rx="7" fill="var(--logo-ground)" />
   <g fill="none" stroke-width="2.6" stroke-linecap="round">
     <path d="M5 11c4-3 7-3 11 0s7 3 11 0" stroke="var(--logo-top)" />

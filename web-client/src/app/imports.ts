@@ -1,5 +1,5 @@
-// Imports under way: upload, then the server's job. Kept outside the page's elements, so that going to another page
-// does not stop them.
+// Imports under way: upload, then the server's job. Kept outside the page's elements, so that going
+// to another page does not stop them.
 
 import { ApiError, name_of_file, type Api, type Upload } from "../core/api";
 import type { Job, ProblemBody } from "../core/types";
@@ -23,7 +23,8 @@ export interface ImportEntry {
 }
 
 const kScans = /\.(ply|obj|stl|gltf|glb|zip)$/i;
-const kCompanions = /\.(mtl|bin|png|jpe?g|tiff?|webp|bmp|tga)$/i; // materials, buffers and pictures that a mesh names
+// materials, buffers and pictures that a mesh names
+const kCompanions = /\.(mtl|bin|png|jpe?g|tiff?|webp|bmp|tga)$/i;
 
 /** How an import ended; neither where it was cancelled, or refused before it began. */
 export interface ImportResult {
@@ -31,7 +32,10 @@ export interface ImportResult {
   problem: ProblemBody | null;
 }
 
-/** A mesh with the files it may need; the mesh comes first, and gives the name: with its folders where others are called the same. */
+/**
+ * A mesh with the files it may need; the mesh comes first, and gives the name: with its folders
+ * where others are called the same.
+ */
 export type ScanFiles = readonly [DroppedFile, ...DroppedFile[]];
 export interface Scan {
   files: ScanFiles;
@@ -41,7 +45,10 @@ export interface Scan {
 const folder_of = (path: string): string => path.slice(0, path.lastIndexOf("/") + 1);
 const stem_of = (path: string): string => path.replace(/\.[^./]*$/, "");
 
-/** What each mesh is called: as its file; where several are called so, with as many of its folders as tell them apart. */
+/**
+ * What each mesh is called: as its file; where several are called so, with as many of its folders
+ * as tell them apart.
+ */
 function names_of(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
   const name_of = ({ path }: DroppedFile, folders: number): string => {
     const parts = path.split("/").slice(-1 - folders);
@@ -51,27 +58,42 @@ function names_of(meshes: readonly DroppedFile[]): Map<DroppedFile, string> {
     meshes.map((mesh) => {
       let folders = 0;
       const depth = mesh.path.split("/").length - 1;
-      const is_shared = (): boolean => meshes.some((other) => other !== mesh && name_of(other, folders) === name_of(mesh, folders));
+      const is_shared = (): boolean =>
+        meshes.some(
+          (other) => other !== mesh && name_of(other, folders) === name_of(mesh, folders),
+        );
       while (folders < depth && is_shared()) folders += 1;
       return [mesh, name_of(mesh, folders)];
     }),
   );
 }
 
-/** The scans among dropped files. All that may belong to a mesh comes with it where it is the only one; where there are
- *  several, what is called like it does. What is left over is told. */
+/**
+ * The scans among dropped files. All that may belong to a mesh comes with it where it is the only
+ * one; where there are several, what is called like it does. What is left over is told.
+ */
 export function choose_scans(files: readonly DroppedFile[]): Scan[] {
   const meshes = files.filter(({ path }) => kScans.test(path));
-  if (meshes.length === 0) return files.map((file): Scan => ({ files: [file], name: name_of_file(file.file.name) })); // each is refused by its name
+  // each is refused by its name
+  if (meshes.length === 0)
+    return files.map((file): Scan => ({ files: [file], name: name_of_file(file.file.name) }));
   const companions = files.filter(({ path }) => kCompanions.test(path));
   const taken = new Set(meshes);
   const names = names_of(meshes);
   const scans = meshes.map((mesh): Scan => {
-    const own = companions.filter(({ path }) => meshes.length === 1 || path.startsWith(stem_of(mesh.path)));
+    const own = companions.filter(
+      ({ path }) => meshes.length === 1 || path.startsWith(stem_of(mesh.path)),
+    );
     for (const file of own) taken.add(file);
     const folder = folder_of(mesh.path);
-    const beside = own.map(({ file, path }) => ({ file, path: path.startsWith(folder) ? path.slice(folder.length) : path }));
-    return { files: [{ file: mesh.file, path: mesh.path.slice(folder.length) }, ...beside], name: names.get(mesh)! };
+    const beside = own.map(({ file, path }) => ({
+      file,
+      path: path.startsWith(folder) ? path.slice(folder.length) : path,
+    }));
+    return {
+      files: [{ file: mesh.file, path: mesh.path.slice(folder.length) }, ...beside],
+      name: names.get(mesh)!,
+    };
   });
   const left = files.filter((file) => !taken.has(file));
   if (left.length > 0) notices.show("info", texts.import.left_out(left.length, left[0]!.path));
@@ -123,7 +145,9 @@ export class Imports {
     this.sent_.set(key, { scan, project });
     this.tell();
     try {
-      const upload = this.api_.upload_model(scan.files, scan.name, project, (progress) => this.change(key, { progress }));
+      const upload = this.api_.upload_model(scan.files, scan.name, project, (progress) =>
+        this.change(key, { progress }),
+      );
       this.uploads_.set(key, upload);
       const job = await upload.done;
       this.uploads_.delete(key);
@@ -157,8 +181,10 @@ export class Imports {
     const job = await follow_job(this.api_, first, ({ state, progress, message, problem }) =>
       this.change(key, { state, progress, message, problem: problem ?? null }),
     );
-    if (job.state === "failed") this.change(key, { may_repeat: may_repeat(job.problem?.status ?? 500) });
-    if (job.state === "failed") return { model: null, problem: job.problem ?? { status: 500, title: texts.import.failed } };
+    if (job.state === "failed")
+      this.change(key, { may_repeat: may_repeat(job.problem?.status ?? 500) });
+    if (job.state === "failed")
+      return { model: null, problem: job.problem ?? { status: 500, title: texts.import.failed } };
     this.dismiss(key);
     return { model: job.model ?? null, problem: null };
   }
@@ -170,12 +196,18 @@ export class Imports {
       this.dismiss(key);
       return { model: null, problem: null };
     }
-    this.change(key, { state: "failed", problem: error.problem, may_repeat: may_repeat(error.status) });
+    this.change(key, {
+      state: "failed",
+      problem: error.problem,
+      may_repeat: may_repeat(error.status),
+    });
     return { model: null, problem: error.problem };
   }
 
   private change(key: number, change: Partial<ImportEntry>): void {
-    this.entries = this.entries.map((entry) => (entry.key === key ? { ...entry, ...change } : entry));
+    this.entries = this.entries.map((entry) =>
+      entry.key === key ? { ...entry, ...change } : entry,
+    );
     this.tell();
   }
 

@@ -28,7 +28,8 @@ export class StrataJoinPage extends LitElement {
   @state() private person_: Person | null = null;
   @state() private useless_ = false;
   @state() private problem_ = "";
-  @state() private field_problems_: Partial<Record<"password" | "repeat" | "full_name", string>> = {};
+  @state() private field_problems_: Partial<Record<"password" | "repeat" | "full_name", string>> =
+    {};
   @state() private busy_ = false;
   @query("form") private form_!: HTMLFormElement | null;
 
@@ -155,7 +156,11 @@ export class StrataJoinPage extends LitElement {
     }
     this.busy_ = true;
     try {
-      await this.api.accept_invitation({ invitation: this.invitation, password, full_name: String(data.get("full_name") ?? "").trim() });
+      await this.api.accept_invitation({
+        invitation: this.invitation,
+        password,
+        full_name: String(data.get("full_name") ?? "").trim(),
+      });
       this.dispatchEvent(new CustomEvent("joined"));
     } catch (error) {
       this.refused(error);

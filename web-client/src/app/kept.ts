@@ -1,4 +1,5 @@
-// A value that this browser keeps for the page. Where it keeps nothing (it is full, or told not to), the value lives as long as the page.
+// A value that this browser keeps for the page. Where it keeps nothing (it is full, or told not
+// to), the value lives as long as the page.
 
 export class Kept<T> {
   private value_: T;

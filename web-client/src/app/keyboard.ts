@@ -1,4 +1,5 @@
-// Keys of the model page, and of choices. A key that someone types into a field, or that a dialog is open for, is not one of these.
+// Keys of the model page, and of choices. A key that someone types into a field, or that a dialog
+// is open for, is not one of these.
 
 import type { StandardView } from "../core/camera";
 import type { ToolName } from "../tools/tool";
@@ -27,19 +28,28 @@ const kArrows: Record<string, [number, number]> = {
 };
 const kArrowStep = 0.04; // share of the window per key press
 
-/** Whether the event's innermost target takes typed text or has its own use for keys, or lies in something open. */
+/**
+ * Whether the event's innermost target takes typed text or has its own use for keys, or lies in
+ * something open.
+ */
 export function is_for_field(event: KeyboardEvent): boolean {
   const path = event.composedPath(); // across shadow roots, which closest() does not leave
   const [target] = path;
   if (!(target instanceof HTMLElement)) return false;
-  if (path.some((each) => each instanceof HTMLElement && each.matches("dialog, [popover]"))) return true;
+  if (path.some((each) => each instanceof HTMLElement && each.matches("dialog, [popover]")))
+    return true;
   if (target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement) return true;
-  if (target instanceof HTMLInputElement) return target.type !== "range" || event.key.startsWith("Arrow");
+  if (target instanceof HTMLInputElement)
+    return target.type !== "range" || event.key.startsWith("Arrow");
   return target.getAttribute("role") === "separator" || target.isContentEditable;
 }
 
 /** Does what the key stands for; false when it stands for nothing here. */
-export function handle_key(event: KeyboardEvent, session: ModelSession, show: (dialog: "help" | "figure") => void): boolean {
+export function handle_key(
+  event: KeyboardEvent,
+  session: ModelSession,
+  show: (dialog: "help" | "figure") => void,
+): boolean {
   const { key } = event;
   if (event.ctrlKey || event.metaKey) {
     if (event.altKey || key.toLowerCase() !== "z") return false;

@@ -1,4 +1,5 @@
-// <strata-kiosks-dialog>: the links for screens that show tours: of one tour, with a form that makes one, or all that this person sees to.
+// <strata-kiosks-dialog>: the links for screens that show tours: of one tour, with a form that
+// makes one, or all that this person sees to.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -25,7 +26,12 @@ type Field = "name" | "days";
 export class StrataKiosksDialog extends LitElement {
   @property({ attribute: false }) api!: Api;
   /** Null: those of all tours. By slugs. */
-  @property({ attribute: false }) tour: { project: string; model: string; slug: string; name: string } | null = null;
+  @property({ attribute: false }) tour: {
+    project: string;
+    model: string;
+    slug: string;
+    name: string;
+  } | null = null;
   @state() private kiosks_: readonly Kiosk[] | null = null;
   @state() private making_ = false;
   @state() private made_: KioskMade | null = null;
@@ -122,7 +128,8 @@ export class StrataKiosksDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     void this.attempt(() => this.read());
-    this.timer_ = window.setInterval(() => void this.read().catch(() => {}), kSilent_ms / 6); // what could not be read is read the next time
+    // what could not be read is read the next time
+    this.timer_ = window.setInterval(() => void this.read().catch(() => {}), kSilent_ms / 6);
   }
 
   override disconnectedCallback(): void {
@@ -133,7 +140,12 @@ export class StrataKiosksDialog extends LitElement {
   private async read(): Promise<void> {
     const { tour } = this;
     const all = await this.api.kiosks();
-    this.kiosks_ = tour ? all.filter((each) => each.project === tour.project && each.model === tour.model && each.tour === tour.slug) : all;
+    this.kiosks_ = tour
+      ? all.filter(
+          (each) =>
+            each.project === tour.project && each.model === tour.model && each.tour === tour.slug,
+        )
+      : all;
   }
 
   override render(): TemplateResult {
@@ -142,21 +154,25 @@ export class StrataKiosksDialog extends LitElement {
       <p class="hint">${tour ? words.lead_of : words.lead}</p>
       ${tour && !this.making_ ? html`<button class="new ${this.made_ ? "" : "primary"}" @click=${this.begin}>${icon("plus")}${words.new}</button>` : nothing}
       ${this.making_ ? this.form() : nothing} ${this.made_ ? this.link(this.made_) : nothing}
-      ${kiosks
-        ? kiosks.length === 0
-          ? html`<p>${tour ? words.none_of : words.none}</p>`
-          : html`<ul>
+      ${
+        kiosks
+          ? kiosks.length === 0
+            ? html`<p>${tour ? words.none_of : words.none}</p>`
+            : html`<ul>
               ${repeat(
                 [...kiosks].reverse(),
                 ({ id }) => id,
                 (kiosk) => this.row(kiosk),
               )}
             </ul>`
-        : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
-      ${this.problem_
-        ? html`<p class="error" role="alert">${this.problem_}</p>
+          : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`
+      }
+      ${
+        this.problem_
+          ? html`<p class="error" role="alert">${this.problem_}</p>
             <div><button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button></div>`
-        : nothing}
+          : nothing
+      }
     </strata-dialog>`;
   }
 
@@ -171,33 +187,43 @@ export class StrataKiosksDialog extends LitElement {
           <span class="chip ${state}">${words.states[state]}</span>
           ${kiosk.wants_reload && !ended ? html`<span class="chip asked">${words.asked}</span>` : nothing}
         </div>
-        ${this.tour
-          ? nothing
-          : html`<span class="hint">${kiosk.tour_name} · <a class="text" href=${path_of_model(kiosk.model)} @click=${this.on_link}>${kiosk.model_name}</a></span>`}
+        ${
+          this.tour
+            ? nothing
+            : html`<span class="hint">${kiosk.tour_name} · <a class="text" href=${path_of_model(kiosk.model)} @click=${this.on_link}>${kiosk.model_name}</a></span>`
+        }
         <span class="hint">${this.told(kiosk)}</span>
       </div>
-      ${ended
-        ? nothing
-        : html`<div class="buttons">
+      ${
+        ended
+          ? nothing
+          : html`<div class="buttons">
             <button ?disabled=${kiosk.wants_reload} aria-label=${words.reload_of(kiosk.name)} @click=${() => void this.reload(kiosk)}>${icon("redo")}${words.reload}</button>
             <button aria-label=${words.revoke_of(kiosk.name)} @click=${() => void this.revoke(kiosk)}>${words.revoke}</button>
-          </div>`}
+          </div>`
+      }
       ${note ? html`<span class=${note.kind} role=${note.kind === "error" ? "alert" : "status"}>${note.text}</span>` : nothing}
     </li>`;
   }
 
   private on_link(event: MouseEvent): void {
     follow(event);
-    if (event.defaultPrevented) this.dispatchEvent(new CustomEvent("closed")); // or it opens in another tab
+    // or it opens in another tab
+    if (event.defaultPrevented) this.dispatchEvent(new CustomEvent("closed"));
   }
 
   private told({ last_seen, expires, revoked, created, user }: Kiosk): string {
     const seen = last_seen ? words.seen(told_ago(last_seen)) : words.never_seen;
-    const ends = revoked ? words.revoked_on(told_date(revoked)) : expires ? words.expires_on(told_date(expires)) : words.no_end;
+    const ends = revoked
+      ? words.revoked_on(told_date(revoked))
+      : expires
+        ? words.expires_on(told_date(expires))
+        : words.no_end;
     return [seen, ends, words.made_by(user, told_date(created))].join(" · ");
   }
 
-  // ── a new one ─────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── a new one
+  // ─────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private form(): TemplateResult {
     const wrong = (field: Field): string => (this.wrong_?.field === field ? this.wrong_.text : "");
@@ -236,7 +262,9 @@ export class StrataKiosksDialog extends LitElement {
     this.making_ = true;
     this.made_ = null;
     this.wrong_ = null;
-    void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLInputElement>("input[name=name]")?.focus());
+    void this.updateComplete.then(() =>
+      this.renderRoot.querySelector<HTMLInputElement>("input[name=name]")?.focus(),
+    );
   }
 
   private refuse(field: Field, text: string): void {
@@ -247,19 +275,28 @@ export class StrataKiosksDialog extends LitElement {
   private on_submit(event: Event): void {
     event.preventDefault();
     const { tour } = this;
-    const name = this.renderRoot.querySelector<HTMLInputElement>("input[name=name]")?.value.trim() ?? "";
+    const name =
+      this.renderRoot.querySelector<HTMLInputElement>("input[name=name]")?.value.trim() ?? "";
     const days = read_number(this.days_);
     if (!tour || this.busy_) return;
     if (name === "") return this.refuse("name", words.name_missing);
-    if (this.days_.trim() !== "" && !(Number.isInteger(days) && days >= kDays[0] && days <= kDays[1])) return this.refuse("days", words.days_wrong(...kDays));
+    if (
+      this.days_.trim() !== "" &&
+      !(Number.isInteger(days) && days >= kDays[0] && days <= kDays[1])
+    )
+      return this.refuse("days", words.days_wrong(...kDays));
     void this.attempt(async () => {
-      this.made_ = await this.api.create_kiosk(tour.model, tour.slug, { name, ...(this.days_.trim() === "" ? {} : { days }) });
+      this.made_ = await this.api.create_kiosk(tour.model, tour.slug, {
+        name,
+        ...(this.days_.trim() === "" ? {} : { days }),
+      });
       this.making_ = false;
       await this.read();
     });
   }
 
-  // ── one that there is ─────────────────────────────────────────────────────────────────────────────────────────────
+  // ── one that there is
+  // ─────────────────────────────────────────────────────────────────────────────────────────────
 
   private async reload(kiosk: Kiosk): Promise<void> {
     await this.change(kiosk, async () => {
@@ -270,7 +307,15 @@ export class StrataKiosksDialog extends LitElement {
   }
 
   private async revoke(kiosk: Kiosk): Promise<void> {
-    if (!(await ask({ heading: words.revoke_title(kiosk.name), lead: words.revoke_lead, yes: words.revoke_yes, danger: true }))) return;
+    if (
+      !(await ask({
+        heading: words.revoke_title(kiosk.name),
+        lead: words.revoke_lead,
+        yes: words.revoke_yes,
+        danger: true,
+      }))
+    )
+      return;
     await this.change(kiosk, async () => {
       await this.api.revoke_kiosk(kiosk.id);
       if (this.made_?.kiosk.id === kiosk.id) this.made_ = null;
@@ -299,7 +344,8 @@ export class StrataKiosksDialog extends LitElement {
       if (!(error instanceof ApiError)) throw error;
       const { field } = error.problem;
       if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
-      else if (this.making_ && (field === "name" || field === "days")) this.refuse(field, error.message);
+      else if (this.making_ && (field === "name" || field === "days"))
+        this.refuse(field, error.message);
       else this.problem_ = error.message;
     } finally {
       this.busy_ = false;

@@ -1,4 +1,5 @@
-// Things of one kind that the server lists, each with a version, and tells changes of: all are read at first, and what happens meanwhile holds.
+// Things of one kind that the server lists, each with a version, and tells changes of: all are read
+// at first, and what happens meanwhile holds.
 
 import { ApiError } from "../core/api";
 
@@ -13,7 +14,8 @@ export class KnownItems<T extends Item> {
   loaded = false;
 
   private known_ = new Map<number, T>();
-  private reading_: { gone: Set<number>; come: Set<number> } | null = null; // what happens meanwhile
+  // what happens meanwhile
+  private reading_: { gone: Set<number>; come: Set<number> } | null = null;
 
   get all(): T[] {
     return [...this.known_.values()];
@@ -39,7 +41,9 @@ export class KnownItems<T extends Item> {
     this.failed = false;
     this.loaded = true;
     const come = this.all.filter(({ id }) => reading.come.has(id));
-    this.known_ = new Map(items.filter(({ id }) => !reading.gone.has(id)).map((item) => [item.id, item]));
+    this.known_ = new Map(
+      items.filter(({ id }) => !reading.gone.has(id)).map((item) => [item.id, item]),
+    );
     for (const item of come) this.put(item);
     return true;
   }

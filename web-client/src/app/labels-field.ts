@@ -2,7 +2,15 @@
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
-import { descriptions_of, kCommonLanguages, labels_of, name_of_language, rows_of, well_written_tag, type LabelRow } from "../core/languages";
+import {
+  descriptions_of,
+  kCommonLanguages,
+  labels_of,
+  name_of_language,
+  rows_of,
+  well_written_tag,
+  type LabelRow,
+} from "../core/languages";
 import { compare_words } from "../core/locale";
 import type { Labels } from "../core/protocol.gen";
 import { icon } from "./icons";
@@ -10,7 +18,9 @@ import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
 const words = texts.labels;
-const offered = kCommonLanguages.map((tag) => ({ tag, name: name_of_language(tag) })).sort((a, b) => compare_words(a.name, b.name));
+const offered = kCommonLanguages
+  .map((tag) => ({ tag, name: name_of_language(tag) }))
+  .sort((a, b) => compare_words(a.name, b.name));
 
 @customElement("strata-labels-field")
 export class StrataLabelsField extends LitElement {
@@ -50,7 +60,8 @@ export class StrataLabelsField extends LitElement {
   ];
 
   override willUpdate(changed: PropertyValues<this>): void {
-    if (changed.has("labels") || changed.has("descriptions")) this.rows_ = rows_of(this.labels, this.descriptions ?? {});
+    if (changed.has("labels") || changed.has("descriptions"))
+      this.rows_ = rows_of(this.labels, this.descriptions ?? {});
   }
 
   override render(): TemplateResult {
@@ -93,9 +104,10 @@ export class StrataLabelsField extends LitElement {
       <button type="button" class="icon quiet" aria-label=${words.remove(name || language)} title=${words.remove(name || language)} @click=${() => this.remove_row(index)}>
         ${icon("close")}
       </button>
-      ${this.descriptions === null
-        ? nothing
-        : html`<textarea
+      ${
+        this.descriptions === null
+          ? nothing
+          : html`<textarea
             rows="2"
             maxlength="10000"
             lang=${name ? language : nothing}
@@ -103,7 +115,8 @@ export class StrataLabelsField extends LitElement {
             placeholder=${words.description(name || language || words.language(index + 1))}
             .value=${description}
             @input=${(event: Event) => this.change(index, { description: (event.target as HTMLTextAreaElement).value })}
-          ></textarea>`}
+          ></textarea>`
+      }
     </div>`;
   }
 
@@ -121,11 +134,16 @@ export class StrataLabelsField extends LitElement {
     return null;
   }
 
-  /** What the server says against them. It takes no tag that is none, so the rows with such ones are meant. */
+  /**
+   * What the server says against them. It takes no tag that is none, so the rows with such ones are
+   * meant.
+   */
   refuse(problem: string): void {
     this.tell(
       problem,
-      this.rows_.flatMap(({ language, label }, index) => (label.trim() !== "" && !well_written_tag(language.trim()) ? index : [])),
+      this.rows_.flatMap(({ language, label }, index) =>
+        label.trim() !== "" && !well_written_tag(language.trim()) ? index : [],
+      ),
     );
   }
 

@@ -18,7 +18,20 @@ export interface LayerWanted {
 }
 
 /** Only what differs: what this person left alone is not theirs to set. */
-export function layer_changes(layer: Layer, { name, unit, description, labels, descriptions, palette, visibility, expression, recompute }: LayerWanted): LayerPatch {
+export function layer_changes(
+  layer: Layer,
+  {
+    name,
+    unit,
+    description,
+    labels,
+    descriptions,
+    palette,
+    visibility,
+    expression,
+    recompute,
+  }: LayerWanted,
+): LayerPatch {
   const change: LayerPatch = {};
   if (name !== layer.name) change.name = name;
   if (unit !== layer.unit) change.unit = unit;
@@ -32,4 +45,5 @@ export function layer_changes(layer: Layer, { name, unit, description, labels, d
   return change;
 }
 
-const same_words = (a: Labels, b: Labels): boolean => JSON.stringify(rows_of(a)) === JSON.stringify(rows_of(b));
+const same_words = (a: Labels, b: Labels): boolean =>
+  JSON.stringify(rows_of(a)) === JSON.stringify(rows_of(b));

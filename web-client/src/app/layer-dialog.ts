@@ -1,5 +1,5 @@
-// <strata-layer-dialog>: makes a layer, or changes one's name, classes and colours, in the words of who studies the
-// object. With `layer` it edits; without, it creates.
+// <strata-layer-dialog>: makes a layer, or changes one's name, classes and colours, in the words of
+// who studies the object. With `layer` it edits; without, it creates.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -49,7 +49,12 @@ type Purpose = LayerPurpose | "shape" | "formula";
 
 const kNoWords: Labels = {};
 const kMostClasses = 255;
-const kTypes: Record<LayerPurpose, ValueType> = { presence: "u8", classes: "u8", measurement: "f32", records: "u32" };
+const kTypes: Record<LayerPurpose, ValueType> = {
+  presence: "u8",
+  classes: "u8",
+  measurement: "f32",
+  records: "u32",
+};
 const words = texts.layer_dialog;
 
 @customElement("strata-layer-dialog")
@@ -212,8 +217,13 @@ export class StrataLayerDialog extends LitElement {
     try {
       const { value, etag } = await this.session.api.layer(this.session.model_id, layer.id);
       const purpose = purpose_of(value);
-      this.purpose_ = purpose === "presence" ? "classes" : purpose; // it can have a second class one day
-      this.classes_ = value.palette.points.map(({ at, label, color }) => ({ at, label: label ?? "", color }));
+      // it can have a second class one day
+      this.purpose_ = purpose === "presence" ? "classes" : purpose;
+      this.classes_ = value.palette.points.map(({ at, label, color }) => ({
+        at,
+        label: label ?? "",
+        color,
+      }));
       this.stepped_ = value.palette.mode === "step";
       this.visibility_ = value.visibility;
       this.base_ = { layer: value, etag };
@@ -234,13 +244,15 @@ export class StrataLayerDialog extends LitElement {
     >
       ${layer && !this.base_ ? html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>` : this.form()}
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      ${layer && (this.stale_ || !this.base_)
-        ? html`<button slot="actions" class="primary" @click=${() => void this.read(layer)}>
+      ${
+        layer && (this.stale_ || !this.base_)
+          ? html`<button slot="actions" class="primary" @click=${() => void this.read(layer)}>
             ${this.stale_ ? words.reload : texts.try_again}
           </button>`
-        : html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
+          : html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => this.form_.requestSubmit()}>
             ${layer ? texts.save : this.purpose_ === "shape" || this.purpose_ === "formula" ? words.compute : words.create}
-          </button>`}
+          </button>`
+      }
     </strata-dialog>`;
   }
 
@@ -251,13 +263,15 @@ export class StrataLayerDialog extends LitElement {
       this.base_?.etag,
       html`<form id="form" novalidate @submit=${this.on_submit}>
         ${layer ? nothing : this.kinds()}
-        ${this.purpose_ === "shape"
-          ? html`<strata-shape-fields
+        ${
+          this.purpose_ === "shape"
+            ? html`<strata-shape-fields
               .session=${this.session}
               .wrong=${this.problem_field_}
               @kind-changed=${() => this.requestUpdate()}
             ></strata-shape-fields>`
-          : nothing}
+            : nothing
+        }
         ${this.purpose_ === "records" && !layer && this.tables_.length > 0 ? this.tables() : nothing}
         ${this.purpose_ === "formula" || layer?.expression !== undefined ? this.formula(layer) : nothing}
         <div class="two">
@@ -273,8 +287,9 @@ export class StrataLayerDialog extends LitElement {
               aria-invalid=${this.problem_field_ === "name" ? "true" : "false"}
             />
           </label>
-          ${this.purpose_ === "presence"
-            ? html`<label class="field">
+          ${
+            this.purpose_ === "presence"
+              ? html`<label class="field">
                 <span>${words.color}</span>
                 <input
                   type="color"
@@ -282,7 +297,8 @@ export class StrataLayerDialog extends LitElement {
                   @input=${(event: Event) => (this.color_ = `${(event.target as HTMLInputElement).value}ff`)}
                 />
               </label>`
-            : nothing}
+              : nothing
+          }
         </div>
         ${this.purpose_ === "classes" ? this.classes() : nothing}
         ${this.purpose_ === "measurement" ? this.measurement() : nothing} ${layer ? nothing : this.details()}
@@ -310,7 +326,10 @@ export class StrataLayerDialog extends LitElement {
       ${radio_group<Purpose>({
         label: { id: "question" },
         class: "kinds",
-        choices: kinds.map(([value, title, lead]) => ({ value, content: html`<b>${title}</b><span>${lead}</span>` })),
+        choices: kinds.map(([value, title, lead]) => ({
+          value,
+          content: html`<b>${title}</b><span>${lead}</span>`,
+        })),
         chosen: this.purpose_,
         choose: (purpose) => (this.purpose_ = purpose),
       })}
@@ -428,14 +447,18 @@ export class StrataLayerDialog extends LitElement {
     const { model } = this.session;
     if (!model) return html``;
     const choices = detail_choices(model.atlas);
-    const preferred = choices.find((choice) => choice.resolution === model.default_resolution) ?? choices[0];
+    const preferred =
+      choices.find((choice) => choice.resolution === model.default_resolution) ?? choices[0];
     const chosen = this.chosen_resolution_ ?? preferred?.resolution;
     return html`<div class="details">
       <p class="caption" id="detail">${words.detail}</p>
       ${radio_group({
         label: { id: "detail" },
         class: "segments",
-        choices: choices.map(({ resolution, detail_m }) => ({ value: resolution, content: format_length(detail_m) })),
+        choices: choices.map(({ resolution, detail_m }) => ({
+          value: resolution,
+          content: format_length(detail_m),
+        })),
         chosen: chosen ?? null,
         choose: (resolution) => (this.chosen_resolution_ = resolution),
       })}
@@ -445,7 +468,9 @@ export class StrataLayerDialog extends LitElement {
   @state() private chosen_resolution_: number | null = null;
 
   private change_class(index: number, change: Partial<ClassRow>): void {
-    this.classes_ = this.classes_.map((row, other) => (other === index ? { ...row, ...change } : row));
+    this.classes_ = this.classes_.map((row, other) =>
+      other === index ? { ...row, ...change } : row,
+    );
   }
 
   private add_class(): void {
@@ -465,30 +490,54 @@ export class StrataLayerDialog extends LitElement {
     this.problem_ = this.problem_field_ = "";
     const said = this.said();
     if (!said) return;
-    if (this.purpose_ === "shape") return this.compute(text("name") || this.shape_.kind_title, { description: text("description"), ...said });
+    if (this.purpose_ === "shape")
+      return this.compute(text("name") || this.shape_.kind_title, {
+        description: text("description"),
+        ...said,
+      });
     const name = text("name") || (this.named_by_table ? label_of(this.table_!) : "");
     if (!name) return this.refuse("name", words.name_missing);
     const formula = this.expression_ ? this.wanted_formula(form) : {};
     if (!formula) return this.refuse("expression", words.expression_missing);
-    if (!this.layer && formula.expression !== undefined) return this.create_computed({ name, description: text("description"), ...said, visibility: this.visibility_, ...formula });
+    if (!this.layer && formula.expression !== undefined)
+      return this.create_computed({
+        name,
+        description: text("description"),
+        ...said,
+        visibility: this.visibility_,
+        ...formula,
+      });
     const palette = this.palette(name, read_number(text("min")), read_number(text("max")));
     if (!palette) return;
     await this.attempt(async () => {
       const unit = this.purpose_ === "measurement" ? text("unit") : (this.base_?.layer.unit ?? "");
-      await this.send({ name, unit, description: text("description"), ...said, palette, visibility: this.visibility_, ...formula });
+      await this.send({
+        name,
+        unit,
+        description: text("description"),
+        ...said,
+        palette,
+        visibility: this.visibility_,
+        ...formula,
+      });
     });
   }
 
   /** Null where it is missing. */
   private wanted_formula(form: FormData): Pick<LayerCreate, "expression" | "recompute"> | null {
     const expression = this.expression_.value;
-    return expression === "" ? null : { expression, recompute: form.has("follows") ? "automatic" : "manual" };
+    return expression === ""
+      ? null
+      : { expression, recompute: form.has("follows") ? "automatic" : "manual" };
   }
 
   private async create_computed(layer: LayerCreate): Promise<void> {
     const { session } = this;
     await this.attempt(async () => {
-      const made = await session.api.create_computed(session.model_id, { ...layer, ...this.resolution() });
+      const made = await session.api.create_computed(session.model_id, {
+        ...layer,
+        ...this.resolution(),
+      });
       if ("layer" in made) {
         session.layers.put(made.layer);
         session.show_made([made.layer.id]);
@@ -506,12 +555,21 @@ export class StrataLayerDialog extends LitElement {
     return labels && { labels, descriptions: this.labels_.written_descriptions };
   }
 
-  private async compute(name: string, said: Pick<LayerCreate, "description" | "labels" | "descriptions">): Promise<void> {
+  private async compute(
+    name: string,
+    said: Pick<LayerCreate, "description" | "labels" | "descriptions">,
+  ): Promise<void> {
     const compute = this.shape_.recipe();
     if ("problem" in compute) return this.refuse(compute.field, compute.problem);
     const { session } = this;
     await this.attempt(async () => {
-      const { done } = await session.jobs.compute({ name, ...said, compute, visibility: this.visibility_, ...this.resolution() });
+      const { done } = await session.jobs.compute({
+        name,
+        ...said,
+        compute,
+        visibility: this.visibility_,
+        ...this.resolution(),
+      });
       void done.then((made) => session.show_made(made));
       notices.show("success", texts.shape.started(name));
     });
@@ -527,7 +585,8 @@ export class StrataLayerDialog extends LitElement {
       if (!(error instanceof ApiError)) throw error;
       this.stale_ = error.status === 412;
       if (error.problem.field === "expression" && this.expression_) this.expression_.refuse(error);
-      else if (/^(labels|descriptions)\b/.test(error.problem.field ?? "")) this.labels_.refuse(error.message);
+      else if (/^(labels|descriptions)\b/.test(error.problem.field ?? ""))
+        this.labels_.refuse(error.message);
       else this.refuse(error.problem.field ?? "", this.stale_ ? words.changed : error.message);
     } finally {
       this.busy_ = false;
@@ -544,7 +603,8 @@ export class StrataLayerDialog extends LitElement {
   }
 
   private palette(name: string, min: number, max: number): Palette | null {
-    if (this.purpose_ === "formula" || this.purpose_ === "shape") return null; // follows from the values
+    // follows from the values
+    if (this.purpose_ === "formula" || this.purpose_ === "shape") return null;
     switch (this.purpose_) {
       case "presence":
         return presence_palette(name, this.color_);
@@ -555,7 +615,9 @@ export class StrataLayerDialog extends LitElement {
           this.refuse("classes", words.classes_missing);
           return null;
         }
-        const palette = class_palette(this.classes_.map((row) => ({ ...row, label: row.label.trim() })));
+        const palette = class_palette(
+          this.classes_.map((row) => ({ ...row, label: row.label.trim() })),
+        );
         const old = this.base_?.layer.palette;
         return old ? { ...old, points: palette.points } : palette;
       }
@@ -578,8 +640,10 @@ export class StrataLayerDialog extends LitElement {
     const purpose = this.purpose_ as LayerPurpose; // what is computed goes another way
     if (base) {
       const change = layer_changes(base.layer, wanted);
-      if (Object.keys(change).length > 0) await session.layers.change(base.layer, change, base.etag);
-      if (change.expression !== undefined) session.layers.put(await session.api.recompute_layer(session.model_id, base.layer.id));
+      if (Object.keys(change).length > 0)
+        await session.layers.change(base.layer, change, base.etag);
+      if (change.expression !== undefined)
+        session.layers.put(await session.api.recompute_layer(session.model_id, base.layer.id));
       return;
     }
     const created: LayerCreate = {
@@ -591,7 +655,8 @@ export class StrataLayerDialog extends LitElement {
     };
     const layer = await session.api.create_layer(session.model_id, created);
     // So that painting can begin at once: a number without a record is not painted.
-    if (layer.table !== undefined && !this.named_by_table) await session.api.create_record(layer.table);
+    if (layer.table !== undefined && !this.named_by_table)
+      await session.api.create_record(layer.table);
     session.add_created(layer);
     notices.show("success", texts.layers.created(wanted.name));
   }

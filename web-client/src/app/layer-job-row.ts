@@ -78,18 +78,21 @@ export function layer_job_row(session: ModelSession, entry: LayerJob): TemplateR
   return html`<div class="job ${problem ? "failed" : ""}">
     <div class="head">
       <b class="ellipsis" title=${entry.name}>${entry.name}</b>
-      ${busy
-        ? html`<button aria-label=${words.cancel(entry.name)} @click=${() => void cancel(session, entry)}>${texts.cancel}</button>`
-        : html`${job.file && !problem ? html`<button @click=${() => void session.figures.save(entry.key)}>${icon("import")}${texts.figures.save}</button>` : nothing}<button
+      ${
+        busy
+          ? html`<button aria-label=${words.cancel(entry.name)} @click=${() => void cancel(session, entry)}>${texts.cancel}</button>`
+          : html`${job.file && !problem ? html`<button @click=${() => void session.figures.save(entry.key)}>${icon("import")}${texts.figures.save}</button>` : nothing}<button
             class="icon quiet"
             aria-label=${words.dismiss(entry.name)}
             @click=${() => session.jobs.dismiss(entry.key)}
           >
             ${icon("close")}
-          </button>`}
+          </button>`
+      }
     </div>
-    ${busy
-      ? html`<div
+    ${
+      busy
+        ? html`<div
             class="bar"
             role="progressbar"
             aria-label=${entry.name}
@@ -100,7 +103,8 @@ export function layer_job_row(session: ModelSession, entry: LayerJob): TemplateR
             <i ${styled({ width: `${percent}%` })}></i>
           </div>
           <span class="said hint">${job.state === "queued" ? words.queued : job.message || words.running}</span>`
-      : nothing}
+        : nothing
+    }
     ${job.file && !problem ? html`<span class="said hint">${job.file.name}, <span class="numeric">${format_bytes(job.file.bytes)}</span></span>` : nothing}
     ${problem ? html`<span class="said" role="alert">${[problem.title, problem.detail].filter(Boolean).join(". ")}</span>` : nothing}
     ${report ? report_table(report) : nothing}

@@ -1,5 +1,7 @@
-// Work under way that makes layers or looks of the open model, or files for this person: computing a layer from the shape, bringing some over from another
-// scan, a measured figure. Layers themselves come to the page like anyone's, when they are done; a file stays listed until it is saved.
+// Work under way that makes layers or looks of the open model, or files for this person: computing
+// a layer from the shape, bringing some over from another scan, a measured figure. Layers
+// themselves come to the page like anyone's, when they are done; a file stays listed until it is
+// saved.
 
 import { ApiError, type Api } from "../core/api";
 import type { FigureRequest } from "../core/protocol.gen";
@@ -49,8 +51,14 @@ export class LayerJobs {
     void this.follow(this.add(name, job), job, made);
   }
 
-  /** A file. Returns the key of its entry; `made` hears of it once it is done. Throws as the others. */
-  async make_figure(name: string, wish: FigureRequest, made: (key: number, job: Job) => void): Promise<number> {
+  /**
+   * A file. Returns the key of its entry; `made` hears of it once it is done. Throws as the others.
+   */
+  async make_figure(
+    name: string,
+    wish: FigureRequest,
+    made: (key: number, job: Job) => void,
+  ): Promise<number> {
     const job = await this.api_.make_figure(this.model_id_, wish);
     const key = this.add(name, job);
     void this.follow(key, job, (last) => made(key, last));
@@ -73,10 +81,15 @@ export class LayerJobs {
     return key;
   }
 
-  private async follow(key: number, first: Job, made: (job: Job) => void = () => {}): Promise<readonly number[]> {
+  private async follow(
+    key: number,
+    first: Job,
+    made: (job: Job) => void = () => {},
+  ): Promise<readonly number[]> {
     try {
       const job = await follow_job(this.api_, first, (now) => this.change(key, { job: now }));
-      if (job.state === "failed") this.change(key, { problem: job.problem ?? { status: 500, title: job.message } });
+      if (job.state === "failed")
+        this.change(key, { problem: job.problem ?? { status: 500, title: job.message } });
       else if (job.report) this.change(key, { report: job.report });
       else if (!job.file) this.dismiss(key);
       if (job.state === "done") made(job);
@@ -89,7 +102,9 @@ export class LayerJobs {
   }
 
   private change(key: number, change: Partial<LayerJob>): void {
-    this.entries = this.entries.map((entry) => (entry.key === key ? { ...entry, ...change } : entry));
+    this.entries = this.entries.map((entry) =>
+      entry.key === key ? { ...entry, ...change } : entry,
+    );
     this.changed_();
   }
 }

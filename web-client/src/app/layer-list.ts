@@ -1,4 +1,5 @@
-// The layers of the open model: which there are, which is chosen, and what this person shows, hides and puts in another order, which is kept for them alone.
+// The layers of the open model: which there are, which is chosen, and what this person shows, hides
+// and puts in another order, which is kept for them alone.
 
 import type { Api } from "../core/api";
 import { same_palette } from "../core/palette";
@@ -18,7 +19,8 @@ export class LayerList {
   all: Layer[] = []; // in this person's order: the last is on top
   selected_id: number | null = null;
 
-  private overrides_ = new Map<number, LayerShown>(); // as it is shown: a named view, and what was changed since
+  // as it is shown: a named view, and what was changed since
+  private overrides_ = new Map<number, LayerShown>();
   private own_ = new Map<number, LayerShown>(); // as it is kept
   private at_view_ = false;
   private readonly keeper_: PersonalViewKeeper;
@@ -46,7 +48,8 @@ export class LayerList {
     this.host_.changed();
   }
 
-  // ── what this person shows ────────────────────────────────────────────────────────────────────────────────────────
+  // ── what this person shows
+  // ────────────────────────────────────────────────────────────────────────────────────────
 
   visible(layer: Layer): boolean {
     return this.overrides_.get(layer.id)?.visible ?? layer.visible;
@@ -88,13 +91,15 @@ export class LayerList {
   move(layer: Layer, index: number): void {
     const wanted = this.all.filter((other) => other.id !== layer.id);
     wanted.splice(Math.max(0, Math.min(index, wanted.length)), 0, layer);
-    // As few as can be get another place, so that what comes later lies where it would for everybody.
+    // As few as can be get another place, so that what comes later lies where it would for
+    // everybody.
     const places = wanted.map((each) => this.order(each)).sort((a, b) => a - b);
     const differ = places.every((place, at) => at === 0 || place > places[at - 1]!);
     wanted.forEach((each, at) => {
       const order = differ ? places[at]! : at;
       if (order === this.order(each)) return;
-      for (const shown of [this.overrides_, this.own_]) shown.set(each.id, { ...shown.get(each.id), order });
+      for (const shown of [this.overrides_, this.own_])
+        shown.set(each.id, { ...shown.get(each.id), order });
     });
     this.put_all(this.all);
     this.changed_by_hand();
@@ -122,8 +127,10 @@ export class LayerList {
   to_keep(): LayerOverride[] {
     return layers_to_keep(this.all, ({ id }) => this.shown(id));
   }
-  /** As a named view has it, and no records before those of the view; layers that it does not name as everyone sees them at first. Returns the way back, without
-   *  the records that were looked at. */
+  /**
+   * As a named view has it, and no records before those of the view; layers that it does not name
+   * as everyone sees them at first. Returns the way back, without the records that were looked at.
+   */
   show_view(view: { layers: LayerOverride[] }): () => void {
     const { overrides_: overrides, at_view_: was_at_view } = this;
     this.show_all(layers_of_view(view, this.all), true);
@@ -138,16 +145,27 @@ export class LayerList {
 
   async save_overrides_as_default(): Promise<void> {
     for (const layer of this.all) {
-      const [visible, opacity, palette] = [this.visible(layer), this.opacity(layer), this.palette(layer)];
+      const [visible, opacity, palette] = [
+        this.visible(layer),
+        this.opacity(layer),
+        this.palette(layer),
+      ];
       const recolored = !same_palette(palette, layer.palette);
       const order = this.order(layer);
-      if (visible === layer.visible && opacity === layer.opacity && order === layer.order && !recolored) continue;
+      if (
+        visible === layer.visible &&
+        opacity === layer.opacity &&
+        order === layer.order &&
+        !recolored
+      )
+        continue;
       await this.change(layer, { visible, opacity, order, ...(recolored ? { palette } : {}) });
     }
     this.reset_overrides();
   }
 
-  // ── what everyone has ─────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what everyone has
+  // ─────────────────────────────────────────────────────────────────────────────────────────────
 
   /** `etag`: the version that the change was thought out for. */
   async change(layer: Layer, change: LayerPatch, etag?: string): Promise<void> {
@@ -163,7 +181,10 @@ export class LayerList {
     this.put_all([...this.all.filter((other) => other.id !== layer.id), layer]);
   }
 
-  /** What the server says on joining: what is known of other layers is forgotten. `kept`: how this person shows them, where the server knows. */
+  /**
+   * What the server says on joining: what is known of other layers is forgotten. `kept`: how this
+   * person shows them, where the server knows.
+   */
   take_all(layers: Layer[], kept?: PersonalView): void {
     this.put_all(layers);
     this.forget_unknown();
@@ -182,7 +203,9 @@ export class LayerList {
       this.drop(event.layer_id);
     } else if (event.event === "edited") {
       this.all = this.all.map((layer) =>
-        layer.id === event.layer_id ? { ...layer, sequence: event.sequence ?? layer.sequence } : layer,
+        layer.id === event.layer_id
+          ? { ...layer, sequence: event.sequence ?? layer.sequence }
+          : layer,
       );
     }
     this.host_.changed();
@@ -196,11 +219,13 @@ export class LayerList {
   /** One unknown layer, and the server refuses what is said of all. */
   private forget_unknown(): void {
     const known = new Set(this.all.map((layer) => layer.id));
-    for (const kept of [this.overrides_, this.own_, this.highlights_]) for (const id of kept.keys()) if (!known.has(id)) kept.delete(id);
+    for (const kept of [this.overrides_, this.own_, this.highlights_])
+      for (const id of kept.keys()) if (!known.has(id)) kept.delete(id);
   }
 
   private override(layer: Layer, change: LayerShown): void {
-    for (const shown of [this.overrides_, this.own_]) shown.set(layer.id, { ...shown.get(layer.id), ...change });
+    for (const shown of [this.overrides_, this.own_])
+      shown.set(layer.id, { ...shown.get(layer.id), ...change });
     this.changed_by_hand();
   }
 
@@ -220,7 +245,10 @@ export class LayerList {
   /** What was just set is shown, and kept. */
   private changed_by_hand(): void {
     this.send_overrides();
-    const own = this.all.map((layer) => ({ layer: layer.id, ...own_part(layer, this.own_.get(layer.id) ?? {}) }));
+    const own = this.all.map((layer) => ({
+      layer: layer.id,
+      ...own_part(layer, this.own_.get(layer.id) ?? {}),
+    }));
     this.keeper_.keep({ layers: own.filter((each) => Object.keys(each).length > 1) });
   }
 

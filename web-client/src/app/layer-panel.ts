@@ -1,4 +1,5 @@
-// <strata-layer-panel>: the layers from top to bottom, as this person sees them. The selected one is painted on.
+// <strata-layer-panel>: the layers from top to bottom, as this person sees them. The selected one
+// is painted on.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -19,7 +20,13 @@ import "./menu";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
 import { drag_styles, shared_styles } from "./styles";
-import { choose_raster, formats_of, kFeatureFormats, save_features, save_raster } from "./raster-files";
+import {
+  choose_raster,
+  formats_of,
+  kFeatureFormats,
+  save_features,
+  save_raster,
+} from "./raster-files";
 import type { TermsRequest } from "./terms-dialog";
 import { texts } from "./texts";
 import { visibility_badge } from "./visibility";
@@ -205,8 +212,9 @@ export class StrataLayerPanel extends LitElement {
     const shown = this.shown;
     return html`<div class="heading">
         <h2>${words.title}</h2>
-        ${session.can_curate
-          ? html`<button @click=${() => this.request({ dialog: "create" })}>${icon("plus")}${words.new}</button>
+        ${
+          session.can_curate
+            ? html`<button @click=${() => this.request({ dialog: "create" })}>${icon("plus")}${words.new}</button>
               <strata-menu label=${words.more}>
                 <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "template" })}>
                   ${icon("layers")}${texts.templates.open}
@@ -220,33 +228,42 @@ export class StrataLayerPanel extends LitElement {
                 <hr />
                 <button class="quiet" role="menuitem" @click=${() => void open_bin_of(session)}>${icon("trash")}${texts.bin.open}</button>
               </strata-menu>`
-          : nothing}
+            : nothing
+        }
       </div>
       ${session.jobs.entries.map((entry) => layer_job_row(session, entry))}
-      ${shown.length === 0
-        ? html`<div class="empty">
+      ${
+        shown.length === 0
+          ? html`<div class="empty">
             <b>${words.empty_title}</b>
             <p>${words.empty_lead}</p>
-            ${session.can_curate
-              ? html`<button @click=${() => this.request({ dialog: "template" })}>${icon("layers")}${texts.templates.open}</button>`
-              : nothing}
+            ${
+              session.can_curate
+                ? html`<button @click=${() => this.request({ dialog: "template" })}>${icon("layers")}${texts.templates.open}</button>`
+                : nothing
+            }
           </div>`
-        : html`<ul class="list" @dragover=${this.drag_.over_list} @drop=${this.drag_.drop}>
+          : html`<ul class="list" @dragover=${this.drag_.over_list} @drop=${this.drag_.drop}>
             ${repeat(
               shown,
               (layer) => layer.id,
               (layer, index) => this.row(layer, index),
             )}
-          </ul>`}
-      ${session.layers.has_overrides
-        ? html`<div class="personal">
+          </ul>`
+      }
+      ${
+        session.layers.has_overrides
+          ? html`<div class="personal">
             <span>${words.personal}</span>
-            ${session.can_curate
-              ? html`<button class="link" @click=${() => void this.save_default()}>${words.save_default}</button>`
-              : nothing}
+            ${
+              session.can_curate
+                ? html`<button class="link" @click=${() => void this.save_default()}>${words.save_default}</button>`
+                : nothing
+            }
             <button class="link" @click=${() => session.layers.reset_overrides()}>${words.reset_default}</button>
           </div>`
-        : nothing}`;
+          : nothing
+      }`;
   }
 
   private row(layer: Layer, index: number): TemplateResult {
@@ -260,8 +277,9 @@ export class StrataLayerPanel extends LitElement {
       @dragover=${(event: DragEvent) => this.drag_.over_row(event, index)}
     >
       <div class="line">
-        ${count > 1
-          ? html`<span
+        ${
+          count > 1
+            ? html`<span
               class="grip"
               draggable="true"
               title=${words.drag(label_of(layer))}
@@ -269,7 +287,8 @@ export class StrataLayerPanel extends LitElement {
               @dragend=${this.drag_.end}
               >${icon("grip")}</span
             >`
-          : nothing}
+            : nothing
+        }
         <button
           class="icon quiet"
           aria-pressed=${visible}
@@ -291,28 +310,38 @@ export class StrataLayerPanel extends LitElement {
         ${visibility_badge(layer.visibility)}
         ${layer.locked ? html`<span class="lock" role="img" aria-label=${this.who_is_locked(layer)} title=${this.who_is_locked(layer)}>${icon("lock")}</span>` : nothing}
         <strata-menu label=${words.options(label_of(layer))}>
-          ${session.can_curate
-            ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "edit", layer })}>
+          ${
+            session.can_curate
+              ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "edit", layer })}>
                   ${icon("edit")}${words.edit}
                 </button>
                 <button class="quiet" role="menuitem" @click=${() => void this.change(layer, { locked: !layer.locked })}>
                   ${icon(layer.locked ? "unlock" : "lock")}${layer.locked ? unlock_label(layer) : words.lock}
                 </button>
-                ${layer.expression === undefined
-                  ? html`<button class="quiet" role="menuitem" @click=${() => void this.change(layer, { review: !layer.review })}>
+                ${
+                  layer.expression === undefined
+                    ? html`<button class="quiet" role="menuitem" @click=${() => void this.change(layer, { review: !layer.review })}>
                       ${icon("shield")}${layer.review ? texts.review.end : texts.review.begin}
                     </button>`
-                  : nothing}`
-            : nothing}
-          ${can_be_colored(layer)
-            ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "colors", layer })}>${icon("palette")}${texts.colors.open}</button>`
-            : nothing}
-          ${layer.table === undefined
-            ? nothing
-            : html`<button class="quiet" role="menuitem" @click=${() => session.tables.open(layer)}>${icon("table")}${texts.tables.open}</button>`}
-          ${layer.table !== undefined && layer.type !== "u32" && session.can_curate
-            ? html`<button class="quiet" role="menuitem" @click=${() => void this.widen(layer)}>${icon("plus")}${words.widen}</button>`
-            : nothing}
+                    : nothing
+                }`
+              : nothing
+          }
+          ${
+            can_be_colored(layer)
+              ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "colors", layer })}>${icon("palette")}${texts.colors.open}</button>`
+              : nothing
+          }
+          ${
+            layer.table === undefined
+              ? nothing
+              : html`<button class="quiet" role="menuitem" @click=${() => session.tables.open(layer)}>${icon("table")}${texts.tables.open}</button>`
+          }
+          ${
+            layer.table !== undefined && layer.type !== "u32" && session.can_curate
+              ? html`<button class="quiet" role="menuitem" @click=${() => void this.widen(layer)}>${icon("plus")}${words.widen}</button>`
+              : nothing
+          }
           <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "statistics", layer })}>
             ${icon("chart")}${words.statistics}
           </button>
@@ -329,14 +358,16 @@ export class StrataLayerPanel extends LitElement {
                 ${icon("import")}${texts.rasters.save_outlines[format]}
               </button>`,
           )}
-          ${session.can_paint && !session.is_locked(layer)
-            ? html`<button class="quiet" role="menuitem" @click=${() => choose_raster(session, layer)}>
+          ${
+            session.can_paint && !session.is_locked(layer)
+              ? html`<button class="quiet" role="menuitem" @click=${() => choose_raster(session, layer)}>
                   ${icon("upload")}${texts.rasters.import}
                 </button>
                 <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "map", layer })}>
                   ${icon("upload")}${texts.maps.menu}
                 </button>`
-            : nothing}
+              : nothing
+          }
           <hr />
           <button class="quiet" role="menuitem" ?disabled=${index === 0} @click=${() => this.move(layer, index - 1)}>
             ${icon("up")}${words.up}
@@ -344,12 +375,14 @@ export class StrataLayerPanel extends LitElement {
           <button class="quiet" role="menuitem" ?disabled=${index === count - 1} @click=${() => this.move(layer, index + 1)}>
             ${icon("down")}${words.down}
           </button>
-          ${session.can_curate
-            ? html`<hr />
+          ${
+            session.can_curate
+              ? html`<hr />
                 <button class="quiet" role="menuitem" @click=${() => void this.delete_layer(layer)}>
                   ${icon("trash")}${words.delete}
                 </button>`
-            : nothing}
+              : nothing
+          }
         </strata-menu>
       </div>
       ${selected ? this.details(layer) : nothing}
@@ -363,11 +396,13 @@ export class StrataLayerPanel extends LitElement {
       ${layer.locked ? this.lock_told(layer) : nothing} ${layer.edited_by_hand === true ? this.hand_told(layer) : nothing} ${layer.review ? this.review_told(layer) : nothing}
       ${description_in(layer) ? html`<p class="description">${description_in(layer)}</p>` : nothing} ${legend(layer, session.layers.palette(layer), session.tables)}
       ${layer.expression === undefined ? nothing : this.formula(layer)}
-      ${layer.table === undefined
-        ? nothing
-        : html`<button aria-pressed=${session.tables.view?.layer_id === layer.id} title="${texts.tables.open} (T)" @click=${() => session.toggle_table()}>
+      ${
+        layer.table === undefined
+          ? nothing
+          : html`<button aria-pressed=${session.tables.view?.layer_id === layer.id} title="${texts.tables.open} (T)" @click=${() => session.toggle_table()}>
             ${icon("table")}${texts.tables.open}
-          </button>`}
+          </button>`
+      }
       <div class="opacity">
         <span class="caption">${texts.layers.opacity}</span>
         <input
@@ -385,7 +420,9 @@ export class StrataLayerPanel extends LitElement {
 
   private who_is_locked(layer: Layer): string {
     if (is_as_computed(layer)) return texts.layers.locked_computed;
-    return this.session.is_locked(layer) ? texts.layers.locked_to_you : texts.layers.locked_to_others;
+    return this.session.is_locked(layer)
+      ? texts.layers.locked_to_you
+      : texts.layers.locked_to_others;
   }
 
   private lock_told(layer: Layer): TemplateResult {
@@ -417,26 +454,41 @@ export class StrataLayerPanel extends LitElement {
   private formula(layer: Layer): TemplateResult {
     return html`<div class="formula">
       <code>${layer.expression}</code>
-      ${layer.stale === true && layer.edited_by_hand !== true
-        ? html`<span class="hint" role="status">${layer.recompute === "automatic" ? texts.layers.stale_automatic : texts.layers.stale}</span>`
-        : nothing}
-      ${this.may_recompute(layer)
-        ? html`<button ?disabled=${this.computing_ === layer.id} @click=${() => void this.recompute(layer)}>${icon("redo")}${texts.layers.recompute}</button>`
-        : nothing}
+      ${
+        layer.stale === true && layer.edited_by_hand !== true
+          ? html`<span class="hint" role="status">${layer.recompute === "automatic" ? texts.layers.stale_automatic : texts.layers.stale}</span>`
+          : nothing
+      }
+      ${
+        this.may_recompute(layer)
+          ? html`<button ?disabled=${this.computing_ === layer.id} @click=${() => void this.recompute(layer)}>${icon("redo")}${texts.layers.recompute}</button>`
+          : nothing
+      }
     </div>`;
   }
 
   /** Whoever may change it may have it computed: its lock is against hands. */
   private may_recompute(layer: Layer): boolean {
     const { can_paint, can_curate } = this.session;
-    return (layer.locked || layer.edited_by_hand === true ? can_curate : can_paint) && (layer.recompute !== "automatic" || layer.edited_by_hand === true);
+    return (
+      (layer.locked || layer.edited_by_hand === true ? can_curate : can_paint) &&
+      (layer.recompute !== "automatic" || layer.edited_by_hand === true)
+    );
   }
 
   private async recompute(layer: Layer): Promise<void> {
     const { session } = this;
     const words = texts.layers;
     const by_hand = layer.edited_by_hand === true;
-    if (by_hand && !(await ask({ heading: words.overwrite_title(layer.name), lead: words.overwrite_lead, yes: words.recompute }))) return;
+    if (
+      by_hand &&
+      !(await ask({
+        heading: words.overwrite_title(layer.name),
+        lead: words.overwrite_lead,
+        yes: words.recompute,
+      }))
+    )
+      return;
     this.computing_ = layer.id;
     try {
       session.layers.put(await session.api.recompute_layer(session.model_id, layer.id, by_hand));
@@ -470,7 +522,14 @@ export class StrataLayerPanel extends LitElement {
   private async widen(layer: Layer): Promise<void> {
     const words = texts.layers;
     const [, highest] = value_range(layer.type);
-    if (!(await ask({ heading: words.widen_title(label_of(layer)), lead: words.widen_lead(highest), yes: words.widen_yes }))) return;
+    if (
+      !(await ask({
+        heading: words.widen_title(label_of(layer)),
+        lead: words.widen_lead(highest),
+        yes: words.widen_yes,
+      }))
+    )
+      return;
     await this.session.layers
       .change(layer, { type: "u32" })
       .then(() => notices.show("success", words.widened))
@@ -481,8 +540,14 @@ export class StrataLayerPanel extends LitElement {
     const words = texts.layers;
     const { api, layers, model } = this.session;
     if (!model) return;
-    const gone = { kind: "layer", entry: `layer-${layer.id}`, name: layer.name, project: model.project } as const;
-    if (!(await ask_to_bin(api, gone, { title: words.delete_title, lead: words.delete_lead }))) return;
+    const gone = {
+      kind: "layer",
+      entry: `layer-${layer.id}`,
+      name: layer.name,
+      project: model.project,
+    } as const;
+    if (!(await ask_to_bin(api, gone, { title: words.delete_title, lead: words.delete_lead })))
+      return;
     await layers.remove(layer).then(
       () => tell_binned(api, gone),
       (error: unknown) => notices.error(error),

@@ -87,8 +87,12 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
     const { table } = layer;
     const terms = table === undefined ? null : records.terms(table);
     // A palette has colours for records that may come.
-    const there = table === undefined ? palette.points : palette.points.filter(({ at }) => !records.lacks(table, at));
-    if (there.length === 0) return html`<p class="hint">${layer.kind === "database" ? texts.layers.no_records : texts.layers.no_labels}</p>`;
+    const there =
+      table === undefined
+        ? palette.points
+        : palette.points.filter(({ at }) => !records.lacks(table, at));
+    if (there.length === 0)
+      return html`<p class="hint">${layer.kind === "database" ? texts.layers.no_records : texts.layers.no_labels}</p>`;
     const points = in_tree(there, terms);
     return html`<ul class="legend-classes" aria-label=${label_of(layer)} tabindex=${points.length > kLinesInSight ? 0 : nothing}>
       ${points.slice(0, kMostLines).map(({ point, depth }) => line(point, describe_value(layer, point.at, records), depth))}
@@ -99,7 +103,10 @@ export function legend(layer: Layer, palette: Palette, records: LegendNames): Te
 }
 
 /** Points of terms stand as in their list, each below the one above it. */
-function in_tree(points: readonly PalettePoint[], terms: TermTree | null): { point: PalettePoint; depth: number }[] {
+function in_tree(
+  points: readonly PalettePoint[],
+  terms: TermTree | null,
+): { point: PalettePoint; depth: number }[] {
   terms?.want();
   if (!terms?.loaded) return points.map((point) => ({ point, depth: 0 }));
   const places = new Map(terms.terms.map(({ key, depth }, place) => [key, { place, depth }]));
@@ -113,7 +120,11 @@ const kLinesInSight = 8; // of those that may stand in it: with more it scrolls,
 const kMostLines = 300; // a list of terms may have thousands
 const kIndent_px = 14;
 
-const line = (point: Pick<PalettePoint, "color" | "pattern" | "angle">, text: string, depth = 0): TemplateResult =>
+const line = (
+  point: Pick<PalettePoint, "color" | "pattern" | "angle">,
+  text: string,
+  depth = 0,
+): TemplateResult =>
   html`<li ${styled({ "padding-left": depth > 0 ? `${depth * kIndent_px}px` : null })}>
     <span class="swatch" ${styled(swatch_style(point))}></span>
     <span class="ellipsis">${text}</span>
@@ -121,12 +132,17 @@ const line = (point: Pick<PalettePoint, "color" | "pattern" | "angle">, text: st
 
 /** By what the records say. */
 function column_legend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
-  const column = layer.table === undefined ? undefined : records.find(layer.table)?.columns.find((each) => each.slug === palette.column);
+  const column =
+    layer.table === undefined
+      ? undefined
+      : records.find(layer.table)?.columns.find((each) => each.slug === palette.column);
   const unit = column?.unit ?? "";
   const lines =
     palette.mode === "categorical"
       ? palette.points.map((point) => line(point, value_label(point, column, records)))
-      : palette.points.map((point, index) => line(point, class_range(point.at, palette.points[index + 1]?.at ?? palette.max, unit)));
+      : palette.points.map((point, index) =>
+          line(point, class_range(point.at, palette.points[index + 1]?.at ?? palette.max, unit)),
+        );
   return html`<div class="legend-column">
     <p class="caption">${texts.colors.by(column ? label_of(column) : (palette.column ?? ""))}</p>
     ${palette.mode === "linear" ? gradient(palette, unit) : nothing}
@@ -141,10 +157,16 @@ export const class_range = (from: number, to: number, unit: string): string =>
   `${format_number(from, 4)} – ${format_number(to, 4)}${unit ? ` ${unit}` : ""}`;
 
 /** What a class of a column's values is called. */
-export function value_label({ label, value, at }: PalettePoint, column: Column | undefined, records: RecordLabels): string {
+export function value_label(
+  { label, value, at }: PalettePoint,
+  column: Column | undefined,
+  records: RecordLabels,
+): string {
   if (label) return label;
-  if (value === undefined || value === "") return `${format_number(at, 6)}${column?.unit ? ` ${column.unit}` : ""}`;
-  if (column?.kind === "term") return records.label(column.target ?? 0, Number(value)) ?? texts.tables.record(Number(value));
+  if (value === undefined || value === "")
+    return `${format_number(at, 6)}${column?.unit ? ` ${column.unit}` : ""}`;
+  if (column?.kind === "term")
+    return records.label(column.target ?? 0, Number(value)) ?? texts.tables.record(Number(value));
   if (column?.kind === "boolean") return value === "true" ? texts.tables.yes : texts.tables.no;
   return value;
 }
@@ -176,7 +198,10 @@ export function layer_chip(palette: Palette): TemplateResult {
       : palette.points.length > 1
         ? `conic-gradient(${palette.points
             .slice(0, 6)
-            .map((point, index, all) => `${css_color(point.color)} ${index / all.length}turn ${(index + 1) / all.length}turn`)
+            .map(
+              (point, index, all) =>
+                `${css_color(point.color)} ${index / all.length}turn ${(index + 1) / all.length}turn`,
+            )
             .join(", ")})`
         : first
           ? css_color(first.color)

@@ -1,5 +1,6 @@
-// How long the line is that is being drawn. The server is asked what lies under the part that is new, one part at a time and not too often:
-// a long line must not cost more with every move of the pointer.
+// How long the line is that is being drawn. The server is asked what lies under the part that is
+// new, one part at a time and not too often: a long line must not cost more with every move of the
+// pointer.
 
 import type { Point } from "../core/connection";
 import type { Outline } from "../tools/outline";
@@ -20,7 +21,9 @@ interface Part<Step> {
 }
 
 export class LineMeasure<Step> {
-  /** Newest known; null: nothing is drawn, none of it is on the surface, or that is not known yet. */
+  /**
+   * Newest known; null: nothing is drawn, none of it is on the surface, or that is not known yet.
+   */
   metres: number | null = null;
 
   private line_: Pick<Outline, "points" | "pointer"> | null = null;
@@ -62,7 +65,10 @@ export class LineMeasure<Step> {
   private keep_known(points: readonly Point[]): number {
     let at = 0;
     const other = this.known_.findIndex(({ path }) => {
-      if (path.some(([x, y], index) => points[at + index]?.[0] !== x || points[at + index]?.[1] !== y)) return true;
+      if (
+        path.some(([x, y], index) => points[at + index]?.[0] !== x || points[at + index]?.[1] !== y)
+      )
+        return true;
       at += path.length - 1;
       return false;
     });
@@ -78,7 +84,8 @@ export class LineMeasure<Step> {
       this.timer_ = null;
       this.ask();
     }, kAskEvery_ms);
-    const steps = await this.host_.look_along(path).catch(() => null); // what is wrong is told when the line is finished
+    // what is wrong is told when the line is finished
+    const steps = await this.host_.look_along(path).catch(() => null);
     this.asking_ = false;
     if (count === this.count_) {
       if (!steps) this.due_ = false;

@@ -1,4 +1,5 @@
-// <strata-look-list>: the looks of the model from top to bottom, as this person sees them; part of the panel of the view.
+// <strata-look-list>: the looks of the model from top to bottom, as this person sees them; part of
+// the panel of the view.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -82,8 +83,9 @@ export class StrataLookList extends LitElement {
     const shown = [...appearance.looks].reverse();
     return html`<div class="row">
         <h3>${words.looks}</h3>
-        ${session.can_curate
-          ? html`<button class="quiet" ?disabled=${this.adding_} @click=${() => this.file_input_.click()}>
+        ${
+          session.can_curate
+            ? html`<button class="quiet" ?disabled=${this.adding_} @click=${() => this.file_input_.click()}>
                 ${icon("plus")}${this.adding_ ? words.look_adding : words.look_add}
               </button>
               <strata-menu label=${words.look_more}>
@@ -92,18 +94,23 @@ export class StrataLookList extends LitElement {
                 </button>
               </strata-menu>
               <input type="file" accept="image/jpeg,image/png,image/tiff,image/webp,image/bmp,.tga" hidden aria-label=${words.look_add} @change=${this.on_file} />`
-          : nothing}
+            : nothing
+        }
       </div>
-      ${shown.length === 0
-        ? html`<p class="hint">${session.can_curate ? words.no_looks_curator : words.no_looks}</p>`
-        : html`<ul>
+      ${
+        shown.length === 0
+          ? html`<p class="hint">${session.can_curate ? words.no_looks_curator : words.no_looks}</p>`
+          : html`<ul>
             ${shown.map((look) => this.look(look))}
-          </ul>`}
-      ${appearance.has_look_overrides && session.can_curate
-        ? html`<div class="personal">
+          </ul>`
+      }
+      ${
+        appearance.has_look_overrides && session.can_curate
+          ? html`<div class="personal">
             <button class="link" @click=${() => void this.save_default()}>${texts.layers.save_default}</button>
           </div>`
-        : nothing}`;
+          : nothing
+      }`;
   }
 
   private look(look: Look): TemplateResult {
@@ -125,8 +132,9 @@ export class StrataLookList extends LitElement {
       </button>
       <img src="/api/v1/models/${session.model_id}/looks/${look.id}/picture?thumbnail=96" alt="" loading="lazy" />
       <span class="name ellipsis" title=${look.description || look.name}>${look.name}</span>
-      ${session.can_curate
-        ? html`<strata-menu label=${texts.layers.options(look.name)}>
+      ${
+        session.can_curate
+          ? html`<strata-menu label=${texts.layers.options(look.name)}>
             <a
               class="button quiet"
               role="menuitem"
@@ -153,9 +161,11 @@ export class StrataLookList extends LitElement {
               ${icon("trash")}${texts.layers.delete}
             </button>
           </strata-menu>`
-        : html`<span></span>`}
-      ${visible
-        ? html`<div class="opacity">
+          : html`<span></span>`
+      }
+      ${
+        visible
+          ? html`<div class="opacity">
             <input
               type="range"
               min="0"
@@ -166,7 +176,8 @@ export class StrataLookList extends LitElement {
             />
             <output class="numeric">${percent} %</output>
           </div>`
-        : nothing}
+          : nothing
+      }
     </li>`;
   }
 
@@ -186,9 +197,16 @@ export class StrataLookList extends LitElement {
 
   private async rename_look(look: Look): Promise<void> {
     const words = texts.view;
-    const name = await ask_text({ heading: words.look_rename_title(look.name), label: words.look_name, text: look.name, yes: texts.save });
+    const name = await ask_text({
+      heading: words.look_rename_title(look.name),
+      label: words.look_name,
+      text: look.name,
+      yes: texts.save,
+    });
     if (name === null || name === look.name) return;
-    await this.session.appearance.rename(look, name).catch((error: unknown) => notices.error(error));
+    await this.session.appearance
+      .rename(look, name)
+      .catch((error: unknown) => notices.error(error));
   }
 
   private move_look(look: Look, place: number): void {
@@ -197,7 +215,12 @@ export class StrataLookList extends LitElement {
 
   private async delete_look(look: Look): Promise<void> {
     const words = texts.view;
-    const question = { heading: words.look_delete_title(look.name), lead: words.look_delete_lead, yes: texts.delete, danger: true };
+    const question = {
+      heading: words.look_delete_title(look.name),
+      lead: words.look_delete_lead,
+      yes: texts.delete,
+      danger: true,
+    };
     if (!(await ask(question))) return;
     await this.session.appearance.remove(look).catch((error: unknown) => notices.error(error));
   }

@@ -1,5 +1,5 @@
-// <strata-map-colors>: the few colours of a scanned map, and the value that each stands for. Changes `rows` in place of its owner:
-// "rows" tells the new ones.
+// <strata-map-colors>: the few colours of a scanned map, and the value that each stands for.
+// Changes `rows` in place of its owner: "rows" tells the new ones.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -80,7 +80,10 @@ export class StrataMapColors extends LitElement {
 
   private row(row: ColorRow, index: number): TemplateResult {
     const number = read_number(row.value);
-    const said = Number.isFinite(number) && this.layer.palette.mode === "categorical" ? describe_value(this.layer, number) : "";
+    const said =
+      Number.isFinite(number) && this.layer.palette.mode === "categorical"
+        ? describe_value(this.layer, number)
+        : "";
     return html`<tr class=${row.used ? "" : "off"}>
       <td>
         <label>

@@ -1,4 +1,5 @@
-// A map that names its coordinate system, on a model that has none: whether its coordinates are the model's is asked before it is sent.
+// A map that names its coordinate system, on a model that has none: whether its coordinates are the
+// model's is asked before it is sent.
 
 import { css, html, type TemplateResult } from "lit";
 import type { MapContents, Model } from "../core/types";
@@ -18,7 +19,8 @@ export interface CrsAnswer {
 export const kNotAsked: CrsAnswer = { asked: false, taken: null };
 
 /** For the query: the system whose coordinates the model's are. */
-export const crs_query = ({ taken }: CrsAnswer): { crs?: string } => (taken === null ? {} : { crs: taken });
+export const crs_query = ({ taken }: CrsAnswer): { crs?: string } =>
+  taken === null ? {} : { crs: taken };
 
 export function crs_question(crs: string, answer: (takes: boolean) => void): TemplateResult {
   return html`<div class="crs" role="alertdialog" aria-labelledby="crs" aria-describedby="crs-hint">

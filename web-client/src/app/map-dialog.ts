@@ -1,4 +1,5 @@
-// <strata-map-dialog>: paints a layer from files: readings and vertex values (CSV), maps of areas, rasters, orthophotos, scanned maps.
+// <strata-map-dialog>: paints a layer from files: readings and vertex values (CSV), maps of areas,
+// rasters, orthophotos, scanned maps.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -11,11 +12,31 @@ import "./dialog";
 import "./file-choice";
 import { follow_session } from "./follow-session";
 import "./map-colors";
-import { crs_in_doubt, crs_query, crs_question, crs_styles, focus_question, kNotAsked, type CrsAnswer } from "./map-crs";
 import {
-  accepted, as_uploads, color_keys, color_rows, file_kind, kMapEndings, kTableEndings, picture_modes, table_kind, unknown_file,
-  world_numbers, type Along, type ColorRow, type PictureMode,
-} from "./map-file"; // prettier-ignore
+  crs_in_doubt,
+  crs_query,
+  crs_question,
+  crs_styles,
+  focus_question,
+  kNotAsked,
+  type CrsAnswer,
+} from "./map-crs";
+import {
+  accepted,
+  as_uploads,
+  color_keys,
+  color_rows,
+  file_kind,
+  kMapEndings,
+  kTableEndings,
+  picture_modes,
+  table_kind,
+  unknown_file,
+  world_numbers,
+  type Along,
+  type ColorRow,
+  type PictureMode,
+} from "./map-file";
 import { direction_field, found_line, progress_line, world_field } from "./map-place";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
@@ -113,7 +134,8 @@ export class StrataMapDialog extends LitElement {
     ${contents.kind === "polygons" ? this.polygons(contents) : this.picture(contents)}`;
   }
 
-  // ── tables ────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── tables
+  // ────────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private readings(): TemplateResult {
     const length = (label: string, value: number, set: (mm: number) => void): TemplateResult =>
@@ -132,29 +154,36 @@ export class StrataMapDialog extends LitElement {
   }
 
   private get sources(): string[] {
-    return (this.session.model?.source_files ?? []).map(({ name }) => name).filter((name) => /\.(ply|obj)$/i.test(name));
+    return (this.session.model?.source_files ?? [])
+      .map(({ name }) => name)
+      .filter((name) => /\.(ply|obj)$/i.test(name));
   }
 
   private vertices(): TemplateResult {
     return html`<p class="hint">${words.vertices_hint}</p>
-      ${this.sources.length > 1
-        ? html`<label class="field">
+      ${
+        this.sources.length > 1
+          ? html`<label class="field">
             <span>${words.source}</span>
             <select name="source" @change=${(event: Event) => (this.source_ = (event.target as HTMLSelectElement).value)}>
               ${this.sources.map((name) => html`<option value=${name} ?selected=${name === this.source_}>${name}</option>`)}
             </select>
           </label>`
-        : nothing}`;
+          : nothing
+      }`;
   }
 
-  // ── maps ──────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── maps
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private polygons({ columns = [] }: MapContents): TemplateResult {
     const { session, layer } = this;
     const has_names = layer.palette.mode === "categorical";
     const usable = columns.filter(({ type }) => type !== "mixed");
     const chosen = usable.find(({ name }) => name === this.attribute_);
-    const name_columns = columns.filter(({ type, name }) => type === "text" && name !== chosen?.name);
+    const name_columns = columns.filter(
+      ({ type, name }) => type === "text" && name !== chosen?.name,
+    );
     const option = (value: string, label: string, now: string): TemplateResult =>
       html`<option value=${value} ?selected=${value === now}>${label}</option>`;
     return html`<label class="field">
@@ -162,27 +191,35 @@ export class StrataMapDialog extends LitElement {
         <select name="attribute" @change=${(event: Event) => (this.attribute_ = (event.target as HTMLSelectElement).value)}>
           ${option("", words.one_value, this.attribute_)}
           ${usable.map(({ name, type }) =>
-            option(name, type === "number" ? words.attribute_number(name) : words.attribute_text(name), this.attribute_),
+            option(
+              name,
+              type === "number" ? words.attribute_number(name) : words.attribute_text(name),
+              this.attribute_,
+            ),
           )}
         </select>
       </label>
       ${chosen && chosen.samples.length > 0 ? html`<p class="hint">${words.samples(format_list(chosen.samples.slice(0, 6)))}</p>` : nothing}
       ${chosen?.type === "text" ? html`<p class="hint">${has_names ? words.names_become : words.names_need_legend}</p>` : nothing}
-      ${chosen?.type === "number" && has_names && name_columns.length > 0
-        ? html`<label class="field">
+      ${
+        chosen?.type === "number" && has_names && name_columns.length > 0
+          ? html`<label class="field">
             <span>${words.names}</span>
             <select name="names" @change=${(event: Event) => (this.names_ = (event.target as HTMLSelectElement).value)}>
               ${option("", words.no_names, this.names_)} ${name_columns.map(({ name }) => option(name, name, this.names_))}
             </select>
           </label>`
-        : nothing}
-      ${chosen
-        ? nothing
-        : html`<strata-value-picker
+          : nothing
+      }
+      ${
+        chosen
+          ? nothing
+          : html`<strata-value-picker
             .session=${session}
             .layer=${layer}
             .value=${session.painting.brush.value_of(layer)}
-          ></strata-value-picker>`}`;
+          ></strata-value-picker>`
+      }`;
   }
 
   private picture(contents: MapContents): TemplateResult {
@@ -193,7 +230,11 @@ export class StrataMapDialog extends LitElement {
         ${radio_group({
           label: { id: "gives" },
           class: "segments",
-          choices: modes.map((mode) => ({ value: mode, content: words.modes[mode], title: words.mode_hints[mode] })),
+          choices: modes.map((mode) => ({
+            value: mode,
+            content: words.modes[mode],
+            title: words.mode_hints[mode],
+          })),
           chosen: this.mode_,
           choose: (mode) => (this.mode_ = mode),
         })}
@@ -231,11 +272,18 @@ export class StrataMapDialog extends LitElement {
       </label>`;
   }
 
-  // ── what is done ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is done
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
   private async on_files(files: File[]): Promise<void> {
     this.sending_.cancel();
-    [this.files_, this.kind_, this.contents_, this.attribute_, this.names_] = [files, null, null, "", ""];
+    [this.files_, this.kind_, this.contents_, this.attribute_, this.names_] = [
+      files,
+      null,
+      null,
+      "",
+      "",
+    ];
     this.crs_ = kNotAsked;
     this.sending_.refuse("");
     const names = files.map(({ name }) => name);
@@ -263,9 +311,13 @@ export class StrataMapDialog extends LitElement {
     this.kind_ = contents.kind;
     if (contents.kind === "picture") {
       const modes = picture_modes(contents);
-      if (!modes.includes(this.mode_) || this.rows_.length === 0) this.mode_ = modes[0] ?? "luminance";
+      if (!modes.includes(this.mode_) || this.rows_.length === 0)
+        this.mode_ = modes[0] ?? "luminance";
       const { mode, points } = this.layer.palette;
-      this.rows_ = color_rows(contents.colors ?? [], mode === "categorical" ? points.map(({ at }) => at) : []);
+      this.rows_ = color_rows(
+        contents.colors ?? [],
+        mode === "categorical" ? points.map(({ at }) => at) : [],
+      );
     }
   }
 
@@ -289,12 +341,17 @@ export class StrataMapDialog extends LitElement {
     const files = as_uploads(this.files_);
     if (kind === "vertices") {
       const source = this.sources.length > 1 ? this.source_ : null;
-      return (progress) => session.api.put_vertex_values(session.model_id, layer.id, source, files[0]!, progress);
+      return (progress) =>
+        session.api.put_vertex_values(session.model_id, layer.id, source, files[0]!, progress);
     }
-    const lengths = { radius_mm: String(this.radius_mm_), tolerance_mm: String(this.tolerance_mm_) };
+    const lengths = {
+      radius_mm: String(this.radius_mm_),
+      tolerance_mm: String(this.tolerance_mm_),
+    };
     const query = kind === "readings" ? lengths : this.map_query(kind);
     if (typeof query === "string") return query;
-    return (progress) => session.api.paint_map(session.model_id, layer.id, kind, query, files, progress);
+    return (progress) =>
+      session.api.paint_map(session.model_id, layer.id, kind, query, files, progress);
   }
 
   private map_query(kind: "polygons" | "picture"): Record<string, string> | string {
@@ -302,7 +359,11 @@ export class StrataMapDialog extends LitElement {
     if (kind === "polygons") {
       const value = String(this.session.painting.brush.value_of(this.layer));
       if (this.attribute_ === "") return { ...along, value };
-      return { ...along, attribute: this.attribute_, ...(this.names_ ? { names: this.names_ } : {}) };
+      return {
+        ...along,
+        attribute: this.attribute_,
+        ...(this.names_ ? { names: this.names_ } : {}),
+      };
     }
     const world = this.contents_?.world ? {} : { world: world_numbers(this.world_) };
     if (world.world === null) return words.world_wrong;
@@ -310,7 +371,9 @@ export class StrataMapDialog extends LitElement {
     if (this.mode_ === "luminance") return placed;
     if (this.mode_ === "band") return { ...placed, band: String(this.band_) };
     const colors = color_keys(this.rows_);
-    return colors === null ? words.colors_wrong : { ...placed, colors, tolerance: String(this.tolerance_) };
+    return colors === null
+      ? words.colors_wrong
+      : { ...placed, colors, tolerance: String(this.tolerance_) };
   }
 
   private on_crs(taken: string | null): void {

@@ -8,19 +8,45 @@ export const kAlong = ["-z", "+z", "-y", "+y", "-x", "+x"] as const;
 export type Along = (typeof kAlong)[number];
 
 export const kTableEndings = ["csv", "tsv", "txt"] as const;
-export const kPictureEndings = ["tif", "tiff", "png", "jpg", "jpeg", "tfw", "tifw", "pgw", "jgw", "wld", "zip"] as const;
-export const kMapEndings = ["geojson", "json", "shp", "dbf", "prj", "cpg", "shx", ...kPictureEndings] as const;
+export const kPictureEndings = [
+  "tif",
+  "tiff",
+  "png",
+  "jpg",
+  "jpeg",
+  "tfw",
+  "tifw",
+  "pgw",
+  "jgw",
+  "wld",
+  "zip",
+] as const;
+export const kMapEndings = [
+  "geojson",
+  "json",
+  "shp",
+  "dbf",
+  "prj",
+  "cpg",
+  "shx",
+  ...kPictureEndings,
+] as const;
 
 /** For the `accept` of a file field. */
-export const accepted = (endings: readonly string[]): string => endings.map((ending) => `.${ending}`).join(",");
+export const accepted = (endings: readonly string[]): string =>
+  endings.map((ending) => `.${ending}`).join(",");
 
 const ending_of = (name: string): string => /\.([a-z]+)$/i.exec(name)?.[1]?.toLowerCase() ?? "";
 
 /** A table of numbers, or a map that the server looks into; null: something else is among them. */
 export function file_kind(names: readonly string[]): "table" | "map" | null {
   const endings = names.map(ending_of);
-  if (endings.length === 1 && (kTableEndings as readonly string[]).includes(endings[0]!)) return "table";
-  return endings.length > 0 && endings.every((each) => (kMapEndings as readonly string[]).includes(each)) ? "map" : null;
+  if (endings.length === 1 && (kTableEndings as readonly string[]).includes(endings[0]!))
+    return "table";
+  return endings.length > 0 &&
+    endings.every((each) => (kMapEndings as readonly string[]).includes(each))
+    ? "map"
+    : null;
 }
 
 /** The first of the files that is neither. */
@@ -29,16 +55,22 @@ export const unknown_file = (names: readonly string[]): string =>
 
 /** By the first line of a table: measured places, or one number for each vertex. */
 export function table_kind(text: string): "readings" | "vertices" {
-  const names = (text.trimStart().split(/\r?\n/, 1)[0] ?? "").split(/[,;\t]/).map((name) => name.replace(/["\s]/g, "").toLowerCase());
+  const names = (text.trimStart().split(/\r?\n/, 1)[0] ?? "")
+    .split(/[,;\t]/)
+    .map((name) => name.replace(/["\s]/g, "").toLowerCase());
   return ["x", "y", "z", "value"].every((name) => names.includes(name)) ? "readings" : "vertices";
 }
 
-export const as_uploads = (files: readonly File[]): UploadFile[] => files.map((file) => ({ file, path: file.name }));
+export const as_uploads = (files: readonly File[]): UploadFile[] =>
+  files.map((file) => ({ file, path: file.name }));
 
 /** The six numbers of a world file, parted by commas; null: there are not six. */
 export function world_numbers(text: string): string | null {
   const numbers = text.trim().split(/[\s,;]+/);
-  return numbers.length === 6 && numbers.every((each) => each !== "" && Number.isFinite(Number(each))) ? numbers.join(",") : null;
+  return numbers.length === 6 &&
+    numbers.every((each) => each !== "" && Number.isFinite(Number(each)))
+    ? numbers.join(",")
+    : null;
 }
 
 /** How the numbers of a picture are made. */
@@ -48,10 +80,12 @@ export type PictureMode = "luminance" | "band" | "colors";
 export function picture_modes(contents: MapContents): PictureMode[] {
   const modes: PictureMode[] = [];
   if (contents.bands !== undefined && !contents.is_rgb) modes.push("band");
-  if (contents.has_colors && contents.is_rgb && (contents.colors?.length ?? 0) > 1) modes.push("colors");
+  if (contents.has_colors && contents.is_rgb && (contents.colors?.length ?? 0) > 1)
+    modes.push("colors");
   if (contents.has_colors) modes.push("luminance");
   if (contents.bands !== undefined && contents.is_rgb) modes.push("band");
-  if (contents.has_colors && !contents.is_rgb && (contents.colors?.length ?? 0) > 1) modes.push("colors");
+  if (contents.has_colors && !contents.is_rgb && (contents.colors?.length ?? 0) > 1)
+    modes.push("colors");
   return modes;
 }
 

@@ -1,4 +1,5 @@
-// Where a flat map lies: the direction it is looked at, and the place of a picture. Parts of dialogs.
+// Where a flat map lies: the direction it is looked at, and the place of a picture. Parts of
+// dialogs.
 
 import { html, nothing, type TemplateResult } from "lit";
 import { format_number } from "../core/measure";
@@ -17,7 +18,11 @@ export const direction_field = (chosen: Along, choose: (along: Along) => void): 
   </label>`;
 
 /** A picture that says where it lies needs no numbers. */
-export const world_field = (contents: MapContents, text: string, type: (text: string) => void): TemplateResult =>
+export const world_field = (
+  contents: MapContents,
+  text: string,
+  type: (text: string) => void,
+): TemplateResult =>
   contents.world
     ? html`<p class="hint">${words.world_known}</p>`
     : html`<label class="field">
@@ -41,11 +46,13 @@ export function found_line(contents: MapContents): TemplateResult {
   if (crs) parts.push(crs);
   const number = (value: number): string => format_number(value, 6);
   return html`<p class="found">
-    ${parts.join(" · ")}${bounds
-      ? html`<br /><span class="hint numeric"
+    ${parts.join(" · ")}${
+      bounds
+        ? html`<br /><span class="hint numeric"
             >${words.bounds(number(bounds[0]!), number(bounds[2]!), number(bounds[1]!), number(bounds[3]!))}</span
           >`
-      : nothing}
+        : nothing
+    }
   </p>`;
 }
 

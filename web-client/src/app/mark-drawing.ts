@@ -1,4 +1,5 @@
-// Lines and points that this person draws on the surface. They go to the record that the brush paints with, into the layer's table.
+// Lines and points that this person draws on the surface. They go to the record that the brush
+// paints with, into the layer's table.
 
 import { ApiError, type Api } from "../core/api";
 import type { CameraMessage } from "../core/camera";
@@ -7,7 +8,13 @@ import type { PointerSample } from "../core/input";
 import { mark_columns, mark_length, marks_of, type MarkKind } from "../core/marks";
 import { format_length, metres_per } from "../core/measure";
 import type { Column, MarkPlace, TableRecord } from "../core/protocol.gen";
-import { length_seen, line_on_surface, steps_along, type Measures, type Step } from "../core/surface-line";
+import {
+  length_seen,
+  line_on_surface,
+  steps_along,
+  type Measures,
+  type Step,
+} from "../core/surface-line";
 import type { Model } from "../core/types";
 import type { Outline } from "../tools/outline";
 import type { LayerList } from "./layer-list";
@@ -52,8 +59,10 @@ export class MarkDrawing {
     private readonly host_: MarkDrawingHost,
   ) {
     this.measure_ = new LineMeasure({
-      look_along: async (path) => this.look_along(host_.model()!, host_.view.camera.message(), path),
-      metres_along: (steps) => length_seen(steps, this.measures()) * metres_per(host_.model()!.unit),
+      look_along: async (path) =>
+        this.look_along(host_.model()!, host_.view.camera.message(), path),
+      metres_along: (steps) =>
+        length_seen(steps, this.measures()) * metres_per(host_.model()!.unit),
       changed: () => host_.changed(),
     });
   }
@@ -99,9 +108,16 @@ export class MarkDrawing {
     const measures = this.measures();
     this.queue(async () => {
       const steps = await this.look_along(target.model, seen_by, path);
-      const lines = await line_on_surface(steps, measures, (from, to, step) => this.nearest_along(target.model, from, to, step));
+      const lines = await line_on_surface(steps, measures, (from, to, step) =>
+        this.nearest_along(target.model, from, to, step),
+      );
       const cut = lines.length > 1 ? words.line_cut(lines.length) : "";
-      await this.add(target, lines, (name) => words.line_drawn(format_length(metres_of(lines, target.model)), name), cut);
+      await this.add(
+        target,
+        lines,
+        (name) => words.line_drawn(format_length(metres_of(lines, target.model)), name),
+        cut,
+      );
     });
   }
 
@@ -131,35 +147,68 @@ export class MarkDrawing {
     if (!model || !layer) return null;
     const column = this.column(kind);
     const key = painting.brush.value_of(layer);
-    const wrong = layer.table === undefined || !column ? words.no_column[kind] : tables.lacks(layer.table, key) ? texts.brush.no_record(key) : null;
+    const wrong =
+      layer.table === undefined || !column
+        ? words.no_column[kind]
+        : tables.lacks(layer.table, key)
+          ? texts.brush.no_record(key)
+          : null;
     if (wrong) notices.show("problem", wrong);
-    return wrong || layer.table === undefined || !column ? null : { model, table: layer.table, key, column };
+    return wrong || layer.table === undefined || !column
+      ? null
+      : { model, table: layer.table, key, column };
   }
 
-  private async look_along({ id }: Model, seen_by: CameraMessage, path: readonly Point[]): Promise<Step[]> {
+  private async look_along(
+    { id }: Model,
+    seen_by: CameraMessage,
+    path: readonly Point[],
+  ): Promise<Step[]> {
     const { samples } = await this.api_.profile(`${id}`, seen_by, path);
     return steps_along(path, samples);
   }
-  private async nearest_along({ id, unit }: Model, from: MarkPlace, to: MarkPlace, step: number): Promise<(MarkPlace | null)[]> {
-    const { samples } = await this.api_.profile_of(`${id}`, { places: [from, to], step_mm: step * metres_per(unit) * 1000, layers: [] });
-    return samples.map(({ point }) => (point.hit && point.position ? (point.position as MarkPlace) : null));
+  private async nearest_along(
+    { id, unit }: Model,
+    from: MarkPlace,
+    to: MarkPlace,
+    step: number,
+  ): Promise<(MarkPlace | null)[]> {
+    const { samples } = await this.api_.profile_of(`${id}`, {
+      places: [from, to],
+      step_mm: step * metres_per(unit) * 1000,
+      layers: [],
+    });
+    return samples.map(({ point }) =>
+      point.hit && point.position ? (point.position as MarkPlace) : null,
+    );
   }
   private measures(): Measures {
-    return { pixel_at: this.host_.view.camera.pixel_size(), scale: Math.max(1, globalThis.devicePixelRatio || 1) };
+    return {
+      pixel_at: this.host_.view.camera.pixel_size(),
+      scale: Math.max(1, globalThis.devicePixelRatio || 1),
+    };
   }
 
   private queue(work: () => Promise<void>): void {
     this.work_ = this.work_.then(work).catch((error: unknown) => notices.error(error));
   }
 
-  private async add({ model, table, key, column }: Target, places: MarkPlace[][], told: (name: string) => string, cut = ""): Promise<void> {
+  private async add(
+    { model, table, key, column }: Target,
+    places: MarkPlace[][],
+    told: (name: string) => string,
+    cut = "",
+  ): Promise<void> {
     if (places.length === 0) {
       notices.show("info", words.missed);
       return;
     }
     const marks = places.map((coordinates) => ({ model: model.id, coordinates }));
     const changed = await this.change(table, key, ({ version, values }) =>
-      this.api_.change_record(table, key, { version, values: { [column.slug]: [...marks_of(values[column.slug]), ...marks] } }),
+      this.api_.change_record(table, key, {
+        version,
+        values: { [column.slug]: [...marks_of(values[column.slug]), ...marks] },
+      }),
     );
     const { tables } = this.host_;
     if (tables.view?.table_id === table) tables.view.rows.put(changed);
@@ -167,16 +216,23 @@ export class MarkDrawing {
     const act = (): void => this.queue(() => this.take_back(table, changed.version));
     const what = told(tables.label(table, key) ?? texts.tables.record(key));
     const link = { label: texts.model.undo, act };
-    this.notice_ = cut ? notices.show("problem", cut, what, link) : notices.show("success", what, "", link);
+    this.notice_ = cut
+      ? notices.show("problem", cut, what, link)
+      : notices.show("success", what, "", link);
   }
 
   /** Onto the record as it is: marks that others add meanwhile stay. */
-  private async change(table: number, key: number, change: (record: TableRecord) => Promise<TableRecord>): Promise<TableRecord> {
+  private async change(
+    table: number,
+    key: number,
+    change: (record: TableRecord) => Promise<TableRecord>,
+  ): Promise<TableRecord> {
     for (let tries = 1; ; ++tries) {
       try {
         return await change(await this.api_.record({ table }, key));
       } catch (error) {
-        if (!(error instanceof ApiError) || error.status !== 412 || tries === kMostTries) throw error;
+        if (!(error instanceof ApiError) || error.status !== 412 || tries === kMostTries)
+          throw error;
       }
     }
   }

@@ -1,5 +1,5 @@
-// <strata-marks-field>: the lines or points of a record in its form: those on this model one by one, those on others as a number.
-// New ones are drawn on the model: it asks for that with `draw`.
+// <strata-marks-field>: the lines or points of a record in its form: those on this model one by
+// one, those on others as a number. New ones are drawn on the model: it asks for that with `draw`.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -89,7 +89,9 @@ export class StrataMarksField extends LitElement {
   }
 
   private readonly on_draw = (): void => {
-    this.dispatchEvent(new CustomEvent<Column>("draw", { detail: this.column, bubbles: true, composed: true }));
+    this.dispatchEvent(
+      new CustomEvent<Column>("draw", { detail: this.column, bubbles: true, composed: true }),
+    );
   };
 }
 

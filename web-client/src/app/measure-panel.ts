@@ -113,7 +113,8 @@ export class StrataMeasurePanel extends LitElement {
 
   /** The button that was pressed may have gone with what it was for. */
   override updated(): void {
-    if (this.has_keyboard_ && !this.shadowRoot?.activeElement) this.renderRoot.querySelector<HTMLElement>(".acts button")?.focus();
+    if (this.has_keyboard_ && !this.shadowRoot?.activeElement)
+      this.renderRoot.querySelector<HTMLElement>(".acts button")?.focus();
   }
 
   override render(): TemplateResult {
@@ -129,10 +130,12 @@ export class StrataMeasurePanel extends LitElement {
       <div class="acts">
         ${ended ? nothing : html`<button @click=${() => measuring.set_in_middle()} title="${words.set_in_middle} (M)">${words.set_in_middle}</button>`}
         ${places.length > 1 && !ended ? html`<button class="primary" @click=${() => measuring.end()} title="${words.end} (Enter)">${words.end}</button>` : nothing}
-        ${places.length > 0
-          ? html`<button @click=${() => measuring.take_back()} title="${words.take_back} (${words.backspace})">${words.take_back}</button>
+        ${
+          places.length > 0
+            ? html`<button @click=${() => measuring.take_back()} title="${words.take_back} (${words.backspace})">${words.take_back}</button>
               <button @click=${() => measuring.clear()} title="${words.clear} (Escape)">${words.clear}</button>`
-          : nothing}
+            : nothing
+        }
       </div>
       ${places.length > 1 ? this.figures(model) : nothing}
       ${measuring.problem ? html`<p class="error" role="alert">${measuring.problem}</p>` : nothing}
@@ -158,17 +161,21 @@ export class StrataMeasurePanel extends LitElement {
         <dd data-figure="straight">${told(straight)}</dd>
         ${positions.length > 2 ? html`<dt>${words.ends}</dt><dd data-figure="ends">${told(length(subtract(last, first)))}</dd>` : nothing}
         <dt>${parts > 1 && has_way ? words.along_parts(parts) : words.along}</dt>
-        ${measuring.along === null || !has_way
-          ? html`<dd class="wait">${measuring.busy ? words.busy : "–"}</dd>`
-          : html`<dd data-figure="along">${told(measuring.along)}</dd>`}
+        ${
+          measuring.along === null || !has_way
+            ? html`<dd class="wait">${measuring.busy ? words.busy : "–"}</dd>`
+            : html`<dd data-figure="along">${told(measuring.along)}</dd>`
+        }
         <dt>${words.rise(axis_name(model.up))}</dt>
         <dd data-figure="rise">${rise > 0 ? "+" : ""}${told(rise)}</dd>
-        ${polygon
-          ? html`<dt>${words.area}</dt>
+        ${
+          polygon
+            ? html`<dt>${words.area}</dt>
               <dd data-figure="area">${measured_area(polygon.area * metres * metres)}</dd>
               <dt>${words.perimeter}</dt>
               <dd data-figure="perimeter">${told(polygon.perimeter)}</dd>`
-          : nothing}
+            : nothing
+        }
       </dl>
       ${polygon ? html`<p class="hint">${words.area_hint} ${is_flat ? nothing : words.off_plane(told(round_like(polygon.off_plane, straight)))}</p>` : nothing}
       ${parts > 1 ? html`<p class="chip">${has_way ? words.gaps(parts - 1) : words.no_way}</p>` : nothing}`;
@@ -194,12 +201,14 @@ export class StrataMeasurePanel extends LitElement {
             ${layers.map((each) => html`<option value=${each.id} ?selected=${layer?.id === each.id}>${each.name}${each.unit ? ` (${each.unit})` : ""}</option>`)}
           </select>
         </label>
-        ${layer
-          ? nothing
-          : html`<label class="check"
+        ${
+          layer
+            ? nothing
+            : html`<label class="check"
               ><input type="checkbox" .checked=${this.equal_} @change=${(event: Event) => (this.equal_ = (event.target as HTMLInputElement).checked)} />
               ${words.equal}</label
-            >`}
+            >`
+        }
       </div>
       <div>
         <p class="caption" id="way">${words.way}</p>
@@ -227,8 +236,12 @@ export class StrataMeasurePanel extends LitElement {
     const told = (units: number): string => measured_length(units * metres_per(model.unit));
     return [
       words.places(measuring.places.length),
-      measuring.places.length > 1 ? `${words.straight}: ${told(sum(legs_of(measuring.positions)))}` : "",
-      measuring.along === null || !measuring.has_way ? "" : `${words.along}: ${told(measuring.along)}`,
+      measuring.places.length > 1
+        ? `${words.straight}: ${told(sum(legs_of(measuring.positions)))}`
+        : "",
+      measuring.along === null || !measuring.has_way
+        ? ""
+        : `${words.along}: ${told(measuring.along)}`,
     ]
       .filter(Boolean)
       .join(". ");

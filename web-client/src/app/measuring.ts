@@ -1,5 +1,6 @@
-// What this person measures on the model: places that were set one by one, the surface between them, and what is looked at of it. Places are of the
-// object, not of a picture: the camera moves on between them. Nothing of it is stored.
+// What this person measures on the model: places that were set one by one, the surface between
+// them, and what is looked at of it. Places are of the object, not of a picture: the camera moves
+// on between them. Nothing of it is stored.
 
 import { ApiError, type Api, type ProfileLine } from "../core/api";
 import { bounding_radius, OrbitCamera, type CameraMessage } from "../core/camera";
@@ -9,7 +10,14 @@ import { mark_length, parts_of_line } from "../core/marks";
 import { legs_of, sum } from "../core/measured-line";
 import { metres_per } from "../core/measure";
 import type { MarkPlace } from "../core/protocol.gen";
-import { length_of, passes_through, profile_parts, simplify_profile, type ProfileParts, type ProfilePlace } from "../core/profile";
+import {
+  length_of,
+  passes_through,
+  profile_parts,
+  simplify_profile,
+  type ProfileParts,
+  type ProfilePlace,
+} from "../core/profile";
 import type { Layer, Model } from "../core/types";
 import type { Vec3 } from "../core/vector";
 import { kSnap_px } from "../tools/outline";
@@ -32,7 +40,10 @@ export interface MeasuredPlace {
   normal: Vec3;
 }
 
-/** How the line lies on the surface: what was seen under its straight legs from one camera, or of each of their steps what is nearest. */
+/**
+ * How the line lies on the surface: what was seen under its straight legs from one camera, or of
+ * each of their steps what is nearest.
+ */
 export type Way = "seen" | "nearest";
 
 export interface MeasuredProfile {
@@ -83,7 +94,8 @@ export class Measuring {
     });
   }
 
-  // ── what is known ─────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is known
+  // ─────────────────────────────────────────────────────────────────────────────────────────────────
 
   get positions(): Vec3[] {
     return this.places.map(({ position }) => position);
@@ -92,7 +104,10 @@ export class Measuring {
   get along(): number | null {
     return this.profile ? length_of(this.profile.parts) : null;
   }
-  /** What is nearest to a line through the object are patches here and there, whose lengths say nothing. */
+  /**
+   * What is nearest to a line through the object are patches here and there, whose lengths say
+   * nothing.
+   */
   get has_way(): boolean {
     return this.profile?.way !== "nearest" || this.profile.parts.length === 1;
   }
@@ -115,14 +130,17 @@ export class Measuring {
 
   /** Those with values that make a curve. */
   get layers(): Layer[] {
-    return this.host_.layers.all.filter(({ kind, palette }) => kind === "numeric" && palette.mode !== "categorical");
+    return this.host_.layers.all.filter(
+      ({ kind, palette }) => kind === "numeric" && palette.mode !== "categorical",
+    );
   }
   /** Whose values are plotted; null: heights are. */
   get layer(): Layer | null {
     return this.layers.find(({ id }) => id === this.layer_) ?? null;
   }
 
-  // ── what the person does ──────────────────────────────────────────────────────────────────────────────────────────
+  // ── what the person does
+  // ──────────────────────────────────────────────────────────────────────────────────────────
 
   /** A tap: a new place; on the last one, or on the first of several, the end. */
   set_at({ x, y }: PointerSample): void {
@@ -134,7 +152,11 @@ export class Measuring {
         return at !== null && Math.hypot(at.x - x, at.y - y) <= reach;
       };
       const last = this.places.at(-1);
-      if (!this.ended && last && (is_at(last) || (this.places.length > 2 && is_at(this.places[0]!)))) {
+      if (
+        !this.ended &&
+        last &&
+        (is_at(last) || (this.places.length > 2 && is_at(this.places[0]!)))
+      ) {
         this.end_now();
         return;
       }
@@ -211,7 +233,8 @@ export class Measuring {
     return this.api_.profile_csv(model.id, profile.line);
   }
 
-  // ── what happens ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what happens
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
   /** How long the line to the pointer is, was told of another camera. */
   camera_moved(): void {
@@ -224,7 +247,8 @@ export class Measuring {
     if (this.layer?.id === id && this.profile) void this.ask_values(this.profile);
   }
 
-  // ── the surface between the places ────────────────────────────────────────────────────────────────────────────────
+  // ── the surface between the places
+  // ────────────────────────────────────────────────────────────────────────────────
 
   /** It moves on while answers are waited for. */
   private camera_now(): OrbitCamera {
@@ -278,7 +302,9 @@ export class Measuring {
     this.problem = "";
     this.host_.changed();
     try {
-      const profile = (this.way_ === "nearest" ? null : await this.ask_seen(model, camera)) ?? (await this.ask_nearest(model));
+      const profile =
+        (this.way_ === "nearest" ? null : await this.ask_seen(model, camera)) ??
+        (await this.ask_nearest(model));
       if (asked !== this.asked_) return;
       this.profile = profile;
       this.pointed = null;
@@ -299,21 +325,51 @@ export class Measuring {
     });
     if (pixels.length < positions.length) return null;
     const pixel_at = camera.pixel_size();
-    const profile = await this.ask(model, "seen", { camera: camera.message(), path: pixels }, pixel_at);
-    return passes_through(profile.parts, positions, (place) => kReach_px * pixel_at(place) + kReach * bounding_radius(camera.bounds)) ? profile : null;
+    const profile = await this.ask(
+      model,
+      "seen",
+      { camera: camera.message(), path: pixels },
+      pixel_at,
+    );
+    return passes_through(
+      profile.parts,
+      positions,
+      (place) => kReach_px * pixel_at(place) + kReach * bounding_radius(camera.bounds),
+    )
+      ? profile
+      : null;
   }
 
   private ask_nearest(model: Model): Promise<MeasuredProfile> {
     const { positions } = this;
     const step = Math.max(sum(legs_of(positions)) / kNearestSteps, 1e-9);
-    return this.ask(model, "nearest", { places: positions, step_mm: Math.max(step * metres_per(model.unit) * 1000, 1e-6) }, () => step);
+    return this.ask(
+      model,
+      "nearest",
+      { places: positions, step_mm: Math.max(step * metres_per(model.unit) * 1000, 1e-6) },
+      () => step,
+    );
   }
 
-  private async ask(model: Model, way: Way, line: ProfileLine, step_at: (place: Vec3) => number): Promise<MeasuredProfile> {
+  private async ask(
+    model: Model,
+    way: Way,
+    line: ProfileLine,
+    step_at: (place: Vec3) => number,
+  ): Promise<MeasuredProfile> {
     const { layer } = this;
-    const { samples } = await this.api_.profile_of(model.id, { ...line, layers: layer ? [layer.slug] : [] });
+    const { samples } = await this.api_.profile_of(model.id, {
+      ...line,
+      layers: layer ? [layer.slug] : [],
+    });
     const parts = profile_parts(samples, step_at, layer?.slug ?? null);
-    return { way, line, parts, course: simplify_profile(parts, (place) => step_at(place) / 4), places: parts.flat() };
+    return {
+      way,
+      line,
+      parts,
+      course: simplify_profile(parts, (place) => step_at(place) / 4),
+      places: parts.flat(),
+    };
   }
 
   /** The same line, with values of the layer that is plotted now. */
@@ -322,9 +378,14 @@ export class Measuring {
     const model = this.host_.model();
     if (!layer || !model) return;
     try {
-      const { samples } = await this.api_.profile_of(model.id, { ...profile.line, layers: [layer.slug] });
+      const { samples } = await this.api_.profile_of(model.id, {
+        ...profile.line,
+        layers: [layer.slug],
+      });
       if (this.profile !== profile || this.layer?.id !== layer.id) return;
-      const values = samples.flatMap(({ point: { hit, values } }) => (hit ? [values?.[layer.slug]] : []));
+      const values = samples.flatMap(({ point: { hit, values } }) =>
+        hit ? [values?.[layer.slug]] : [],
+      );
       profile.places.forEach((place, index) => {
         const found = values[index];
         place.value = found?.valid && found.value !== undefined ? found.value : null;
@@ -336,7 +397,8 @@ export class Measuring {
     }
   }
 
-  // ── the line to the pointer ───────────────────────────────────────────────────────────────────────────────────────
+  // ── the line to the pointer
+  // ───────────────────────────────────────────────────────────────────────────────────────
 
   private follow_pointer(): void {
     const { camera } = this.host_.view;
@@ -352,11 +414,16 @@ export class Measuring {
 
   private async look_along(path: readonly Point[]): Promise<readonly (MarkPlace | null)[]> {
     const { samples } = await this.api_.profile(this.host_.model()!.id, this.seen_by_!, path);
-    return samples.map(({ point }) => (point.hit && point.position ? (point.position as MarkPlace) : null));
+    return samples.map(({ point }) =>
+      point.hit && point.position ? (point.position as MarkPlace) : null,
+    );
   }
 
   private metres_along(places: readonly (MarkPlace | null)[]): number {
     const parts = parts_of_line(places, (place) => place, this.host_.view.camera.pixel_size());
-    return sum(parts.map((coordinates) => mark_length({ coordinates }))) * metres_per(this.host_.model()!.unit);
+    return (
+      sum(parts.map((coordinates) => mark_length({ coordinates }))) *
+      metres_per(this.host_.model()!.unit)
+    );
   }
 }

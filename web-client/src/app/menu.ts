@@ -1,5 +1,5 @@
-// <strata-menu>: a button that opens a list of commands, given as slotted buttons. What is slotted as "face" stands on the button
-// in place of the glyph.
+// <strata-menu>: a button that opens a list of commands, given as slotted buttons. What is slotted
+// as "face" stands on the button in place of the glyph.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -102,19 +102,28 @@ export class StrataMenu extends LitElement {
     this.list_.style.top = `${Math.max(margin, Math.min(top, innerHeight - box.height - margin))}px`;
   };
 
-  /** Commands come and go while it is open: in a narrower window it takes up what stood beside it. */
+  /**
+   * Commands come and go while it is open: in a narrower window it takes up what stood beside it.
+   */
   private readonly grown_ = new ResizeObserver(this.place);
 
-  /** Before the command hears of it: a dialog that it opens gives the focus back to this menu's button, which has it by then. */
+  /**
+   * Before the command hears of it: a dialog that it opens gives the focus back to this menu's
+   * button, which has it by then.
+   */
   private readonly closing_ = { handleEvent: (): void => this.list_.hidePopover(), capture: true };
 
   private items(): HTMLButtonElement[] {
     return [...this.querySelectorAll("button")].filter((button) => !button.disabled);
   }
 
-  /** The browser does not give the focus back from slotted buttons, which are no descendants of the list. */
+  /**
+   * The browser does not give the focus back from slotted buttons, which are no descendants of the
+   * list.
+   */
   private on_before_toggle(event: ToggleEvent): void {
-    if (event.newState === "closed" && this.items().some((item) => item.matches(":focus"))) this.button_.focus();
+    if (event.newState === "closed" && this.items().some((item) => item.matches(":focus")))
+      this.button_.focus();
   }
 
   private on_toggle(event: ToggleEvent): void {
@@ -134,7 +143,9 @@ export class StrataMenu extends LitElement {
 
   private on_key(event: KeyboardEvent): void {
     const items = this.items();
-    const at = items.indexOf(document.activeElement?.shadowRoot?.activeElement as HTMLButtonElement);
+    const at = items.indexOf(
+      document.activeElement?.shadowRoot?.activeElement as HTMLButtonElement,
+    );
     const focused = at >= 0 ? at : items.findIndex((item) => item.matches(":focus"));
     const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
     if (step === 0) return;

@@ -1,4 +1,5 @@
-// The dialogs of a model's page, which is shown without them: they come in a piece of their own (`page-parts.ts`).
+// The dialogs of a model's page, which is shown without them: they come in a piece of their own
+// (`page-parts.ts`).
 
 import "./color-dialog";
 import "./column-dialog";

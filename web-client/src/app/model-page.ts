@@ -1,5 +1,5 @@
-// <strata-model-page>: one model: the stage in the middle, tools at its left, layers and brush at its right (on a
-// phone: a sheet from below).
+// <strata-model-page>: one model: the stage in the middle, tools at its left, layers and brush at
+// its right (on a phone: a sheet from below).
 
 import { html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -34,7 +34,15 @@ import { has_part, load_part_later } from "./page-parts";
 import "./record-card";
 import "./people-menu";
 import { is_one_of_several, sees_to_kiosks } from "./project-list";
-import { comment_of, follow, hash_of_comment, hash_of_view, path_of_project, put_hash, view_of } from "./routes";
+import {
+  comment_of,
+  follow,
+  hash_of_comment,
+  hash_of_view,
+  path_of_project,
+  put_hash,
+  view_of,
+} from "./routes";
 import "./stage";
 import type { StrataStage } from "./stage";
 import { styled } from "./styled";
@@ -53,10 +61,18 @@ import { wants_less_motion } from "./view-control";
 import type { ViewRequest } from "./view-list";
 import "./view-panel";
 
-type OpenDialog = LayerPanelRequest | TablePanelRequest | ViewRequest | WhereRequest | Extract<TourRequest, { dialog: "kiosks" }> | { dialog: "scale" | "help" | "about" | "orthophoto" } | null;
+type OpenDialog =
+  | LayerPanelRequest
+  | TablePanelRequest
+  | ViewRequest
+  | WhereRequest
+  | Extract<TourRequest, { dialog: "kiosks" }>
+  | { dialog: "scale" | "help" | "about" | "orthophoto" }
+  | null;
 
 const kNarrow = 820; // pixels of a window where the panel lies over the model
-const kPanelWidth = { least: 270, first: 330, most: 620 }; // pixels where words have their usual size; it grows with them
+// pixels where words have their usual size; it grows with them
+const kPanelWidth = { least: 270, first: 330, most: 620 };
 const kPanelKey = "strata.panel_width";
 const kTableHeight = { least: 120, first: 280 };
 const kTableKey = "strata.table_height";
@@ -70,7 +86,8 @@ export class StrataModelPage extends LitElement {
   /** All that this person sees. */
   @property({ attribute: false }) projects: readonly Project[] = [];
   @state() private dialog_: OpenDialog = null;
-  @state() private tour_editor_: { tour: TourEntry | null } | null = null; // beside dialogs: while a stop is tried, views may be kept
+  // beside dialogs: while a stop is tried, views may be kept
+  @state() private tour_editor_: { tour: TourEntry | null } | null = null;
   @state() private missing_: { heading: string; lead: string } | null = null;
   @state() private panel_width_ = Number(localStorage.getItem(kPanelKey)) || kPanelWidth.first;
   @state() private table_height_ = Number(localStorage.getItem(kTableKey)) || kTableHeight.first;
@@ -124,10 +141,16 @@ export class StrataModelPage extends LitElement {
     if (session) this.bring_options(session.tools.active);
     const narrow = matchMedia(`(max-width: ${kNarrow}px)`).matches;
     if (session?.tables.view) this.lift_notices(narrow ? "52dvh" : `${this.table_height_}px`);
-    else this.lift_notices(narrow && session && session.comments.card !== null ? "calc(48dvh - 56px)" : null); // its sheet lies over the tools
+    // its sheet lies over the tools
+    else
+      this.lift_notices(
+        narrow && session && session.comments.card !== null ? "calc(48dvh - 56px)" : null,
+      );
   }
 
-  /** They are an element of the whole page, and would lie over the table, or the sheet of a comment. */
+  /**
+   * They are an element of the whole page, and would lie over the table, or the sheet of a comment.
+   */
   private lift_notices(height: string | null): void {
     const { style } = document.documentElement;
     if (height) style.setProperty("--beneath", height);
@@ -177,7 +200,10 @@ export class StrataModelPage extends LitElement {
     const { options_: options } = this;
     if (tool === this.tool_) return;
     this.tool_ = tool;
-    options?.parentElement?.scrollTo({ top: options.offsetTop, behavior: wants_less_motion() ? "instant" : "smooth" });
+    options?.parentElement?.scrollTo({
+      top: options.offsetTop,
+      behavior: wants_less_motion() ? "instant" : "smooth",
+    });
   }
 
   /** What can be chosen for the tool in hand, from where the panel lies over the model. */
@@ -199,7 +225,10 @@ export class StrataModelPage extends LitElement {
     this.wanted_view_ = view_of(location.hash);
   }
 
-  /** To the comment or view that the address names, once it can be gone to; from then on the address names what is looked at. */
+  /**
+   * To the comment or view that the address names, once it can be gone to; from then on the address
+   * names what is looked at.
+   */
   private follow_address(session: ModelSession): void {
     const { comments, view, views } = session;
     if (view.frames_drawn === 0) return;
@@ -215,7 +244,13 @@ export class StrataModelPage extends LitElement {
     }
     if (this.wanted_comment_ !== null || this.wanted_view_ !== null) return;
     const seen = views.current;
-    put_hash(typeof comments.card === "number" ? hash_of_comment(comments.card) : seen ? hash_of_view(seen.slug) : "");
+    put_hash(
+      typeof comments.card === "number"
+        ? hash_of_comment(comments.card)
+        : seen
+          ? hash_of_view(seen.slug)
+          : "",
+    );
   }
 
   override render(): TemplateResult {
@@ -244,12 +279,14 @@ export class StrataModelPage extends LitElement {
           ${session.comments.card === null ? nothing : html`<strata-comment-card .session=${session}></strata-comment-card>`}
           ${this.banner(session)}
           <div class="readings">
-            ${session.tables.card
-              ? html`<strata-record-card
+            ${
+              session.tables.card
+                ? html`<strata-record-card
                   .session=${session}
                   @request=${(event: CustomEvent<TablePanelRequest>) => (this.dialog_ = event.detail)}
                 ></strata-record-card>`
-              : nothing}
+                : nothing
+            }
             <strata-value-readout .session=${session}></strata-value-readout>
           </div>
           <strata-hover-card .session=${session}></strata-hover-card>
@@ -257,9 +294,11 @@ export class StrataModelPage extends LitElement {
         ${session.tables.view ? this.table(session, session.tables.view) : nothing} ${this.panel_shown_ ? this.panel(session) : nothing}
       </div>
       ${this.dialog(session)}
-      ${this.tour_editor_ && has_part("model_dialogs", this)
-        ? html`<strata-tour-dialog .session=${session} .tour=${this.tour_editor_.tour} @try=${this.make_room} @closed=${() => (this.tour_editor_ = null)}></strata-tour-dialog>`
-        : nothing}`;
+      ${
+        this.tour_editor_ && has_part("model_dialogs", this)
+          ? html`<strata-tour-dialog .session=${session} .tour=${this.tour_editor_.tour} @try=${this.make_room} @closed=${() => (this.tour_editor_ = null)}></strata-tour-dialog>`
+          : nothing
+      }`;
   }
 
   /** Something on the model is looked at: a narrow window has no room for the panel as well. */
@@ -286,9 +325,11 @@ export class StrataModelPage extends LitElement {
       >
         ${icon("info")}
       </button>
-      ${model && !model.scale_verified && session.can_curate
-        ? html`<button class="scale-chip" @click=${() => (this.dialog_ = { dialog: "scale" })}>${texts.model.check_size}</button>`
-        : nothing}
+      ${
+        model && !model.scale_verified && session.can_curate
+          ? html`<button class="scale-chip" @click=${() => (this.dialog_ = { dialog: "scale" })}>${texts.model.check_size}</button>`
+          : nothing
+      }
       <span class="grow"></span>
       <strata-people-menu .session=${session}></strata-people-menu>
       ${this.saving(session)}
@@ -309,9 +350,11 @@ export class StrataModelPage extends LitElement {
         title=${this.panel_shown_ ? texts.model.hide_panel : texts.model.show_panel}
         @click=${() => (this.panel_shown_ = !this.panel_shown_)}
       >
-        ${icon("panel")}${!this.panel_shown_ && session.comments.unread_count > 0
-          ? html`<span class="unread" role="img" aria-label=${texts.comments.unread(session.comments.unread_count)}></span>`
-          : nothing}
+        ${icon("panel")}${
+          !this.panel_shown_ && session.comments.unread_count > 0
+            ? html`<span class="unread" role="img" aria-label=${texts.comments.unread(session.comments.unread_count)}></span>`
+            : nothing
+        }
       </button>
       <strata-account-menu .me=${this.me} .kiosks=${sees_to_kiosks(this.me, this.projects)}></strata-account-menu>
     </header>`;
@@ -322,7 +365,11 @@ export class StrataModelPage extends LitElement {
     const lost = session.connection_state !== "open";
     const state = waiting === 0 ? "saved" : failing || lost ? "not-saved" : "saving";
     const words =
-      state === "saved" ? texts.saving.saved : state === "saving" ? texts.saving.saving : texts.saving.not_saved(waiting);
+      state === "saved"
+        ? texts.saving.saved
+        : state === "saving"
+          ? texts.saving.saving
+          : texts.saving.not_saved(waiting);
     return html`<div
       class="saving ${state}"
       role="status"
@@ -537,7 +584,9 @@ export class StrataModelPage extends LitElement {
       event.preventDefault();
       return;
     }
-    const does = handle_key(event, session, (dialog) => this.show(dialog)) || (event.key === "Escape" && this.tour_?.end());
+    const does =
+      handle_key(event, session, (dialog) => this.show(dialog)) ||
+      (event.key === "Escape" && this.tour_?.end());
     if (does) event.preventDefault();
   };
 
@@ -565,7 +614,9 @@ export class StrataModelPage extends LitElement {
   }
 
   private set_table_height(height: number): void {
-    this.table_height_ = Math.round(Math.min(window.innerHeight * 0.75, Math.max(kTableHeight.least, height)));
+    this.table_height_ = Math.round(
+      Math.min(window.innerHeight * 0.75, Math.max(kTableHeight.least, height)),
+    );
     localStorage.setItem(kTableKey, String(this.table_height_));
   }
 
@@ -580,12 +631,24 @@ function follow_drag(event: PointerEvent, move: (at: PointerEvent) => void): voi
   const splitter = event.currentTarget as HTMLElement;
   splitter.setPointerCapture(event.pointerId);
   splitter.addEventListener("pointermove", move);
-  splitter.addEventListener("lostpointercapture", () => splitter.removeEventListener("pointermove", move), { once: true });
+  splitter.addEventListener(
+    "lostpointercapture",
+    () => splitter.removeEventListener("pointermove", move),
+    { once: true },
+  );
 }
 
 async function drop_column(session: ModelSession, view: TableView, column: Column): Promise<void> {
   const words = texts.tables;
-  if (!(await ask({ heading: words.drop_title(label_of(column)), lead: words.drop_lead, yes: words.drop, danger: true }))) return;
+  if (
+    !(await ask({
+      heading: words.drop_title(label_of(column)),
+      lead: words.drop_lead,
+      yes: words.drop,
+      danger: true,
+    }))
+  )
+    return;
   try {
     await session.api.drop_column(view.table_id, column.id);
     await session.tables.reload(view.table_id);
@@ -594,11 +657,14 @@ async function drop_column(session: ModelSession, view: TableView, column: Colum
   }
 }
 
-/** A button that was pressed with the pointer does not keep the keyboard: Space would press it again instead of turning
- *  the model. One that was pressed by a key does. */
+/**
+ * A button that was pressed with the pointer does not keep the keyboard: Space would press it again
+ * instead of turning the model. One that was pressed by a key does.
+ */
 function give_back_keyboard(event: MouseEvent): void {
   if (event.detail === 0) return;
-  for (const element of event.composedPath()) if (element instanceof HTMLButtonElement) element.blur();
+  for (const element of event.composedPath())
+    if (element instanceof HTMLButtonElement) element.blur();
 }
 
 /** The layer as it is now: the request may be older. */

@@ -1,16 +1,41 @@
-// One open model on this page: its life, and the messages between its parts. `view` is the camera, `layers` what is painted on,
-// `tables` the records that layers hold the keys of, `comments` what people wrote on the surface, `hovered` the one that the mouse rests
-// on, `appearance` its looks, light and section, `pointer` what lies under the pointer, `painting` the brush and the edits, `together` who
-// else is here and whose view this is, `cursors` where they point, `views` what was kept to come back to, `tours` what
-// curators make of views, `measuring` what is measured, `figures` what is drawn to scale, `face` the one that is asked for. Elements subscribe and draw themselves from their state; they change it
-// only through their methods.
+// One open model on this page: its life, and the messages between its parts. `view` is the camera,
+// `layers` what is painted on, `tables` the records that layers hold the keys of, `comments` what
+// people wrote on the surface, `hovered` the one that the mouse rests on, `appearance` its looks,
+// light and section, `pointer` what lies under the pointer, `painting` the brush and the edits,
+// `together` who else is here and whose view this is, `cursors` where they point, `views` what was
+// kept to come back to, `tours` what curators make of views, `measuring` what is measured,
+// `figures` what is drawn to scale, `face` the one that is asked for. Elements subscribe and draw
+// themselves from their state; they change it only through their methods.
 
 import { Api, ApiError, type Versioned } from "../core/api";
-import { Connection, type ConnectionState, type Point, type SavingState, type SocketLike } from "../core/connection";
+import {
+  Connection,
+  type ConnectionState,
+  type Point,
+  type SavingState,
+  type SocketLike,
+} from "../core/connection";
 import type { FrameMessage } from "../core/frame-header";
 import type { GestureHandler, PointerSample } from "../core/input";
-import type { Background, LayerEvent, ModelEvent, Picked, ProblemMessage, Welcome } from "../core/protocol.gen";
-import { complete_layer, is_as_computed, may_curate, may_paint, type Column, type Layer, type Model, type ModelPatch, type Role } from "../core/types";
+import type {
+  Background,
+  LayerEvent,
+  ModelEvent,
+  Picked,
+  ProblemMessage,
+  Welcome,
+} from "../core/protocol.gen";
+import {
+  complete_layer,
+  is_as_computed,
+  may_curate,
+  may_paint,
+  type Column,
+  type Layer,
+  type Model,
+  type ModelPatch,
+  type Role,
+} from "../core/types";
 import { UnsavedShelf } from "../core/unsaved-shelf";
 import { BrushTool } from "../tools/brush";
 import { BucketTool } from "../tools/bucket";
@@ -93,7 +118,8 @@ export class ModelSession {
   private was_open_ = false;
   private closed_ = false; // its page is gone
   private told_left_ = false;
-  private told_locked_: number | null = null; // the layer of which the person knows that it is locked
+  // the layer of which the person knows that it is locked
+  private told_locked_: number | null = null;
 
   constructor(
     readonly api: Api,
@@ -151,7 +177,10 @@ export class ModelSession {
       layers: this.layers,
       pointer: this.pointer,
       model: () => this.model,
-      records: { label: (table, key) => this.tables.label(table, key), term: (table, key) => this.tables.term(table, key) },
+      records: {
+        label: (table, key) => this.tables.label(table, key),
+        term: (table, key) => this.tables.term(table, key),
+      },
       may_paint: () => this.can_paint,
       is_locked: (layer) => this.is_locked(layer),
       changed,
@@ -168,7 +197,11 @@ export class ModelSession {
       fly_to: (bounds) => this.view.fly_to(bounds),
       changed,
     });
-    this.editors = new RecordEditors({ say: (what) => this.connection_.edit_record(what), name_of: (user) => this.together.name_of(user), changed });
+    this.editors = new RecordEditors({
+      say: (what) => this.connection_.edit_record(what),
+      name_of: (user) => this.together.name_of(user),
+      changed,
+    });
     this.marks = new MarkDrawing(api, {
       view: this.view,
       layers: this.layers,
@@ -177,7 +210,12 @@ export class ModelSession {
       model: () => this.model,
       changed,
     });
-    this.measuring = new Measuring(api, { view: this.view, layers: this.layers, model: () => this.model, changed });
+    this.measuring = new Measuring(api, {
+      view: this.view,
+      layers: this.layers,
+      model: () => this.model,
+      changed,
+    });
     this.comments = new Comments(api, model_id, {
       view: this.view,
       layers: this.layers,
@@ -314,10 +352,12 @@ export class ModelSession {
           this.cursors.receive(users.filter(({ session }) => session !== this.session));
         },
         picked: (message) => {
-          if (!this.cursors.answer(message) && !this.together.answer(message)) this.pointer.answer(message);
+          if (!this.cursors.answer(message) && !this.together.answer(message))
+            this.pointer.answer(message);
         },
         problem: (problem) => this.on_problem(problem),
-        taken_up: (changes) => notices.show("info", texts.saving.taken_up(changes), texts.saving.taken_up_hint),
+        taken_up: (changes) =>
+          notices.show("info", texts.saving.taken_up(changes), texts.saving.taken_up_hint),
       },
     );
   }
@@ -383,14 +423,18 @@ export class ModelSession {
         new PointTool((sample) => this.marks.set_point(sample)),
         new MeasureTool(measure_host),
         new FaceTool(face_host),
-        new CommentTool({ ...navigator, tap: comment }, () => ({ x: this.view.camera.width / 2, y: this.view.camera.height / 2 })),
+        new CommentTool({ ...navigator, tap: comment }, () => ({
+          x: this.view.camera.width / 2,
+          y: this.view.camera.height / 2,
+        })),
       ],
       "orbit",
       () => this.target_changed(),
     );
   }
 
-  // ── life ──────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── life
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────────────
 
   subscribe(listener: () => void): () => void {
     this.listeners_.add(listener);
@@ -405,7 +449,10 @@ export class ModelSession {
     this.connection_.open();
   }
 
-  /** Its page is gone. What was painted still goes to the server: the connection lingers until all of it is saved. */
+  /**
+   * Its page is gone. What was painted still goes to the server: the connection lingers until all
+   * of it is saved.
+   */
   close(): void {
     this.closed_ = true;
     this.layers.flush();
@@ -429,7 +476,9 @@ export class ModelSession {
     this.tell_left_behind();
   }
 
-  /** Ends the connection; what is not saved is sent when the same person comes back to the model. */
+  /**
+   * Ends the connection; what is not saved is sent when the same person comes back to the model.
+   */
   discard(): void {
     forget(this);
     this.saving = { waiting: 0, failing: false };
@@ -447,7 +496,10 @@ export class ModelSession {
     return may_curate(this.role);
   }
 
-  /** To this person: curators change locked layers, too, but for those that are as they were computed. */
+  /**
+   * To this person: curators change locked layers, too, but for those that are as they were
+   * computed.
+   */
   is_locked(layer: Layer): boolean {
     return layer.locked && (!this.can_curate || is_as_computed(layer));
   }
@@ -460,7 +512,10 @@ export class ModelSession {
     return paints && selected && this.is_locked(selected) ? selected : null;
   }
 
-  /** Another tool, another layer, or another lock: who cannot paint any more is told so once, before they try. */
+  /**
+   * Another tool, another layer, or another lock: who cannot paint any more is told so once, before
+   * they try.
+   */
   private target_changed(): void {
     const locked = this.locked_target;
     const told = this.told_locked_;
@@ -484,7 +539,11 @@ export class ModelSession {
     return [...all].reverse().find((layer) => this.shows_record(layer, picked)) ?? null;
   }
   private shows_record(layer: Layer, { values }: Picked): boolean {
-    return layer.table !== undefined && this.layers.visible(layer) && values?.[layer.slug]?.valid === true;
+    return (
+      layer.table !== undefined &&
+      this.layers.visible(layer) &&
+      values?.[layer.slug]?.valid === true
+    );
   }
 
   /** Under the pointer, where the tool's tap would show its card, and does not already. */
@@ -494,10 +553,16 @@ export class ModelSession {
     const { selected } = this.layers;
     if (!picked) return null;
     const looks = active === "orbit" || active === "pan";
-    const layer = looks ? this.layer_with_record(picked) : active === "pick" && selected && this.shows_record(selected, picked) ? selected : null;
+    const layer = looks
+      ? this.layer_with_record(picked)
+      : active === "pick" && selected && this.shows_record(selected, picked)
+        ? selected
+        : null;
     const key = layer ? picked.values?.[layer.slug]?.value : undefined;
     const { card } = this.tables;
-    return !layer || key === undefined || (card?.layer.id === layer.id && card.key === key) ? null : { layer, key };
+    return !layer || key === undefined || (card?.layer.id === layer.id && card.key === key)
+      ? null
+      : { layer, key };
   }
 
   /** The table of the layer that is painted on: shown, or no longer. */
@@ -507,7 +572,8 @@ export class ModelSession {
     else if (layer) this.tables.open(layer);
   }
 
-  // ── what elements ask for ─────────────────────────────────────────────────────────────────────────────────────────
+  // ── what elements ask for
+  // ─────────────────────────────────────────────────────────────────────────────────────────
 
   choose_tool(name: ToolName): void {
     if (kChangingTools.includes(name) && this.refuses_changes()) return;
@@ -582,7 +648,10 @@ export class ModelSession {
     this.take_model(await this.api.model(this.model_id));
   }
 
-  /** Shows the model as if it had this unit and up direction, without keeping them; null: as it has them. */
+  /**
+   * Shows the model as if it had this unit and up direction, without keeping them; null: as it has
+   * them.
+   */
   preview_scale(scale: Pick<Model, "unit" | "up"> | null): void {
     if (!this.model) return;
     this.preview_ = scale;
@@ -609,7 +678,8 @@ export class ModelSession {
     this.changed();
   }
 
-  // ── messages ──────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── messages
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private on_state(state: ConnectionState): void {
     this.connection_state = state;
@@ -661,7 +731,11 @@ export class ModelSession {
   private tell_left_behind(): void {
     if (this.told_left_ || this.connection_state === "open") return;
     this.told_left_ = true;
-    notices.show("problem", texts.saving.left_behind(this.saving.waiting, this.name), texts.saving.left_behind_hint);
+    notices.show(
+      "problem",
+      texts.saving.left_behind(this.saving.waiting, this.name),
+      texts.saving.left_behind_hint,
+    );
   }
 
   private get name(): string {
@@ -671,7 +745,12 @@ export class ModelSession {
   private on_welcome(message: Welcome): void {
     if (this.was_open_ && !this.closed_) {
       if (message.role === this.role) notices.show("success", texts.connection.back);
-      else notices.show("info", texts.people.role_now(texts.roles[message.role]), texts.role_hints[message.role]);
+      else
+        notices.show(
+          "info",
+          texts.people.role_now(texts.roles[message.role]),
+          texts.role_hints[message.role],
+        );
     }
     this.was_open_ = true;
     this.signed_out = false;
@@ -697,7 +776,8 @@ export class ModelSession {
     if (!pointer) return { pointer: null };
     const { active } = this.tools;
     const { view, painting } = this;
-    const radius = painting.radius_window_px() * view.camera.unit_per_pixel(this.pointer.surface_depth());
+    const radius =
+      painting.radius_window_px() * view.camera.unit_per_pixel(this.pointer.surface_depth());
     const in_hand = (active === "brush" || active === "eraser") && radius > 0;
     return { pointer: [pointer.x, pointer.y], ...(in_hand ? { radius } : {}) };
   }
@@ -722,12 +802,14 @@ export class ModelSession {
   }
 
   private reload_after_change(): void {
-    this.reload_model().catch((error: unknown) => notices.error(error)); // with the version that changes need
+    // with the version that changes need
+    this.reload_model().catch((error: unknown) => notices.error(error));
   }
 
   private on_problem(problem: Omit<ProblemMessage, "op">): void {
     const { ref } = problem;
-    if (this.pointer.refused(ref) || this.cursors.refused(ref) || this.together.refused(problem)) return;
+    if (this.pointer.refused(ref) || this.cursors.refused(ref) || this.together.refused(problem))
+      return;
     const { selected } = this.layers;
     if (is_of_lock(problem) && selected && this.is_locked(selected)) this.tell_locked(selected);
     else notices.problem(problem);
@@ -747,4 +829,5 @@ const not_kept = (why: unknown): void => {
 };
 
 /** It is painting that was on its way when the layer was locked. */
-const is_of_lock = ({ status, field }: Omit<ProblemMessage, "op">): boolean => status === 403 && field === "layer";
+const is_of_lock = ({ status, field }: Omit<ProblemMessage, "op">): boolean =>
+  status === 403 && field === "layer";

@@ -1,4 +1,5 @@
-// Completes the names of people behind an @ while a comment is written: the field is a combobox while there are some, and its list follows it.
+// Completes the names of people behind an @ while a comment is written: the field is a combobox
+// while there are some, and its list follows it.
 
 import { css, html, nothing, type ReactiveControllerHost, type TemplateResult } from "lit";
 import { mention_begun, people_like } from "../core/mentions";
@@ -57,9 +58,11 @@ export class NameCompletion {
   async look(field: HTMLTextAreaElement): Promise<void> {
     if (!mention_begun(field.value, field.selectionStart)) return this.close();
     const all = await this.all_();
-    const begun = mention_begun(field.value, field.selectionStart); // more may have been written meanwhile
+    // more may have been written meanwhile
+    const begun = mention_begun(field.value, field.selectionStart);
     const people = begun && field.matches(":focus") ? people_like(all, begun.word) : [];
-    const is_whole = people.length === 1 && people[0]!.user.toLowerCase() === begun?.word.toLowerCase();
+    const is_whole =
+      people.length === 1 && people[0]!.user.toLowerCase() === begun?.word.toLowerCase();
     if (!begun || people.length === 0 || is_whole) return this.close();
     this.field_ = field;
     this.at_ = begun.at;
@@ -74,12 +77,18 @@ export class NameCompletion {
     this.host_.requestUpdate();
   }
 
-  /** Arrows choose, Enter and Tab take, Escape closes the list alone. True: the key was for the list. */
+  /**
+   * Arrows choose, Enter and Tab take, Escape closes the list alone. True: the key was for the
+   * list.
+   */
   on_key(event: KeyboardEvent): boolean {
-    if (!this.field_ || event.ctrlKey || event.metaKey || event.altKey || event.isComposing) return false;
+    if (!this.field_ || event.ctrlKey || event.metaKey || event.altKey || event.isComposing)
+      return false;
     const count = this.people_.length;
-    if (event.key === "ArrowDown" || event.key === "ArrowUp") this.chosen_ = (this.chosen_ + (event.key === "ArrowDown" ? 1 : count - 1)) % count;
-    else if (event.key === "Enter" || (event.key === "Tab" && !event.shiftKey)) this.take(this.chosen_);
+    if (event.key === "ArrowDown" || event.key === "ArrowUp")
+      this.chosen_ = (this.chosen_ + (event.key === "ArrowDown" ? 1 : count - 1)) % count;
+    else if (event.key === "Enter" || (event.key === "Tab" && !event.shiftKey))
+      this.take(this.chosen_);
     else if (event.key === "Escape") this.close();
     else return false;
     event.preventDefault();

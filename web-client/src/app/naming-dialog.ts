@@ -45,8 +45,15 @@ export class StrataNamingDialog extends LitElement {
   /** What it is called so far; null: it is new. */
   @property({ attribute: false }) called: Called | null = null;
   @property({ attribute: false }) option: NamingOption | null = null;
-  /** Answers what is wrong; nothing: it is done, and the dialog closes. `key` is the same for each attempt at the same words. */
-  @property({ attribute: false }) save!: (called: Called, key: string, checked: boolean) => Promise<string>;
+  /**
+   * Answers what is wrong; nothing: it is done, and the dialog closes. `key` is the same for each
+   * attempt at the same words.
+   */
+  @property({ attribute: false }) save!: (
+    called: Called,
+    key: string,
+    checked: boolean,
+  ) => Promise<string>;
   @state() private problem_ = "";
   @state() private busy_ = false;
   @query("strata-dialog") private dialog_!: StrataDialog;

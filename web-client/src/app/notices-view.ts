@@ -96,7 +96,9 @@ export class StrataNotices extends LitElement {
     return html`${repeat(
       this.shown_,
       (notice) => notice.id,
-      (notice) => html`<div class="notice ${notice.kind}" role=${notice.kind === "problem" ? "alert" : "status"}>
+      (
+        notice,
+      ) => html`<div class="notice ${notice.kind}" role=${notice.kind === "problem" ? "alert" : "status"}>
         <div class="words">
           <strong>${notice.title}</strong>
           ${notice.detail ? html`<p>${notice.detail}</p>` : ""}
@@ -115,7 +117,8 @@ export class StrataNotices extends LitElement {
 }
 
 function link_of({ id }: Notice, link: NoticeLink): TemplateResult {
-  if ("href" in link) return html`<a class="text" href=${link.href} @click=${follow}>${link.label}</a>`;
+  if ("href" in link)
+    return html`<a class="text" href=${link.href} @click=${follow}>${link.label}</a>`;
   const act = (): void => {
     notices.dismiss(id);
     link.act();

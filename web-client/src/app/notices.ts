@@ -36,12 +36,21 @@ class Notices {
 
   /** Returns its id. */
   show(kind: NoticeKind, title: string, detail = "", link: NoticeLink | null = null): number {
-    const same = this.notices_.find((notice) => notice.title === title && notice.detail === detail && !(notice.link && "act" in notice.link)); // what one may do stays
+    // what one may do stays
+    const same = this.notices_.find(
+      (notice) =>
+        notice.title === title &&
+        notice.detail === detail &&
+        !(notice.link && "act" in notice.link),
+    );
     if (same) this.dismiss(same.id);
     const notice = { id: this.next_id_++, kind, title, detail, link };
     this.notices_ = [...this.notices_, notice].slice(-kMostNotices);
     this.tell();
-    setTimeout(() => this.dismiss(notice.id), link && "act" in link ? kShownToAct_ms : kShown_ms[kind]);
+    setTimeout(
+      () => this.dismiss(notice.id),
+      link && "act" in link ? kShownToAct_ms : kShown_ms[kind],
+    );
     return notice.id;
   }
 

@@ -1,5 +1,6 @@
-// A field for one number, written as in the language of the page. The browser's own number fields follow the language of the browser instead, and
-// drop what they do not take: "1,5" typed into an English one becomes 15.
+// A field for one number, written as in the language of the page. The browser's own number fields
+// follow the language of the browser instead, and drop what they do not take: "1,5" typed into an
+// English one becomes 15.
 
 import { html, noChange, type TemplateResult } from "lit";
 import { ifDefined } from "lit/directives/if-defined.js";
@@ -52,5 +53,6 @@ function on_step(event: KeyboardEvent, { min = -Infinity, max = Infinity }: Numb
   if (step === 0 || Number.isNaN(now)) return;
   event.preventDefault();
   input.value = typed_number(Number(Math.min(max, Math.max(min, now + step)).toPrecision(12)));
-  for (const type of ["input", "change"]) input.dispatchEvent(new Event(type, { bubbles: true, composed: true }));
+  for (const type of ["input", "change"])
+    input.dispatchEvent(new Event(type, { bubbles: true, composed: true }));
 }

@@ -1,4 +1,5 @@
-// <strata-ordered-choice>: some of several things, in an order of one's own. What more there is to say of each is given by its owner.
+// <strata-ordered-choice>: some of several things, in an order of one's own. What more there is to
+// say of each is given by its owner.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -101,7 +102,8 @@ export class StrataOrderedChoice extends LitElement {
   override render(): TemplateResult {
     const { chosen, things } = this;
     const others = things.filter(({ value }) => !chosen.includes(value));
-    return html`${chosen.length === 0
+    return html`${
+      chosen.length === 0
         ? nothing
         : html`<ol aria-label=${this.label}>
             ${repeat(
@@ -109,10 +111,13 @@ export class StrataOrderedChoice extends LitElement {
               (value) => value,
               (value, index) => this.row(value, index),
             )}
-          </ol>`}
-      ${others.length > 0 && chosen.length < this.most
-        ? add_from(this.add_label, others, (value) => this.put([...chosen, value]))
-        : nothing}`;
+          </ol>`
+    }
+      ${
+        others.length > 0 && chosen.length < this.most
+          ? add_from(this.add_label, others, (value) => this.put([...chosen, value]))
+          : nothing
+      }`;
   }
 
   private row(value: string, index: number): TemplateResult {
@@ -120,15 +125,22 @@ export class StrataOrderedChoice extends LitElement {
     const thing = this.things.find((each) => each.value === value);
     const name = thing?.name ?? words.gone(value);
     const more = this.more?.(value);
-    const button = (glyph: IconName, label: string, disabled: boolean, act: () => void): TemplateResult =>
+    const button = (
+      glyph: IconName,
+      label: string,
+      disabled: boolean,
+      act: () => void,
+    ): TemplateResult =>
       html`<button type="button" class="icon quiet" aria-label=${label} title=${label} ?disabled=${disabled} @click=${act}>${icon(glyph)}</button>`;
     return html`<li class=${this.wrong.includes(value) ? "wrong" : ""}>
       <span class="name">${name}${thing?.badge ?? nothing}</span>
       <span class="buttons">
-        ${chosen.length > 1
-          ? html`${button("up", words.up(name), index === 0, () => this.put(moved(chosen, index, index - 1)))}
+        ${
+          chosen.length > 1
+            ? html`${button("up", words.up(name), index === 0, () => this.put(moved(chosen, index, index - 1)))}
             ${button("down", words.down(name), index === chosen.length - 1, () => this.put(moved(chosen, index, index + 1)))}`
-          : nothing}
+            : nothing
+        }
         ${button("close", words.remove(name), false, () => this.put(chosen.filter((each) => each !== value)))}
       </span>
       ${more ? html`<div class="more">${more}</div>` : nothing}

@@ -6,8 +6,24 @@ import { name_of_file } from "../core/api";
 import type { MapContents } from "../core/types";
 import "./dialog";
 import "./file-choice";
-import { accepted, as_uploads, file_kind, kPictureEndings, unknown_file, world_numbers, type Along } from "./map-file";
-import { crs_in_doubt, crs_query, crs_question, crs_styles, focus_question, kNotAsked, type CrsAnswer } from "./map-crs";
+import {
+  accepted,
+  as_uploads,
+  file_kind,
+  kPictureEndings,
+  unknown_file,
+  world_numbers,
+  type Along,
+} from "./map-file";
+import {
+  crs_in_doubt,
+  crs_query,
+  crs_question,
+  crs_styles,
+  focus_question,
+  kNotAsked,
+  type CrsAnswer,
+} from "./map-crs";
 import { direction_field, found_line, progress_line, world_field } from "./map-place";
 import type { ModelSession } from "./model-session";
 import { notices } from "./notices";
@@ -28,12 +44,7 @@ export class StrataOrthophotoDialog extends LitElement {
   private world_ = "";
   private readonly sending_ = new Sending(this);
 
-  static override styles = [
-    shared_styles,
-    files_styles,
-    form_styles,
-    crs_styles,
-  ];
+  static override styles = [shared_styles, files_styles, form_styles, crs_styles];
 
   override render(): TemplateResult {
     const { contents_: contents } = this;
@@ -52,8 +63,9 @@ export class StrataOrthophotoDialog extends LitElement {
             @files=${(event: CustomEvent<File[]>) => void this.on_files(event.detail)}
           ></strata-file-choice>
         </div>
-        ${contents
-          ? html`${found_line(contents)}
+        ${
+          contents
+            ? html`${found_line(contents)}
               <label class="field">
                 <span>${words.name}</span>
                 <input
@@ -67,7 +79,8 @@ export class StrataOrthophotoDialog extends LitElement {
               </label>
               ${direction_field(this.along_, (along) => (this.along_ = along))}
               ${world_field(contents, this.world_, (text) => (this.world_ = text))}`
-          : nothing}
+            : nothing
+        }
         ${asking ? crs_question(crs, (takes) => this.on_crs(takes ? crs : null)) : nothing}
         ${this.sending_.problem ? html`<p class="error" role="alert">${this.sending_.problem}</p>` : nothing}
         ${this.sending_.busy ? progress_line(this.sending_.share, texts.maps.looking) : nothing}
@@ -86,7 +99,9 @@ export class StrataOrthophotoDialog extends LitElement {
       return;
     }
     const { api, model_id } = this.session;
-    const contents = await this.sending_.run((progress) => api.map_contents(model_id, {}, as_uploads(files), progress));
+    const contents = await this.sending_.run((progress) =>
+      api.map_contents(model_id, {}, as_uploads(files), progress),
+    );
     if (!contents || files !== this.files_) return;
     if (contents.kind === "polygons") this.sending_.refuse(words.no_picture);
     else if (!contents.has_colors) this.sending_.refuse(words.no_colors);
@@ -120,9 +135,16 @@ export class StrataOrthophotoDialog extends LitElement {
       return;
     }
     const name = this.name_.trim();
-    const query = { name, along: this.along_, ...crs_query(this.crs_), ...(world ? { world } : {}) };
+    const query = {
+      name,
+      along: this.along_,
+      ...crs_query(this.crs_),
+      ...(world ? { world } : {}),
+    };
     const files = as_uploads(this.files_);
-    const job = await this.sending_.run((progress) => session.api.add_orthophoto(session.model_id, query, files, progress));
+    const job = await this.sending_.run((progress) =>
+      session.api.add_orthophoto(session.model_id, query, files, progress),
+    );
     if (!job) return;
     session.jobs.watch(words.job(name), job, ({ look }) => {
       if (look) session.appearance.show_made(look).catch((error: unknown) => notices.error(error));

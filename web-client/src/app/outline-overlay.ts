@@ -13,15 +13,24 @@ import type { ViewControl } from "./view-control";
 const kLength = { width: 96, height: 28 }; // room for how long a line is, CSS pixels
 const kGap_px = 14;
 
-export function outline_overlay(session: ModelSession, { points, corners, pointer, closable, area }: Outline): TemplateResult {
+export function outline_overlay(
+  session: ModelSession,
+  { points, corners, pointer, closable, area }: Outline,
+): TemplateResult {
   const { scale } = session.view;
   const layer = session.layers.selected;
   const { brush } = session.painting;
-  const color = layer && !(area && brush.areas.erases) ? color_of(layer.palette, brush.value_of(layer)) : null;
-  const line = [...points, ...(pointer ? [pointer] : [])].map(([x, y]) => `${x / scale},${y / scale}`).join(" ");
+  const color =
+    layer && !(area && brush.areas.erases) ? color_of(layer.palette, brush.value_of(layer)) : null;
+  const line = [...points, ...(pointer ? [pointer] : [])]
+    .map(([x, y]) => `${x / scale},${y / scale}`)
+    .join(" ");
   const [first] = points;
   const at_first =
-    closable && first && pointer && Math.hypot(pointer[0] - first[0], pointer[1] - first[1]) <= kSnap_px * scale;
+    closable &&
+    first &&
+    pointer &&
+    Math.hypot(pointer[0] - first[0], pointer[1] - first[1]) <= kSnap_px * scale;
   return html`<svg class="over" aria-hidden="true">
       ${area ? svg`<polygon points=${line} fill=${color ? css_color(color) : "var(--mark-light)"} fill-opacity="0.28" stroke="none" />` : nothing}
       <polyline points=${line} fill="none" stroke="var(--mark-rim)" stroke-width="3.4" stroke-linejoin="round" />
@@ -35,12 +44,29 @@ export function outline_overlay(session: ModelSession, { points, corners, pointe
     ${area ? nothing : length_so_far(session.view, session.marks.metres_so_far, pointer ?? points[points.length - 1]!)}`;
 }
 
-/** Beside the end of a line that is being drawn, at a window pixel. Who cannot see it is told when the line is finished. */
-export function length_so_far({ camera, scale }: ViewControl, metres: number | null, [x, y]: Point): TemplateResult | typeof nothing {
+/**
+ * Beside the end of a line that is being drawn, at a window pixel. Who cannot see it is told when
+ * the line is finished.
+ */
+export function length_so_far(
+  { camera, scale }: ViewControl,
+  metres: number | null,
+  [x, y]: Point,
+): TemplateResult | typeof nothing {
   if (metres === null) return nothing;
   const end = [x / scale, y / scale] as const;
-  const place = beside(end, kLength, { width: camera.width / scale, height: camera.height / scale }, kGap_px);
+  const place = beside(
+    end,
+    kLength,
+    { width: camera.width / scale, height: camera.height / scale },
+    kGap_px,
+  );
   if (!place) return nothing;
-  const at = { left: `${place.left}px`, top: `${place.top}px`, width: `${kLength.width}px`, "justify-content": place.left < end[0] ? "end" : "start" };
+  const at = {
+    left: `${place.left}px`,
+    top: `${place.top}px`,
+    width: `${kLength.width}px`,
+    "justify-content": place.left < end[0] ? "end" : "start",
+  };
   return html`<div class="length numeric" aria-hidden="true" ${styled(at)}><b>${format_length(metres)}</b></div>`;
 }

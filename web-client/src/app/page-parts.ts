@@ -1,5 +1,6 @@
-// Pieces of the page that are loaded when they are first shown, or once nothing else is to be done. Their elements are rendered when they are
-// here and not before: an element that is defined later is connected before it has what was set on it.
+// Pieces of the page that are loaded when they are first shown, or once nothing else is to be done.
+// Their elements are rendered when they are here and not before: an element that is defined later
+// is connected before it has what was set on it.
 
 import { notices } from "./notices";
 import { texts } from "./texts";
@@ -31,8 +32,9 @@ function load(part: PagePart): Promise<void> {
 }
 
 /**
- * Whether it may be rendered. Where not, it is loaded, and `host` is rendered again when it is here. Files of a build go with it: a page that was opened
- * before an update of the server may miss a piece, and is loaded anew by its person.
+ * Whether it may be rendered. Where not, it is loaded, and `host` is rendered again when it is
+ * here. Files of a build go with it: a page that was opened before an update of the server may miss
+ * a piece, and is loaded anew by its person.
  */
 export function has_part(part: PagePart, host: { requestUpdate(): void }): boolean {
   if (here.has(part)) return true;
@@ -40,13 +42,21 @@ export function has_part(part: PagePart, host: { requestUpdate(): void }): boole
     () => host.requestUpdate(),
     () => {
       const link = { label: texts.connection.reload, act: () => location.reload() };
-      notices.show("problem", texts.connection.part_missing, texts.connection.part_missing_hint, link);
+      notices.show(
+        "problem",
+        texts.connection.part_missing,
+        texts.connection.part_missing_hint,
+        link,
+      );
     },
   );
   return false;
 }
 
-/** Loads it while the person looks at something else. Nothing is said when it fails: it is asked for again when it is needed. */
+/**
+ * Loads it while the person looks at something else. Nothing is said when it fails: it is asked for
+ * again when it is needed.
+ */
 export function load_part_later(part: PagePart): void {
   const begin = (): void => {
     if (!here.has(part)) load(part).catch(() => {});

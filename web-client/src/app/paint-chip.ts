@@ -1,5 +1,6 @@
-// <strata-paint-chip>: what the chosen tool would paint now, on one line above the tools. For windows in which the panel that says so lies over the
-// model or is put away. Pressed, it brings that panel.
+// <strata-paint-chip>: what the chosen tool would paint now, on one line above the tools. For
+// windows in which the panel that says so lies over the model or is put away. Pressed, it brings
+// that panel.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -77,7 +78,10 @@ export class StrataPaintChip extends LitElement {
     const value = brush.value_of(layer);
     const color = erases ? null : color_of(session.layers.palette(layer), value);
     const what = erases ? texts.areas.erases : describe_value(layer, value, session.tables);
-    const width = tool === "brush" || tool === "eraser" ? `${format_number(brush.width[brush.unit])} ${brush.unit === "px" ? words.width_px : words.width_mm}` : "";
+    const width =
+      tool === "brush" || tool === "eraser"
+        ? `${format_number(brush.width[brush.unit])} ${brush.unit === "px" ? words.width_px : words.width_mm}`
+        : "";
     return html`<button class="quiet" title=${words.change} @click=${() => this.dispatchEvent(new CustomEvent("options"))}>
       ${session.locked_target ? icon("lock") : color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : icon(tool === "face" ? "brush" : tool)}
       <b class="ellipsis">${what}</b>

@@ -61,10 +61,16 @@ export class Painting {
     const { view, pointer } = this.host_;
     const model = this.host_.model();
     if (!model) return 0;
-    return 2 * this.radius_window_px() * view.camera.unit_per_pixel(pointer.surface_depth()) * metres_per(model.unit);
+    return (
+      2 *
+      this.radius_window_px() *
+      view.camera.unit_per_pixel(pointer.surface_depth()) *
+      metres_per(model.unit)
+    );
   }
 
-  // ── strokes ───────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── strokes
+  // ───────────────────────────────────────────────────────────────────────────────────────────────────────
 
   begin_stroke(erase: boolean): StrokeHandle | null {
     const layer = this.layer_to_paint();
@@ -84,7 +90,10 @@ export class Painting {
       shape,
     });
     if (!stroke) {
-      notices.show("problem", connection.full ? texts.brush.too_much_waits : texts.brush.not_connected);
+      notices.show(
+        "problem",
+        connection.full ? texts.brush.too_much_waits : texts.brush.not_connected,
+      );
       return null;
     }
     this.stroking = true;
@@ -119,7 +128,8 @@ export class Painting {
     else action();
   }
 
-  // ── whole edits ───────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── whole edits
+  // ───────────────────────────────────────────────────────────────────────────────────────────────────
 
   undo(): void {
     this.send_history("undo");
@@ -130,7 +140,12 @@ export class Painting {
 
   fill(layer: Layer): void {
     if (this.refuses(layer)) return;
-    this.send_edit(layer, { op: "fill", value: this.brush.value_of(layer), mode: "where", where: "true" });
+    this.send_edit(layer, {
+      op: "fill",
+      value: this.brush.value_of(layer),
+      mode: "where",
+      where: "true",
+    });
   }
 
   /** Fills what is connected with the place under the pointer. */
@@ -151,7 +166,13 @@ export class Painting {
     const target = this.area_target();
     if (!target) return;
     const camera = this.host_.view.camera.message();
-    this.send_edit(target.layer, { op: "polygon", ...target.paint, camera, path, through: this.brush.through });
+    this.send_edit(target.layer, {
+      op: "polygon",
+      ...target.paint,
+      camera,
+      path,
+      through: this.brush.through,
+    });
   }
 
   /** The server's answer to a whole edit that was sent from here: how much it changed. */
@@ -170,7 +191,12 @@ export class Painting {
   }
 
   private send_edit(layer: Layer, edit: Edit): void {
-    const id = this.host_.connection.send_change({ op: "edit", id: new_id(), layer: layer.id, edit });
+    const id = this.host_.connection.send_change({
+      op: "edit",
+      id: new_id(),
+      layer: layer.id,
+      edit,
+    });
     this.report_unsent(id);
     if (id !== null) this.whole_edits_.add(id);
   }
@@ -182,7 +208,10 @@ export class Painting {
     const found = message.values?.[layer.slug];
     if (found?.valid && found.value !== undefined) {
       this.brush.set_value(layer, found.value);
-      notices.show("info", texts.value.picked(describe_value(layer, found.value, this.host_.records), label_of(layer)));
+      notices.show(
+        "info",
+        texts.value.picked(describe_value(layer, found.value, this.host_.records), label_of(layer)),
+      );
     } else {
       notices.show("info", texts.value.picked_nothing(label_of(layer)));
     }
@@ -198,7 +227,10 @@ export class Painting {
     if (id === null) notices.show("problem", texts.brush.not_connected);
   }
 
-  /** The brush's value for the layer; null when the layer cannot hold it, and the person was told why. */
+  /**
+   * The brush's value for the layer; null when the layer cannot hold it, and the person was told
+   * why.
+   */
   private value_for(layer: Layer, erase: boolean): number | null {
     const value = this.brush.value_of(layer);
     const wrong = erase ? null : value_problem(layer, value);

@@ -1,5 +1,5 @@
-// A field for a password that can be looked at while it is written. A template and no element: password managers look
-// for fields beside each other in one form.
+// A field for a password that can be looked at while it is written. A template and no element:
+// password managers look for fields beside each other in one form.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { icon } from "./icons";
@@ -41,7 +41,14 @@ export const password_styles = css`
   }
 `;
 
-export function password_field({ name, label, autocomplete, problem = "", wrong_by = "", hint = "" }: PasswordField): TemplateResult {
+export function password_field({
+  name,
+  label,
+  autocomplete,
+  problem = "",
+  wrong_by = "",
+  hint = "",
+}: PasswordField): TemplateResult {
   return html`<div class="password">
     <label for=${name}>${label}</label>
     <div class="inside">

@@ -1,5 +1,6 @@
-// Where the others point on the surface, as this view sees it. What comes a few times a second glides between; whether a place is hidden
-// behind the surface the server is asked, one place at a time: what would a ray through its pixel meet?
+// Where the others point on the surface, as this view sees it. What comes a few times a second
+// glides between; whether a place is hidden behind the surface the server is asked, one place at a
+// time: what would a ray through its pixel meet?
 
 import { new_id } from "../core/api";
 import { bounding_radius, type CameraMessage, type OrbitCamera } from "../core/camera";
@@ -46,7 +47,14 @@ export class PeopleCursors {
   on_change: () => void = () => {};
 
   private readonly cursors_ = new Map<string, Cursor>(); // by session
-  private question_: { id: string; session: string; to: Vec3; back: Vec3; slack: number; at_ms: number } | null = null;
+  private question_: {
+    id: string;
+    session: string;
+    to: Vec3;
+    back: Vec3;
+    slack: number;
+    at_ms: number;
+  } | null = null;
   private ask_timer_: ReturnType<typeof setTimeout> | null = null;
   private fade_timer_: ReturnType<typeof setTimeout> | null = null;
 
@@ -55,7 +63,8 @@ export class PeopleCursors {
   /** Everybody but this connection. */
   receive(viewers: readonly PresenceUser[]): void {
     const pointing = viewers.filter(({ pointer }) => pointer);
-    for (const session of this.cursors_.keys()) if (!pointing.some((viewer) => viewer.session === session)) this.cursors_.delete(session);
+    for (const session of this.cursors_.keys())
+      if (!pointing.some((viewer) => viewer.session === session)) this.cursors_.delete(session);
     for (const viewer of pointing) this.put(viewer, viewer.pointer!);
     this.wait_to_fade();
     this.ask();
@@ -75,9 +84,19 @@ export class PeopleCursors {
       const place = this.place(cursor, now);
       const seen = camera.project_inside(place);
       if (!seen) return [];
-      const radius = cursor.radius === null ? null : cursor.radius / camera.unit_per_pixel(seen.depth) / scale;
+      const radius =
+        cursor.radius === null ? null : cursor.radius / camera.unit_per_pixel(seen.depth) / scale;
       const hidden = cursor.hidden || camera.cuts_away(place);
-      return [{ viewer: cursor.viewer, x: seen.x / scale, y: seen.y / scale, radius, hidden, faded: now - cursor.moved_ms >= kFadesAfter_ms }];
+      return [
+        {
+          viewer: cursor.viewer,
+          x: seen.x / scale,
+          y: seen.y / scale,
+          radius,
+          hidden,
+          faded: now - cursor.moved_ms >= kFadesAfter_ms,
+        },
+      ];
     });
   }
 
@@ -95,7 +114,10 @@ export class PeopleCursors {
     const cursor = this.cursors_.get(question.session);
     // A place that has moved on is asked for again.
     if (cursor && cursor.to === question.to) {
-      cursor.hidden = hit && position !== undefined && dot(subtract(position, question.to), question.back) > question.slack;
+      cursor.hidden =
+        hit &&
+        position !== undefined &&
+        dot(subtract(position, question.to), question.back) > question.slack;
       this.on_change();
     }
     this.ask();
@@ -126,7 +148,13 @@ export class PeopleCursors {
     const known = this.cursors_.get(viewer.session);
     if (!known) {
       const still = { from: position, to: position, moved_ms: now, glide_ms: 0 };
-      this.cursors_.set(viewer.session, { viewer, ...still, radius: radius ?? null, hidden: false, asked: false });
+      this.cursors_.set(viewer.session, {
+        viewer,
+        ...still,
+        radius: radius ?? null,
+        hidden: false,
+        asked: false,
+      });
       return;
     }
     known.viewer = viewer;
@@ -134,7 +162,9 @@ export class PeopleCursors {
     if (length(subtract(position, known.to)) === 0) return;
     known.from = this.place(known, now);
     known.to = position;
-    known.glide_ms = this.host_.wants_less_motion() ? 0 : Math.min(kGlide_ms.most, Math.max(kGlide_ms.least, now - known.moved_ms));
+    known.glide_ms = this.host_.wants_less_motion()
+      ? 0
+      : Math.min(kGlide_ms.most, Math.max(kGlide_ms.least, now - known.moved_ms));
     known.moved_ms = now;
     known.asked = false;
   }
@@ -147,26 +177,42 @@ export class PeopleCursors {
     if (this.fade_timer_) clearTimeout(this.fade_timer_);
     this.fade_timer_ = null;
     const now = performance.now();
-    const waits = [...this.cursors_.values()].map(({ moved_ms }) => moved_ms + kFadesAfter_ms - now).filter((wait) => wait > 0);
+    const waits = [...this.cursors_.values()]
+      .map(({ moved_ms }) => moved_ms + kFadesAfter_ms - now)
+      .filter((wait) => wait > 0);
     if (waits.length === 0) return;
-    this.fade_timer_ = setTimeout(() => {
-      this.on_change();
-      this.wait_to_fade();
-    }, Math.min(...waits) + 1);
+    this.fade_timer_ = setTimeout(
+      () => {
+        this.on_change();
+        this.wait_to_fade();
+      },
+      Math.min(...waits) + 1,
+    );
   }
 
   private ask(): void {
     if (this.ask_timer_ || !this.host_.ready()) return;
     const now = performance.now();
-    if (this.question_ && now - this.question_.at_ms < kGiveUpAfter_ms) return; // its answer asks on
+    // its answer asks on
+    if (this.question_ && now - this.question_.at_ms < kGiveUpAfter_ms) return;
     const camera = this.host_.camera();
     for (const [session, cursor] of this.cursors_) {
       if (cursor.asked) continue;
       const seen = camera.project_inside(cursor.to);
       if (!seen) continue;
       cursor.asked = true;
-      const slack = Math.max(kSlack_px * camera.unit_per_pixel(seen.depth), 1e-3 * bounding_radius(camera.bounds));
-      this.question_ = { id: new_id(), session, to: cursor.to, back: camera.axes().back, slack, at_ms: now };
+      const slack = Math.max(
+        kSlack_px * camera.unit_per_pixel(seen.depth),
+        1e-3 * bounding_radius(camera.bounds),
+      );
+      this.question_ = {
+        id: new_id(),
+        session,
+        to: cursor.to,
+        back: camera.axes().back,
+        slack,
+        at_ms: now,
+      };
       this.host_.ask(this.question_.id, seen.x, seen.y, camera.message());
       this.ask_timer_ = setTimeout(() => {
         this.ask_timer_ = null;

@@ -1,4 +1,5 @@
-// <strata-people-dialog>: who has an account, and what they may do; invites people by a link that is shown once. Beside them the groups.
+// <strata-people-dialog>: who has an account, and what they may do; invites people by a link that
+// is shown once. Beside them the groups.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -228,13 +229,17 @@ export class StrataPeopleDialog extends LitElement {
         choose: (part) => (this.part_ = part),
       })}
       ${this.people_ ? (this.part_ === "groups" ? this.group_list(this.people_) : this.content(this.people_)) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
-      ${this.problem_
-        ? html`<p class="error" role="alert">${this.problem_}</p>
+      ${
+        this.problem_
+          ? html`<p class="error" role="alert">${this.problem_}</p>
             <button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button>`
-        : nothing}
-      ${this.in_projects_
-        ? html`<strata-project-roles-dialog .api=${this.api} .person=${this.in_projects_} @closed=${() => (this.in_projects_ = null)}></strata-project-roles-dialog>`
-        : nothing}
+          : nothing
+      }
+      ${
+        this.in_projects_
+          ? html`<strata-project-roles-dialog .api=${this.api} .person=${this.in_projects_} @closed=${() => (this.in_projects_ = null)}></strata-project-roles-dialog>`
+          : nothing
+      }
     </strata-dialog>`;
   }
 
@@ -248,7 +253,12 @@ export class StrataPeopleDialog extends LitElement {
   }
 
   private content(people: readonly Person[]): TemplateResult {
-    const shown = find_people(people, this.filter_, ({ role, state, groups }) => `${texts.roles[role]} ${words.states[state]} ${groups.join(" ")}`);
+    const shown = find_people(
+      people,
+      this.filter_,
+      ({ role, state, groups }) =>
+        `${texts.roles[role]} ${words.states[state]} ${groups.join(" ")}`,
+    );
     return html`<div class="bar">
         <input
           type="text"
@@ -264,9 +274,10 @@ export class StrataPeopleDialog extends LitElement {
         <button class=${this.inviting_ || this.invitation_ ? "" : "primary"} ?disabled=${this.inviting_} @click=${this.begin_to_invite}>${icon("plus")}${words.invite}</button>
       </div>
       ${this.inviting_ ? this.invite_form() : nothing} ${this.invitation_ ? this.link(this.invitation_) : nothing}
-      ${shown.length === 0
-        ? html`<p class="hint">${words.none_found}</p>`
-        : html`<table>
+      ${
+        shown.length === 0
+          ? html`<p class="hint">${words.none_found}</p>`
+          : html`<table>
             <thead>
               <tr>
                 <th scope="col">${words.user}</th>
@@ -283,7 +294,8 @@ export class StrataPeopleDialog extends LitElement {
                 (person) => this.row(person),
               )}
             </tbody>
-          </table>`}`;
+          </table>`
+      }`;
   }
 
   private row(person: Person): TemplateResult {
@@ -295,22 +307,28 @@ export class StrataPeopleDialog extends LitElement {
       <td class="name">
         <b>${name}</b> ${user === this.me.user ? html`<span class="chip you">${words.you}</span>` : nothing}
         ${full_name.trim() ? html`<span class="hint">${user}</span>` : nothing}
-        ${groups.length > 0
-          ? html`<span class="groups" aria-label=${texts.groups.of(name)} role="group">${groups.map((group) => html`<span class="chip group">${group}</span>`)}</span>`
-          : nothing}
+        ${
+          groups.length > 0
+            ? html`<span class="groups" aria-label=${texts.groups.of(name)} role="group">${groups.map((group) => html`<span class="chip group">${group}</span>`)}</span>`
+            : nothing
+        }
         ${note ? html`<span class=${note.kind} role=${note.kind === "error" ? "alert" : "status"}>${note.text}</span>` : nothing}
       </td>
       <td class="role">
-        ${changeable
-          ? html`<select aria-label=${words.role_of(name)} title=${texts.role_hints[role]} @change=${(event: Event) => void this.change_role(person, event.target as HTMLSelectElement)}>
+        ${
+          changeable
+            ? html`<select aria-label=${words.role_of(name)} title=${texts.role_hints[role]} @change=${(event: Event) => void this.change_role(person, event.target as HTMLSelectElement)}>
               ${roles_to_give(this.me.role).map((each) => html`<option value=${each} ?selected=${each === role}>${texts.roles[each]}</option>`)}
             </select>`
-          : html`<span title=${texts.role_hints[role]}>${texts.roles[role]}</span>`}
+            : html`<span title=${texts.role_hints[role]}>${texts.roles[role]}</span>`
+        }
       </td>
       <td class="state">
-        ${role === "owner" && state === "invited" // nobody has invited them
-          ? html`<span class="chip" title=${words.no_password_hint}>${words.no_password}</span>`
-          : html`<span class="chip ${state}" title=${words.state_hints[state]}>${words.states[state]}</span>`}
+        ${
+          role === "owner" && state === "invited" // nobody has invited them
+            ? html`<span class="chip" title=${words.no_password_hint}>${words.no_password}</span>`
+            : html`<span class="chip ${state}" title=${words.state_hints[state]}>${words.states[state]}</span>`
+        }
       </td>
       <td class="seen" data-label=${words.last_seen}>${person.last_seen ? told_time(person.last_seen) : words.never}</td>
       <td>${changeable ? this.options(person, name) : nothing}</td>
@@ -321,12 +339,16 @@ export class StrataPeopleDialog extends LitElement {
     const disabled = person.state === "disabled";
     return html`<strata-menu label=${words.options(name)}>
       <button class="quiet" role="menuitem" @click=${() => (this.in_projects_ = person)}>${icon("layers")}${words.projects}</button>
-      ${disabled
-        ? nothing
-        : html`<button class="quiet" role="menuitem" @click=${() => void this.make_link(person)}>${icon("link")}${words.new_link}</button>`}
-      ${disabled
-        ? html`<button class="quiet" role="menuitem" @click=${() => void this.enable(person)}>${icon("check")}${words.enable}</button>`
-        : html`<button class="quiet" role="menuitem" @click=${() => void this.disable(person)}>${icon("leave")}${words.disable}</button>`}
+      ${
+        disabled
+          ? nothing
+          : html`<button class="quiet" role="menuitem" @click=${() => void this.make_link(person)}>${icon("link")}${words.new_link}</button>`
+      }
+      ${
+        disabled
+          ? html`<button class="quiet" role="menuitem" @click=${() => void this.enable(person)}>${icon("check")}${words.enable}</button>`
+          : html`<button class="quiet" role="menuitem" @click=${() => void this.disable(person)}>${icon("leave")}${words.disable}</button>`
+      }
       <hr />
       <button class="quiet" role="menuitem" @click=${() => void this.delete_person(person)}>${icon("trash")}${words.delete}</button>
     </strata-menu>`;
@@ -334,7 +356,12 @@ export class StrataPeopleDialog extends LitElement {
 
   private invite_form(): TemplateResult {
     const problems = this.field_problems_;
-    const text_field = (name: "user" | "full_name", label: string, placeholder: string, most: number): TemplateResult =>
+    const text_field = (
+      name: "user" | "full_name",
+      label: string,
+      placeholder: string,
+      most: number,
+    ): TemplateResult =>
       html`<div>
         <label class="field">
           <span>${label}</span>
@@ -367,12 +394,14 @@ export class StrataPeopleDialog extends LitElement {
           <small class="error" id="role_problem" role="alert" ?hidden=${!problems.role}>${problems.role ?? ""}</small>
         </div>
       </div>
-      ${this.groups_.length > 0
-        ? html`<fieldset>
+      ${
+        this.groups_.length > 0
+          ? html`<fieldset>
             <legend class="caption">${texts.groups.title}</legend>
             ${this.groups_.map(({ id, name }) => html`<label><input type="checkbox" name="group" value=${id} />${name}</label>`)}
           </fieldset>`
-        : nothing}
+          : nothing
+      }
       <div class="row">
         <button type="button" @click=${() => (this.inviting_ = false)}>${texts.cancel}</button>
         <button class="primary" ?disabled=${this.busy_}>${words.invite_button}</button>
@@ -397,7 +426,9 @@ export class StrataPeopleDialog extends LitElement {
     this.role_ = kUsualRole;
     this.invitation_ = null;
     this.field_problems_ = {};
-    void this.updateComplete.then(() => this.renderRoot.querySelector<HTMLInputElement>("input[name=user]")?.focus());
+    void this.updateComplete.then(() =>
+      this.renderRoot.querySelector<HTMLInputElement>("input[name=user]")?.focus(),
+    );
     void this.attempt(async () => {
       this.groups_ = await this.api.groups();
     });
@@ -426,7 +457,14 @@ export class StrataPeopleDialog extends LitElement {
 
   private async make_link(person: Person): Promise<void> {
     const name = called(person);
-    if (!(await ask({ heading: words.new_link_title(name), lead: words.new_link_lead, yes: words.new_link_button }))) return;
+    if (
+      !(await ask({
+        heading: words.new_link_title(name),
+        lead: words.new_link_lead,
+        yes: words.new_link_button,
+      }))
+    )
+      return;
     await this.change_row(person, async () => {
       this.inviting_ = false;
       this.invitation_ = await this.api.invite_again(person.user);
@@ -443,7 +481,15 @@ export class StrataPeopleDialog extends LitElement {
 
   private async disable(person: Person): Promise<void> {
     const name = called(person);
-    if (!(await ask({ heading: words.disable_title(name), lead: words.disable_lead, yes: words.disable_button, danger: true }))) return;
+    if (
+      !(await ask({
+        heading: words.disable_title(name),
+        lead: words.disable_lead,
+        yes: words.disable_button,
+        danger: true,
+      }))
+    )
+      return;
     await this.change(person, { disabled: true }, words.disabled);
   }
 
@@ -453,7 +499,15 @@ export class StrataPeopleDialog extends LitElement {
 
   private async delete_person(person: Person): Promise<void> {
     const name = called(person);
-    if (!(await ask({ heading: words.delete_title(name), lead: words.delete_lead, yes: texts.delete, danger: true }))) return;
+    if (
+      !(await ask({
+        heading: words.delete_title(name),
+        lead: words.delete_lead,
+        yes: texts.delete,
+        danger: true,
+      }))
+    )
+      return;
     await this.change_row(person, async () => {
       await this.api.delete_person(person.user);
       if (this.invitation_?.user.id === person.id) this.invitation_ = null;
@@ -492,8 +546,10 @@ export class StrataPeopleDialog extends LitElement {
       if (!(error instanceof ApiError)) throw error;
       const { field } = error.problem;
       if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
-      else if (this.inviting_ && (field === "full_name" || field === "role")) this.refuse(field, error.message);
-      else if (this.inviting_ && (field === "user" || error.status === 409)) this.refuse("user", error.message);
+      else if (this.inviting_ && (field === "full_name" || field === "role"))
+        this.refuse(field, error.message);
+      else if (this.inviting_ && (field === "user" || error.status === 409))
+        this.refuse("user", error.message);
       else this.problem_ = error.message;
     } finally {
       this.busy_ = false;

@@ -109,10 +109,15 @@ export class StrataPeopleMenu extends LitElement {
     if (people.length === 0) return html``;
     const words = texts.together;
     const others = people.filter(({ viewer }) => viewer !== null);
-    // On a phone, who is alone has their face at the menu of the account already, and the title needs the room.
-    if (this.narrow_.matches && people.length === 1 && others.length === 0 && !together.leading) return html``;
+    // On a phone, who is alone has their face at the menu of the account already, and the title
+    // needs the room.
+    if (this.narrow_.matches && people.length === 1 && others.length === 0 && !together.leading)
+      return html``;
     const most = this.narrow_.matches ? kMostFacesOnPhone : kMostFaces;
-    const seen = [...people.slice(0, most).map(initials), ...(people.length > most ? [`+${people.length - most}`] : [])].join(" ");
+    const seen = [
+      ...people.slice(0, most).map(initials),
+      ...(people.length > most ? [`+${people.length - most}`] : []),
+    ].join(" ");
     const label = `${texts.people.here(people.length)}: ${format_list(people.map((person) => this.name(person)))}`;
     return html`<strata-menu wide label=${name_with(label, seen)}>
       <span class="faces" slot="face">${this.faces(most)}</span>
@@ -151,8 +156,18 @@ export class StrataPeopleMenu extends LitElement {
     const follows = together.followed?.session === viewer.session;
     const able = follows || together.can_follow(person);
     const follows_back = person.following.includes(session);
-    const hint = !able ? words.follows_you : person.leading ? words.asks : follows_back ? words.follows_you : "";
-    const label = follows ? words.stop_following : person.own ? words.follow_own : words.follow(called(person));
+    const hint = !able
+      ? words.follows_you
+      : person.leading
+        ? words.asks
+        : follows_back
+          ? words.follows_you
+          : "";
+    const label = follows
+      ? words.stop_following
+      : person.own
+        ? words.follow_own
+        : words.follow(called(person));
     return html`<button
       class="quiet"
       role="menuitem"

@@ -1,4 +1,5 @@
-// <strata-people-overlay>: where the others point, over the picture. Pointers go through it. Draws itself, not the page, while they move.
+// <strata-people-overlay>: where the others point, over the picture. Pointers go through it. Draws
+// itself, not the page, while they move.
 
 import { css, html, LitElement, svg, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -80,7 +81,8 @@ export class StrataPeopleOverlay extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.setAttribute("aria-hidden", "true"); // places in a picture; who is here is told in the page's head
+    // places in a picture; who is here is told in the page's head
+    this.setAttribute("aria-hidden", "true");
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
@@ -111,15 +113,22 @@ export class StrataPeopleOverlay extends LitElement {
   private person({ viewer, x, y, radius, hidden, faded }: PersonCursor): TemplateResult {
     const { color } = viewer;
     const leftwards = x > this.clientWidth - kRoomForName_px && x > kRoomForName_px;
-    const classes = ["person", leftwards ? "leftwards" : "", hidden ? "hidden" : "", faded ? "faded" : ""].join(" ");
+    const classes = [
+      "person",
+      leftwards ? "leftwards" : "",
+      hidden ? "hidden" : "",
+      faded ? "faded" : "",
+    ].join(" ");
     const brush = radius !== null && radius >= kLeastRadius_px;
     const beside = brush ? Math.min(radius, 40) * 0.7 : 0; // the name lies at the rim of the brush
     return html`<div class=${classes} data-session=${viewer.session} ${styled({ transform: `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)` })}>
       <svg>
-        ${brush
-          ? svg`<circle r=${radius} fill=${color} fill-opacity="0.14" stroke="var(--mark-light)" stroke-width="3.6" />
+        ${
+          brush
+            ? svg`<circle r=${radius} fill=${color} fill-opacity="0.14" stroke="var(--mark-light)" stroke-width="3.6" />
               <circle r=${radius} fill="none" stroke=${color} stroke-width="2" /><circle r="1.8" fill=${color} stroke="var(--mark-light)" stroke-width="0.8" />`
-          : svg`<path d="M0 0l5.2 14.5 2.4-6.1 6.3-2.200z" fill=${color} stroke="var(--mark-light)" stroke-width="1.3" />`}
+            : svg`<path d="M0 0l5.2 14.5 2.4-6.1 6.3-2.200z" fill=${color} stroke="var(--mark-light)" stroke-width="1.3" />`
+        }
       </svg>
       <b class="ellipsis" ${styled({ background: color, color: ink_on(color), transform: brush ? `translate(${leftwards ? -beside : beside}px, ${beside - 8}px)` : null })}
         >${name_of(viewer)}</b

@@ -1,4 +1,5 @@
-// What a person keeps of how they show the layers of a model: sent to the server soon after each change, and before the page goes.
+// What a person keeps of how they show the layers of a model: sent to the server soon after each
+// change, and before the page goes.
 
 import { ApiError, type Api } from "../core/api";
 import type { PersonalView } from "../core/protocol.gen";

@@ -1,4 +1,5 @@
-// <strata-photos-dialog>: many files at once, whose names say which records they are of: first which go where, then they are sent.
+// <strata-photos-dialog>: many files at once, whose names say which records they are of: first
+// which go where, then they are sent.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -15,7 +16,10 @@ const words = texts.files;
 const kAsk_ms = 250; // after the last letter of the pattern
 const kMostShown = 200;
 
-/** What the names of these files may be made of: words between lines and points, the first of which is the record's. */
+/**
+ * What the names of these files may be made of: words between lines and points, the first of which
+ * is the record's.
+ */
 export function likely_pattern(names: readonly string[], column: string): string {
   const [first = ""] = names;
   const dot = first.lastIndexOf(".");
@@ -78,7 +82,8 @@ export class StrataPhotosDialog extends LitElement {
     const columns = this.columns;
     const table = this.session.tables.find(this.table);
     const title = table ? label_column(table) : null;
-    this.column_ = title && title.kind !== "term" ? title.slug : "key"; // files are not called by terms
+    // files are not called by terms
+    this.column_ = title && title.kind !== "term" ? title.slug : "key";
     this.target_ = (columns.find(({ kind }) => kind === "picture") ?? columns[0])?.slug ?? "";
     this.pattern_ = likely_pattern(this.names, this.column_);
     this.problem_ = this.target_ === "" ? words.no_column : "";
@@ -94,12 +99,21 @@ export class StrataPhotosDialog extends LitElement {
     return this.files.map(({ name }) => name);
   }
   private get columns(): Column[] {
-    return this.session.tables.find(this.table)?.columns.filter(({ kind }) => kind === "picture" || kind === "document") ?? [];
+    return (
+      this.session.tables
+        .find(this.table)
+        ?.columns.filter(({ kind }) => kind === "picture" || kind === "document") ?? []
+    );
   }
 
   override render(): TemplateResult {
     const { matches_: matches, session } = this;
-    const named = session.tables.find(this.table)?.columns.filter(({ kind }) => kind === "text" || kind === "integer" || kind === "enumeration") ?? [];
+    const named =
+      session.tables
+        .find(this.table)
+        ?.columns.filter(
+          ({ kind }) => kind === "text" || kind === "integer" || kind === "enumeration",
+        ) ?? [];
     const ready = matches !== null && matches.matched.length > 0 && !this.busy_;
     return html`<strata-dialog wide heading=${words.folder_title(this.files.length)} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <div class="choices" ?inert=${this.busy_}>
@@ -130,7 +144,11 @@ export class StrataPhotosDialog extends LitElement {
   }
 
   private found({ matched, unmatched, duplicate }: AttachmentMatches): TemplateResult {
-    const rows = (title: string, names: readonly MatchedName[], tell: (name: MatchedName) => unknown): TemplateResult | typeof nothing =>
+    const rows = (
+      title: string,
+      names: readonly MatchedName[],
+      tell: (name: MatchedName) => unknown,
+    ): TemplateResult | typeof nothing =>
       names.length === 0
         ? nothing
         : html`<tbody>
@@ -140,7 +158,8 @@ export class StrataPhotosDialog extends LitElement {
             ${names.slice(0, kMostShown).map((each) => html`<tr><td>${each.name}</td><td class="left">${tell(each)}</td></tr>`)}
             ${names.length > kMostShown ? html`<tr><td colspan="2" class="left">${words.more(names.length - kMostShown)}</td></tr>` : nothing}
           </tbody>`;
-    const record = ({ key = 0 }: MatchedName): string => this.session.tables.label(this.table, key) ?? texts.tables.record(key);
+    const record = ({ key = 0 }: MatchedName): string =>
+      this.session.tables.label(this.table, key) ?? texts.tables.record(key);
     return html`<div class="found">
       <table>
         ${rows(words.matched(matched.length), matched, record)} ${rows(words.duplicates(duplicate.length), duplicate, ({ reason = "twice" }) => words.reasons[reason])}
@@ -165,7 +184,11 @@ export class StrataPhotosDialog extends LitElement {
     const asked = ++this.asked_;
     const { pattern_: pattern, column_: column, names } = this;
     try {
-      const matches = await this.session.api.match_attachments(this.table, { pattern, column, names });
+      const matches = await this.session.api.match_attachments(this.table, {
+        pattern,
+        column,
+        names,
+      });
       if (asked !== this.asked_) return;
       this.matches_ = matches;
       this.problem_ = "";
@@ -177,7 +200,9 @@ export class StrataPhotosDialog extends LitElement {
     }
   }
 
-  /** One after the other: what was sent stays if one is refused, and a second try finds it there. */
+  /**
+   * One after the other: what was sent stays if one is refused, and a second try finds it there.
+   */
   private async send(): Promise<void> {
     const { matches_: matches, target_: target } = this;
     if (!matches || this.busy_) return;

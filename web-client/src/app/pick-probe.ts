@@ -1,4 +1,5 @@
-// Asks the server what is under the pointer: one question at a time, the newest place wins, and not too often.
+// Asks the server what is under the pointer: one question at a time, the newest place wins, and not
+// too often.
 
 import { new_id } from "../core/api";
 import type { PointerSample } from "../core/input";
@@ -30,7 +31,10 @@ export class PickProbe {
 
   /** A press that still waits keeps its purpose, wherever the pointer goes meanwhile. */
   ask(sample: PointerSample, purpose: PickPurpose = "hover"): void {
-    this.waiting_ = { sample, purpose: purpose === "hover" ? (this.waiting_?.purpose ?? "hover") : purpose };
+    this.waiting_ = {
+      sample,
+      purpose: purpose === "hover" ? (this.waiting_?.purpose ?? "hover") : purpose,
+    };
     this.send();
   }
 
@@ -71,7 +75,8 @@ export class PickProbe {
     const waiting = this.waiting_;
     if (!waiting || this.timer_ || !this.host_.ready()) return;
     const now_ms = performance.now();
-    if (this.asked_ && now_ms - this.asked_.at_ms < kGiveUpAfter_ms) return; // its answer sends the next
+    // its answer sends the next
+    if (this.asked_ && now_ms - this.asked_.at_ms < kGiveUpAfter_ms) return;
     this.waiting_ = null;
     this.asked_ = { id: new_id(), at_ms: now_ms, purpose: waiting.purpose };
     this.host_.ask(this.asked_.id, waiting.sample);

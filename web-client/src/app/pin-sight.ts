@@ -1,5 +1,6 @@
-// Which places of the surface are seen, and not behind something. While the camera moves, those that were seen and face it count as seen; once
-// it rests, the server says what it sees at their pixels.
+// Which places of the surface are seen, and not behind something. While the camera moves, those
+// that were seen and face it count as seen; once it rests, the server says what it sees at their
+// pixels.
 
 import { bounding_radius, type CameraMessage, type OrbitCamera } from "../core/camera";
 import type { Point } from "../core/connection";
@@ -76,7 +77,10 @@ export class PinSight {
 }
 
 /** Whether the surface at the place is turned to the camera. */
-export function faces(camera: OrbitCamera, { position, normal }: Pick<PinPlace, "position" | "normal">): boolean {
+export function faces(
+  camera: OrbitCamera,
+  { position, normal }: Pick<PinPlace, "position" | "normal">,
+): boolean {
   const towards = camera.perspective ? subtract(camera.eye(), position) : camera.axes().back;
   return dot(normal, towards) > 0.05 * length(towards);
 }

@@ -86,7 +86,8 @@ export class PointerWatch {
 
   private on_picked(message: Picked, purpose: PickPurpose): void {
     if (this.at || purpose !== "hover") this.picked = message;
-    if (message.hit && message.position) this.see_depth(this.host_.camera().depth_of(message.position));
+    if (message.hit && message.position)
+      this.see_depth(this.host_.camera().depth_of(message.position));
     if (purpose === "take") this.host_.taken(message);
     if (purpose === "look") this.host_.looked(message);
     this.host_.learned();

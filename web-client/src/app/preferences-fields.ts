@@ -1,4 +1,5 @@
-// <strata-preferences>: what a person may choose for the page at this browser, and the dialog that holds it.
+// <strata-preferences>: what a person may choose for the page at this browser, and the dialog that
+// holds it.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, query } from "lit/decorators.js";
@@ -37,7 +38,8 @@ export class StrataPreferences extends LitElement {
       <select name="language" @change=${() => void this.change_language()}>
         <option value="" ?selected=${chosen === null}>${words.as_browser}</option>
         ${kPageLanguages.map(
-          (language) => html`<option value=${language} lang=${language} ?selected=${language === chosen}>${titled(name_of_language(language))}</option>`,
+          (language) =>
+            html`<option value=${language} lang=${language} ?selected=${language === chosen}>${titled(name_of_language(language))}</option>`,
         )}
       </select>
     </label>
@@ -54,7 +56,15 @@ export class StrataPreferences extends LitElement {
     const words = texts.settings;
     const wanted = kPageLanguages.find((language) => language === this.language_.value) ?? null;
     const lost = unsaved_changes();
-    if (lost > 0 && !(await ask({ heading: words.reload_title, lead: words.reload_lead(lost), yes: words.reload, danger: true }))) {
+    if (
+      lost > 0 &&
+      !(await ask({
+        heading: words.reload_title,
+        lead: words.reload_lead(lost),
+        yes: words.reload,
+        danger: true,
+      }))
+    ) {
       this.language_.value = chosen_language() ?? "";
       return;
     }

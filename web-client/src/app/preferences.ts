@@ -1,4 +1,5 @@
-// What this person chose for the page at this browser: its language and its theme, and that they have seen the tour. Nothing of it is told to the server.
+// What this person chose for the page at this browser: its language and its theme, and that they
+// have seen the tour. Nothing of it is told to the server.
 
 import { kPageLanguages, type PageLanguage } from "../core/locale";
 import type { Background } from "../core/protocol.gen";
@@ -36,7 +37,10 @@ export function keep_theme(theme: Theme): void {
 }
 
 /** The one that holds: who asks their system for more contrast gets it, also from a dark one. */
-export const theme_of = (chosen: Theme, system: { dark: boolean; contrast: boolean }): Exclude<Theme, "system"> =>
+export const theme_of = (
+  chosen: Theme,
+  system: { dark: boolean; contrast: boolean },
+): Exclude<Theme, "system"> =>
   chosen !== "system" ? chosen : system.contrast ? "contrast" : system.dark ? "dark" : "light";
 
 const dark = "(prefers-color-scheme: dark)";
@@ -59,7 +63,10 @@ export function on_theme(listener: () => void): () => void {
 /** What the theme has behind the model; null: as the server has it. */
 export function stage_background(): Background | null {
   const style = getComputedStyle(document.documentElement);
-  const [top, bottom] = [style.getPropertyValue("--stage-top").trim(), style.getPropertyValue("--stage-bottom").trim()];
+  const [top, bottom] = [
+    style.getPropertyValue("--stage-top").trim(),
+    style.getPropertyValue("--stage-bottom").trim(),
+  ];
   return top && bottom ? { top, bottom } : null;
 }
 

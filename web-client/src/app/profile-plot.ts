@@ -1,5 +1,5 @@
-// <strata-profile-plot>: height, or what a layer holds, along the line that is measured. The pointer or the arrow keys choose a place of it, which is
-// marked on the model, too.
+// <strata-profile-plot>: height, or what a layer holds, along the line that is measured. The
+// pointer or the arrow keys choose a place of it, which is marked on the model, too.
 
 import { css, html, LitElement, nothing, render, svg, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -26,8 +26,20 @@ interface PlotColors {
   curve: string;
   ground: string;
 }
-const kOnPage: PlotColors = { ink: "var(--ink)", soft: "var(--ink-soft)", grid: "var(--line)", curve: "var(--accent)", ground: "none" };
-const kOnPaper: PlotColors = { ink: "black", soft: "dimgray", grid: "gainsboro", curve: "black", ground: "white" };
+const kOnPage: PlotColors = {
+  ink: "var(--ink)",
+  soft: "var(--ink-soft)",
+  grid: "var(--line)",
+  curve: "var(--accent)",
+  ground: "none",
+};
+const kOnPaper: PlotColors = {
+  ink: "black",
+  soft: "dimgray",
+  grid: "gainsboro",
+  curve: "black",
+  ground: "white",
+};
 
 @customElement("strata-profile-plot")
 export class StrataProfilePlot extends LitElement {
@@ -74,7 +86,9 @@ export class StrataProfilePlot extends LitElement {
 
   override connectedCallback(): void {
     super.connectedCallback();
-    this.observer_ = new ResizeObserver(([entry]) => (this.width_ = Math.floor(entry!.contentRect.width)));
+    this.observer_ = new ResizeObserver(
+      ([entry]) => (this.width_ = Math.floor(entry!.contentRect.width)),
+    );
     this.observer_.observe(this);
   }
 
@@ -86,7 +100,8 @@ export class StrataProfilePlot extends LitElement {
 
   override willUpdate(changed: Map<PropertyKey, unknown>): void {
     const only_pointed = changed.size === 1 && changed.has("pointed");
-    if (this.width_ > 0 && !(only_pointed && this.plot_)) this.plot_ = this.make(this.width_, kHeight_px);
+    if (this.width_ > 0 && !(only_pointed && this.plot_))
+      this.plot_ = this.make(this.width_, kHeight_px);
   }
 
   override render(): TemplateResult {
@@ -122,7 +137,10 @@ export class StrataProfilePlot extends LitElement {
     const left_by_lit: Node[] = [];
     while (comments.nextNode()) left_by_lit.push(comments.currentNode);
     for (const each of left_by_lit) each.parentNode?.removeChild(each);
-    return new Blob([`<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(drawn)}\n`], { type: "image/svg+xml" });
+    return new Blob(
+      [`<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(drawn)}\n`],
+      { type: "image/svg+xml" },
+    );
   }
 
   private get metres(): number {
@@ -131,9 +149,18 @@ export class StrataProfilePlot extends LitElement {
 
   private make(width: number, height: number): Plot {
     const { layer, metres } = this;
-    const y_of = ({ place, value }: ProfilePlace): number | null => (layer ? value : height_of(place, this.model.up) * metres);
-    const parts = this.profile.parts.map((part) => part.map((each): PlotPoint => ({ x: each.along * metres, y: y_of(each) })));
-    return make_plot({ parts, y_unit: layer ? layer.unit : null, equal: this.equal, width, height });
+    const y_of = ({ place, value }: ProfilePlace): number | null =>
+      layer ? value : height_of(place, this.model.up) * metres;
+    const parts = this.profile.parts.map((part) =>
+      part.map((each): PlotPoint => ({ x: each.along * metres, y: y_of(each) })),
+    );
+    return make_plot({
+      parts,
+      y_unit: layer ? layer.unit : null,
+      equal: this.equal,
+      width,
+      height,
+    });
   }
 
   private draw(plot: Plot, colors: PlotColors, place?: ProfilePlace): TemplateResult {
@@ -145,11 +172,17 @@ export class StrataProfilePlot extends LitElement {
     return html`<svg viewBox="0 0 ${width} ${height}" width=${width} height=${height} font-family="system-ui, sans-serif" font-size="11" aria-hidden="true">
       <rect width=${width} height=${height} fill=${colors.ground} />
       ${plot.y.ticks.map(
-        ({ at, label }) => svg`<path d="M${left} ${at.toFixed(1)}H${right}" stroke=${colors.grid} fill="none" />
+        ({
+          at,
+          label,
+        }) => svg`<path d="M${left} ${at.toFixed(1)}H${right}" stroke=${colors.grid} fill="none" />
           <text x=${left - 6} y=${at + 3.8} text-anchor="end" fill=${colors.soft}>${label}</text>`,
       )}
       ${plot.x.ticks.map(
-        ({ at, label }) => svg`<path d="M${at.toFixed(1)} ${bottom}v4" stroke=${colors.soft} fill="none" />
+        ({
+          at,
+          label,
+        }) => svg`<path d="M${at.toFixed(1)} ${bottom}v4" stroke=${colors.soft} fill="none" />
           <text x=${at} y=${bottom + 15} text-anchor="middle" fill=${colors.soft}>${label}</text>`,
       )}
       <path d="M${left} ${top}V${bottom}H${right}" stroke=${colors.soft} fill="none" />
@@ -157,10 +190,12 @@ export class StrataProfilePlot extends LitElement {
       <text x=${right} y=${height - 6} text-anchor="end" fill=${colors.ink} font-weight="600">${named(words.along, plot.x.unit)}</text>
       ${plot.breaks.map((at) => svg`<path class="break" d="M${at.toFixed(1)} ${top}V${bottom}" stroke=${colors.soft} stroke-dasharray="2 3" fill="none" />`)}
       ${plot.curves.map((curve) => svg`<path class="curve" d=${curve} stroke=${colors.curve} stroke-width="1.8" stroke-linejoin="round" stroke-linecap="round" fill="none" />`)}
-      ${place
-        ? svg`<path d="M${x.toFixed(1)} ${top}V${bottom}" stroke=${colors.ink} fill="none" />
+      ${
+        place
+          ? svg`<path d="M${x.toFixed(1)} ${top}V${bottom}" stroke=${colors.ink} fill="none" />
             ${y === null || y === undefined ? nothing : svg`<circle cx=${x} cy=${y} r="4.5" fill=${colors.curve} stroke="var(--raised)" stroke-width="1.5" />`}`
-        : nothing}
+          : nothing
+      }
     </svg>`;
   }
 
@@ -195,10 +230,20 @@ export class StrataProfilePlot extends LitElement {
 
   private readonly on_pointer = (event: PointerEvent): void => {
     const { plot_: plot, profile } = this;
-    if (!plot || profile.places.length === 0 || (event.type === "pointermove" && event.pointerType !== "mouse" && event.buttons === 0)) return;
+    if (
+      !plot ||
+      profile.places.length === 0 ||
+      (event.type === "pointermove" && event.pointerType !== "mouse" && event.buttons === 0)
+    )
+      return;
     const { left } = (event.currentTarget as HTMLElement).getBoundingClientRect();
     const along = plot.x_of(event.clientX - left) / this.metres;
-    this.point_out(nearest_index(profile.places.map((each) => each.along), along));
+    this.point_out(
+      nearest_index(
+        profile.places.map((each) => each.along),
+        along,
+      ),
+    );
   };
 
   private readonly on_key = (event: KeyboardEvent): void => {

@@ -1,4 +1,5 @@
-// <strata-project-card>: what is told of a project where one is chosen: a picture of one of its models, how many it has, when it was last changed.
+// <strata-project-card>: what is told of a project where one is chosen: a picture of one of its
+// models, how many it has, when it was last changed.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -78,7 +79,11 @@ export class StrataProjectCard extends LitElement {
   private async load(): Promise<void> {
     if (!this.isConnected) return;
     try {
-      const { activity } = await this.api.activity(this.listed.project.slug, { model: undefined, before: undefined, limit: 1 });
+      const { activity } = await this.api.activity(this.listed.project.slug, {
+        model: undefined,
+        before: undefined,
+        limit: 1,
+      });
       this.changed_ = activity[0]?.time ?? "";
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -89,9 +94,14 @@ export class StrataProjectCard extends LitElement {
   override render(): TemplateResult {
     const { project, models } = this.listed;
     const [first] = models;
-    return html`${first
-        ? keyed(first.id, html`<strata-thumbnail .api=${this.api} .model=${first}></strata-thumbnail>`)
-        : html`<div class="no-picture">${logo()}</div>`}
+    return html`${
+      first
+        ? keyed(
+            first.id,
+            html`<strata-thumbnail .api=${this.api} .model=${first}></strata-thumbnail>`,
+          )
+        : html`<div class="no-picture">${logo()}</div>`
+    }
       <div class="about">
         <b>${project.name}</b>
         ${project.description ? html`<p>${project.description}</p>` : nothing}

@@ -10,7 +10,8 @@ const words = texts.projects;
 
 /** A change of a project, which is put over another's only once this person knows of it. */
 export class ProjectChange {
-  private base_: Versioned<Project> | null = null; // the project as this person knows it; null: it is `project`
+  // the project as this person knows it; null: it is `project`
+  private base_: Versioned<Project> | null = null;
 
   constructor(
     private readonly api_: Pick<Api, "project" | "change_project">,
@@ -23,7 +24,12 @@ export class ProjectChange {
     const { value, etag } = this.base_ ?? (await this.api_.project(slug));
     const known = this.base_?.value ?? this.project_;
     try {
-      if (is_same(value, known)) return await this.api_.change_project(slug, { name, description: text, require_if_match }, etag);
+      if (is_same(value, known))
+        return await this.api_.change_project(
+          slug,
+          { name, description: text, require_if_match },
+          etag,
+        );
     } catch (error) {
       if (!(error instanceof ApiError) || error.status !== 412) throw error;
     }
@@ -37,14 +43,18 @@ export class ProjectChange {
 }
 
 const is_same = (a: Project, b: Project): boolean =>
-  a.name === b.name && a.description === b.description && (a.require_if_match ?? false) === (b.require_if_match ?? false);
+  a.name === b.name &&
+  a.description === b.description &&
+  (a.require_if_match ?? false) === (b.require_if_match ?? false);
 
 /** The project that was made or changed; null: none was. Without `project` a new one. */
 export function ask_project(api: Api, project: Project | null): Promise<Project | null> {
   let answer: Project | null = null;
   const change = project && new ProjectChange(api, project);
   const save = async (called: Called, key: string, require_if_match: boolean): Promise<string> => {
-    answer = change ? await change.save(called, require_if_match) : await api.create_project({ name: called.name, description: called.text }, key);
+    answer = change
+      ? await change.save(called, require_if_match)
+      : await api.create_project({ name: called.name, description: called.text }, key);
     return answer || !change ? "" : words.changed(change.name);
   };
   const dialog = Object.assign(new StrataNamingDialog(), {
@@ -53,7 +63,11 @@ export function ask_project(api: Api, project: Project | null): Promise<Project 
     yes: project ? texts.save : words.create,
     words,
     called: project && { name: project.name, text: project.description },
-    option: project && { label: words.require_version, hint: words.require_version_hint, checked: project.require_if_match ?? false },
+    option: project && {
+      label: words.require_version,
+      hint: words.require_version_hint,
+      checked: project.require_if_match ?? false,
+    },
     save,
   });
   return new Promise((resolve) => {

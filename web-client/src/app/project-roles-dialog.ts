@@ -1,5 +1,5 @@
-// <strata-project-roles-dialog>: what one person may do in each project, beside what they may do everywhere and what their groups give them
-// there; or what a group may do.
+// <strata-project-roles-dialog>: what one person may do in each project, beside what they may do
+// everywhere and what their groups give them there; or what a group may do.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -77,7 +77,11 @@ export class StrataProjectRolesDialog extends LitElement {
     try {
       const projects = await this.api.projects();
       const members = await Promise.all(projects.map(({ slug }) => this.api.members(slug)));
-      this.rows_ = projects.map((project, i) => ({ project, ...this.roles_in(members[i]!), note: null }));
+      this.rows_ = projects.map((project, i) => ({
+        project,
+        ...this.roles_in(members[i]!),
+        note: null,
+      }));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       this.problem_ = error.message;
@@ -86,8 +90,12 @@ export class StrataProjectRolesDialog extends LitElement {
 
   private roles_in({ members, groups }: MemberList): Pick<Row, "role" | "by_groups"> {
     const { person, group } = this;
-    if (group) return { role: groups.find(({ id }) => id === group.id)?.role ?? null, by_groups: null };
-    return { role: members.find(({ user }) => user === person?.user)?.role ?? null, by_groups: role_by_groups(groups, person?.groups ?? []) };
+    if (group)
+      return { role: groups.find(({ id }) => id === group.id)?.role ?? null, by_groups: null };
+    return {
+      role: members.find(({ user }) => user === person?.user)?.role ?? null,
+      by_groups: role_by_groups(groups, person?.groups ?? []),
+    };
   }
 
   override render(): TemplateResult {
@@ -95,18 +103,20 @@ export class StrataProjectRolesDialog extends LitElement {
     const name = person ? called(person) : (group?.name ?? "");
     return html`<strata-dialog heading=${words.title(name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p class="hint">${person ? words.lead(texts.roles[person.role]) : words.group_lead}</p>
-      ${this.problem_
-        ? html`<p class="error" role="alert">${this.problem_}</p>
+      ${
+        this.problem_
+          ? html`<p class="error" role="alert">${this.problem_}</p>
             <button @click=${() => void this.read()}>${texts.try_again}</button>`
-        : this.rows_
-          ? html`<ul>
+          : this.rows_
+            ? html`<ul>
               ${repeat(
                 this.rows_,
                 ({ project }) => project.id,
                 (row) => this.row(row),
               )}
             </ul>`
-          : html`<p class="hint" role="status">${texts.loading}</p>`}
+            : html`<p class="hint" role="status">${texts.loading}</p>`
+      }
     </strata-dialog>`;
   }
 
@@ -136,11 +146,21 @@ export class StrataProjectRolesDialog extends LitElement {
     const { project, role: before } = row;
     const role = kProjectRoles.find((each) => each === select.value) ?? null;
     const say = (now: ProjectRole | null, kind: "error" | "done", text: string): void => {
-      this.rows_ = (this.rows_ ?? []).map((row) => (row.project.id === project.id ? { ...row, role: now, note: { kind, text } } : row));
+      this.rows_ = (this.rows_ ?? []).map((row) =>
+        row.project.id === project.id ? { ...row, role: now, note: { kind, text } } : row,
+      );
     };
     try {
       await this.put(project.slug, role);
-      say(role, "done", role ? texts.site_people.role_changed(texts.roles[role]) : this.group ? words.group_removed : words.removed);
+      say(
+        role,
+        "done",
+        role
+          ? texts.site_people.role_changed(texts.roles[role])
+          : this.group
+            ? words.group_removed
+            : words.removed,
+      );
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       select.value = before ?? "";

@@ -18,8 +18,18 @@ export interface RadioGroup<T> {
   choose(value: T): void;
 }
 
-export function radio_group<T>({ label, class: style, choices, chosen, choose }: RadioGroup<T>): TemplateResult {
-  const stop = Math.max(0, choices.findIndex((choice) => choice.value === chosen)); // also while none is chosen
+export function radio_group<T>({
+  label,
+  class: style,
+  choices,
+  chosen,
+  choose,
+}: RadioGroup<T>): TemplateResult {
+  // also while none is chosen
+  const stop = Math.max(
+    0,
+    choices.findIndex((choice) => choice.value === chosen),
+  );
   const buttons = choices.map(
     ({ value, content, title }, index) =>
       html`<button
@@ -40,7 +50,11 @@ export function radio_group<T>({ label, class: style, choices, chosen, choose }:
 
 function on_radio_key(event: KeyboardEvent): void {
   const buttons = [...(event.currentTarget as HTMLElement).querySelectorAll("button")];
-  const next = arrow_step(event.key, buttons.indexOf(event.target as HTMLButtonElement), buttons.length);
+  const next = arrow_step(
+    event.key,
+    buttons.indexOf(event.target as HTMLButtonElement),
+    buttons.length,
+  );
   if (next === null) return;
   event.preventDefault();
   event.stopPropagation();

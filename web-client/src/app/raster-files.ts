@@ -22,7 +22,9 @@ export function raster_format(filename: string): RasterFormat | null {
 
 /** PNG holds numbers of 8 and 16 bits only. */
 export const formats_of = (layer: Layer): RasterFormat[] =>
-  kRasterFormats.filter((format) => format !== "png" || layer.type === "u8" || layer.type === "u16");
+  kRasterFormats.filter(
+    (format) => format !== "png" || layer.type === "u8" || layer.type === "u16",
+  );
 
 export function save_raster(session: ModelSession, layer: Layer, format: RasterFormat): void {
   save_from(session.api.texels_url(session.model_id, layer.id, format), `${layer.slug}.${format}`);
@@ -51,16 +53,32 @@ export function choose_raster(session: ModelSession, layer: Layer): void {
   input.click();
 }
 
-export async function import_raster(session: ModelSession, layer: Layer, file: File): Promise<void> {
+export async function import_raster(
+  session: ModelSession,
+  layer: Layer,
+  file: File,
+): Promise<void> {
   const words = texts.rasters;
   const format = raster_format(file.name);
   if (!format) {
     notices.show("problem", words.unknown(file.name), words.known);
     return;
   }
-  if (!(await ask({ heading: words.title(label_of(layer)), lead: words.lead(file.name), yes: words.replace }))) return;
+  if (
+    !(await ask({
+      heading: words.title(label_of(layer)),
+      lead: words.lead(file.name),
+      yes: words.replace,
+    }))
+  )
+    return;
   try {
-    const { texels_changed, area_m2 } = await session.api.put_texels(session.model_id, layer.id, format, file);
+    const { texels_changed, area_m2 } = await session.api.put_texels(
+      session.model_id,
+      layer.id,
+      format,
+      file,
+    );
     if (texels_changed === 0) notices.show("info", words.same);
     else notices.show("success", texts.areas.changed(format_area(area_m2)));
   } catch (error) {

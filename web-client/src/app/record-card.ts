@@ -1,4 +1,5 @@
-// <strata-record-card>: the record that was taken from the surface: what it is called, what is known of it, and its area.
+// <strata-record-card>: the record that was taken from the surface: what it is called, what is
+// known of it, and its area.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -88,7 +89,8 @@ export class StrataRecordCard extends LitElement {
     if (!card || !table || !card.record) return html``;
     const { layer, key, record } = card;
     const color = record_color(session.layers.palette(layer), record);
-    const request = (detail: TablePanelRequest): boolean => this.dispatchEvent(new CustomEvent("request", { detail }));
+    const request = (detail: TablePanelRequest): boolean =>
+      this.dispatchEvent(new CustomEvent("request", { detail }));
     return html`<section aria-label=${words.card}>
       <div class="row">
         ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
@@ -118,11 +120,13 @@ export class StrataRecordCard extends LitElement {
     return html`<dl>
       <dt>${words.key}</dt>
       <dd class="numeric">${record.key}</dd>
-      ${telling_columns(table, record).slice(0, kMostLines).map(
-        (column) =>
-          html`<dt>${label_of(column)}</dt>
+      ${telling_columns(table, record)
+        .slice(0, kMostLines)
+        .map(
+          (column) =>
+            html`<dt>${label_of(column)}</dt>
             <dd>${shown_value(this.session, column, record.values[column.slug] ?? null)}${column.unit ? ` ${column.unit}` : nothing}</dd>`,
-      )}
+        )}
       ${measures_of(table).map(
         ({ label, text }) =>
           html`<dt>${label}</dt>

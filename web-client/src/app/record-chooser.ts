@@ -1,4 +1,5 @@
-// <strata-record-chooser>: one or several records of a table, found by what they are called. Terms stand as in their list, each below the one above it.
+// <strata-record-chooser>: one or several records of a table, found by what they are called. Terms
+// stand as in their list, each below the one above it.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -167,8 +168,17 @@ export class StrataRecordChooser extends LitElement {
   private get found(): Option[] {
     const terms = this.terms;
     const found = terms
-      ? terms_with(terms.terms, this.text_).map(({ key, name, depth, match }) => ({ key, label: name, depth, match }))
-      : (this.session.tables.names(this.table)?.search(this.text_) ?? []).map((named) => ({ ...named, depth: 0, match: true }));
+      ? terms_with(terms.terms, this.text_).map(({ key, name, depth, match }) => ({
+          key,
+          label: name,
+          depth,
+          match,
+        }))
+      : (this.session.tables.names(this.table)?.search(this.text_) ?? []).map((named) => ({
+          ...named,
+          depth: 0,
+          match: true,
+        }));
     return found.filter(({ key }) => key !== this.without);
   }
 
@@ -265,8 +275,15 @@ export class StrataRecordChooser extends LitElement {
     const { found } = this;
     if (event.key === "ArrowDown" || event.key === "ArrowUp") {
       this.show();
-      this.at_ = this.at_ < 0 ? (event.key === "ArrowDown" ? 0 : found.length - 1) : (arrow_step(event.key, this.at_, found.length) ?? -1);
-      void this.updateComplete.then(() => this.list_.querySelector(".at")?.scrollIntoView({ block: "nearest" }));
+      this.at_ =
+        this.at_ < 0
+          ? event.key === "ArrowDown"
+            ? 0
+            : found.length - 1
+          : (arrow_step(event.key, this.at_, found.length) ?? -1);
+      void this.updateComplete.then(() =>
+        this.list_.querySelector(".at")?.scrollIntoView({ block: "nearest" }),
+      );
     } else if (event.key === "Enter" && this.open_ && found[this.at_]) {
       this.take(found[this.at_]!.key);
     } else if (event.key === "Backspace" && this.text_ === "" && this.chosen.length > 0) {

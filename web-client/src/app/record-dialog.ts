@@ -1,4 +1,5 @@
-// <strata-record-dialog>: a record as a form that is made from its table: a new one, or one that is there.
+// <strata-record-dialog>: a record as a form that is made from its table: a new one, or one that is
+// there.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -80,7 +81,8 @@ export class StrataRecordDialog extends LitElement {
     super.connectedCallback();
     if (this.key === null) return;
     void this.load(this.key);
-    if (this.layer.table !== undefined) this.claim_ = this.session.editors.claim(this.layer.table, this.key);
+    if (this.layer.table !== undefined)
+      this.claim_ = this.session.editors.claim(this.layer.table, this.key);
   }
 
   override disconnectedCallback(): void {
@@ -89,7 +91,10 @@ export class StrataRecordDialog extends LitElement {
     this.claim_ = null;
   }
 
-  /** What is in the form is kept when somebody takes the record over. Whoever waited for it begins with what was saved meanwhile. */
+  /**
+   * What is in the form is kept when somebody takes the record over. Whoever waited for it begins
+   * with what was saved meanwhile.
+   */
   override willUpdate(): void {
     const shut = this.claim_ !== null && this.claim_.other !== null;
     if (shut === this.shut_) return;
@@ -105,12 +110,16 @@ export class StrataRecordDialog extends LitElement {
 
   private async load(key: number): Promise<void> {
     try {
-      const record = await this.session.api.record({ model: this.session.model_id, layer: this.layer.id }, key);
+      const record = await this.session.api.record(
+        { model: this.session.model_id, layer: this.layer.id },
+        key,
+      );
       const again = this.record_ !== null;
       this.record_ = record;
       if (!again) return;
       await this.updateComplete;
-      for (const { slug } of this.table?.columns ?? []) this.input_of(slug)?.put(record.values[slug] ?? null);
+      for (const { slug } of this.table?.columns ?? [])
+        this.input_of(slug)?.put(record.values[slug] ?? null);
     } catch (error) {
       this.problem_ = error instanceof ApiError ? error.message : texts.problems.unexpected;
     }
@@ -119,7 +128,8 @@ export class StrataRecordDialog extends LitElement {
   override render(): TemplateResult {
     const { table, record_: record, key } = this;
     const ready = table !== null && (key === null || record !== null);
-    const name = table && record ? this.session.tables.title(table, record) || words.record(record.key) : "";
+    const name =
+      table && record ? this.session.tables.title(table, record) || words.record(record.key) : "";
     return html`<strata-dialog
       heading=${key === null ? words.new_record_of(table ? label_of(table) : "") : name}
       way_out=${texts.cancel}
@@ -129,9 +139,11 @@ export class StrataRecordDialog extends LitElement {
       ${ready ? this.form(table) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
       <p class="hint" role="status" ?hidden=${!this.sending_}>${this.sending_}</p>
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
-      ${key === null
-        ? html`<button slot="actions" ?disabled=${this.busy_ || !ready} @click=${() => void this.save(true)}>${words.save_next}</button>`
-        : nothing}
+      ${
+        key === null
+          ? html`<button slot="actions" ?disabled=${this.busy_ || !ready} @click=${() => void this.save(true)}>${words.save_next}</button>`
+          : nothing
+      }
       <button slot="actions" class="primary" ?disabled=${this.busy_ || !ready || this.shut_} @click=${() => this.form_?.requestSubmit()}>${texts.save}</button>
     </strata-dialog>`;
   }
@@ -139,10 +151,17 @@ export class StrataRecordDialog extends LitElement {
   private held(claim: RecordClaim, name: string): TemplateResult {
     const { user, is_me } = claim.other!;
     const kept = claim.lost && this.written_ !== "";
-    const told = kept ? (is_me ? words.taken_elsewhere : words.taken_over(user)) : is_me ? words.edited_elsewhere : words.edited_by(user);
+    const told = kept
+      ? is_me
+        ? words.taken_elsewhere
+        : words.taken_over(user)
+      : is_me
+        ? words.edited_elsewhere
+        : words.edited_by(user);
     const take_over = async (): Promise<void> => {
       const lead = is_me ? words.take_over_own : words.take_over_lead(user);
-      if (await ask({ heading: words.take_over_title(name), lead, yes: words.take_over })) claim.take_over();
+      if (await ask({ heading: words.take_over_title(name), lead, yes: words.take_over }))
+        claim.take_over();
     };
     return html`<div class="other" role="alert">
       ${icon("edit")}<span>${told}</span><button @click=${() => void take_over()}>${words.take_over}</button>
@@ -176,7 +195,9 @@ export class StrataRecordDialog extends LitElement {
 
   private field(column: Column): TemplateResult {
     const problem = this.field_problems_.get(column.slug) ?? "";
-    const value = this.record_ ? (this.record_.values[column.slug] ?? null) : (column.default ?? null);
+    const value = this.record_
+      ? (this.record_.values[column.slug] ?? null)
+      : (column.default ?? null);
     return html`<div class="field-row">
       <span class="caption" @click=${() => this.input_of(column.slug)?.focus()}
         >${label_of(column)}${column.required ? html` <b title=${words.required}>*</b>` : nothing}</span
@@ -200,7 +221,8 @@ export class StrataRecordDialog extends LitElement {
     const lines: string[] = [];
     for (const column of table.columns) {
       const read = this.input_of(column.slug)?.read();
-      if (!read || !("value" in read) || same_value(read.value, this.record_?.values[column.slug])) continue;
+      if (!read || !("value" in read) || same_value(read.value, this.record_?.values[column.slug]))
+        continue;
       lines.push(`${label_of(column)}: ${cell_text(read.value)}`);
     }
     return lines.join("\n");
@@ -210,10 +232,17 @@ export class StrataRecordDialog extends LitElement {
     return this.renderRoot.querySelector(`strata-cell-input[data-slug="${CSS.escape(slug)}"]`);
   }
 
-  /** Enter saves, also from a field in an element of its own; in texts of several lines with Ctrl. */
+  /**
+   * Enter saves, also from a field in an element of its own; in texts of several lines with Ctrl.
+   */
   private on_key(event: KeyboardEvent): void {
     const field = event.composedPath()[0];
-    if (event.key !== "Enter" || field instanceof HTMLButtonElement || (field instanceof HTMLTextAreaElement && !event.ctrlKey && !event.metaKey)) return;
+    if (
+      event.key !== "Enter" ||
+      field instanceof HTMLButtonElement ||
+      (field instanceof HTMLTextAreaElement && !event.ctrlKey && !event.metaKey)
+    )
+      return;
     event.preventDefault();
     this.form_?.requestSubmit();
   }
@@ -226,7 +255,8 @@ export class StrataRecordDialog extends LitElement {
       const read = this.input_of(column.slug)?.read();
       if (!read) continue;
       if ("problem" in read) problems.set(column.slug, read.problem);
-      else if (!this.record_ || !same_value(read.value, this.record_.values[column.slug])) values[column.slug] = read.value;
+      else if (!this.record_ || !same_value(read.value, this.record_.values[column.slug]))
+        values[column.slug] = read.value;
     }
     this.field_problems_ = problems;
     this.focus_problem();
@@ -236,7 +266,8 @@ export class StrataRecordDialog extends LitElement {
   /** What is in the form is kept; lines and points are drawn without it. */
   private async draw(column: Column): Promise<void> {
     const { session, layer } = this;
-    if ((await this.save(false)) && this.record_) session.draw_marks(layer, this.record_.key, column);
+    if ((await this.save(false)) && this.record_)
+      session.draw_marks(layer, this.record_.key, column);
   }
 
   /** True: all of it is saved. */
@@ -249,7 +280,10 @@ export class StrataRecordDialog extends LitElement {
     this.busy_ = true;
     try {
       if (record && Object.keys(values).length > 0) {
-        const changed = await session.api.change_record(table.id, record.key, { version: record.version, values });
+        const changed = await session.api.change_record(table.id, record.key, {
+          version: record.version,
+          values,
+        });
         session.tables.view?.rows.put(changed);
         this.record_ = { ...record, ...changed };
       } else if (!record) {
@@ -273,7 +307,9 @@ export class StrataRecordDialog extends LitElement {
 
   /** One after the other; what was sent does not wait any more, whatever becomes of the next. */
   private async send_files(table: Table, key: number): Promise<void> {
-    const fields = table.columns.filter(holds_files).flatMap((column) => this.input_of(column.slug)?.files ?? []);
+    const fields = table.columns
+      .filter(holds_files)
+      .flatMap((column) => this.input_of(column.slug)?.files ?? []);
     const of = fields.reduce((sum, field) => sum + field.pending.length, 0);
     let n = 0;
     try {
@@ -287,7 +323,10 @@ export class StrataRecordDialog extends LitElement {
     } finally {
       this.sending_ = "";
       if (n > 0) {
-        this.record_ = await this.session.api.record({ model: this.session.model_id, layer: this.layer.id }, key);
+        this.record_ = await this.session.api.record(
+          { model: this.session.model_id, layer: this.layer.id },
+          key,
+        );
         this.session.tables.view?.rows.put(this.record_);
       }
     }
@@ -295,7 +334,8 @@ export class StrataRecordDialog extends LitElement {
 
   private begin_again(): void {
     const { table } = this;
-    for (const column of table?.columns ?? []) this.input_of(column.slug)?.put(column.default ?? null);
+    for (const column of table?.columns ?? [])
+      this.input_of(column.slug)?.put(column.default ?? null);
     if (table?.columns[0]) this.input_of(table.columns[0].slug)?.focus();
   }
 
@@ -308,7 +348,10 @@ export class StrataRecordDialog extends LitElement {
     this.focus_problem();
   }
 
-  /** Somebody else changed the record: their values stand beside the fields, and saving again decides. */
+  /**
+   * Somebody else changed the record: their values stand beside the fields, and saving again
+   * decides.
+   */
   private async tell_changes(table: Table, read: TableRecord): Promise<void> {
     const { api } = this.session;
     const [newest] = await api.record_edits(table.id, read.key, 1);
@@ -320,7 +363,8 @@ export class StrataRecordDialog extends LitElement {
       const theirs = now.values[column.slug] ?? null;
       if (mine && "value" in mine) typed.set(column.slug, mine.value);
       if (same_value(theirs, read.values[column.slug])) continue;
-      const changed_here = mine && "value" in mine && !same_value(mine.value, read.values[column.slug]);
+      const changed_here =
+        mine && "value" in mine && !same_value(mine.value, read.values[column.slug]);
       if (changed_here) told.set(column.slug, words.now_is(cell_text(theirs) || words.no_value));
       else typed.set(column.slug, theirs);
     }

@@ -1,5 +1,6 @@
-// Who writes into which record just now, and the records that this page has open to be written into. It is advice, so that people do not
-// surprise each other: what protects the data is the record's version, and without a connection everybody writes as they like.
+// Who writes into which record just now, and the records that this page has open to be written
+// into. It is advice, so that people do not surprise each other: what protects the data is the
+// record's version, and without a connection everybody writes as they like.
 
 import type { RecordEditor, RecordEditors as EditorsMessage } from "../core/protocol.gen";
 
@@ -55,7 +56,9 @@ export class RecordEditors {
 
   other(table: number, key: number): OtherEditor | null {
     const there = this.there_.get(id_of(table, key));
-    return there && there.session !== this.me_.session ? { user: this.host_.name_of(there.user), is_me: there.user === this.me_.user } : null;
+    return there && there.session !== this.me_.session
+      ? { user: this.host_.name_of(there.user), is_me: there.user === this.me_.user }
+      : null;
   }
 
   claim(table: number, key: number): RecordClaim {
@@ -74,7 +77,8 @@ export class RecordEditors {
 
   release(claim: RecordClaim): void {
     const { table, key } = claim;
-    if (this.claims_.delete(claim) && !this.claimed(table, key)) this.host_.say({ table, key, editing: false });
+    if (this.claims_.delete(claim) && !this.claimed(table, key))
+      this.host_.say({ table, key, editing: false });
   }
 
   /** A new connection, which knows nothing of what is open here. */
@@ -104,12 +108,14 @@ export class RecordEditors {
   private take({ table, key, session, user }: RecordEditor): void {
     if (session === undefined) {
       this.there_.delete(id_of(table, key));
-      if (this.claimed(table, key)) this.host_.say({ table, key, editing: true }); // it is ours now, if nobody was quicker
+      // it is ours now, if nobody was quicker
+      if (this.claimed(table, key)) this.host_.say({ table, key, editing: true });
       return;
     }
     this.there_.set(id_of(table, key), { session, user: user ?? "" });
     if (session !== this.me_.session) return;
-    for (const claim of this.claims_) if (claim.table === table && claim.key === key) claim.had = true;
+    for (const claim of this.claims_)
+      if (claim.table === table && claim.key === key) claim.had = true;
   }
 
   private claimed(table: number, key: number): boolean {

@@ -1,4 +1,5 @@
-// The record that a mouse rests on, where a tap would show its card. Nothing is asked for it: the pointer's own questions tell what lies there.
+// The record that a mouse rests on, where a tap would show its card. Nothing is asked for it: the
+// pointer's own questions tell what lies there.
 
 import type { PointerSample } from "../core/input";
 import type { Layer } from "../core/types";
@@ -22,27 +23,35 @@ export interface RecordHoverHost {
 export class RecordHover {
   private shown_: RecordAt | null = null;
   private from_: PointerSample | null = null; // where the mouse came to rest
-  private timer_: ReturnType<typeof setTimeout> | null = null; // null while `from_` is set: it has rested
+  // null while `from_` is set: it has rested
+  private timer_: ReturnType<typeof setTimeout> | null = null;
 
   constructor(private readonly host_: RecordHoverHost) {}
 
   /** Null once the pointer is no longer on it, however that came. */
   get shown(): RecordAt | null {
     const here = this.shown_ && this.host_.here();
-    return here && here.layer.id === this.shown_?.layer.id && here.key === this.shown_.key ? here : null;
+    return here && here.layer.id === this.shown_?.layer.id && here.key === this.shown_.key
+      ? here
+      : null;
   }
 
   /** A mouse is there with nothing pressed; null: there is none. */
   move(sample: PointerSample | null): void {
     if (!sample) this.end();
-    else if (!this.shown && !(this.from_ && Math.hypot(sample.x - this.from_.x, sample.y - this.from_.y) <= kTremble)) this.rest_from(sample);
+    else if (
+      !this.shown &&
+      !(this.from_ && Math.hypot(sample.x - this.from_.x, sample.y - this.from_.y) <= kTremble)
+    )
+      this.rest_from(sample);
     else if (this.shown) this.from_ = sample;
   }
 
   /** What lies under the pointer has become known anew. */
   picked(): void {
     if (this.shown) return;
-    if (this.shown_ && this.from_) this.rest_from(this.from_); // it moved off, and another card has to wait as the first
+    // it moved off, and another card has to wait as the first
+    if (this.shown_ && this.from_) this.rest_from(this.from_);
     else if (this.from_ && !this.timer_) this.show();
   }
 

@@ -1,4 +1,5 @@
-// What a record has on the model beside what its columns hold: surface, length of its lines, number of its points.
+// What a record has on the model beside what its columns hold: surface, length of its lines, number
+// of its points.
 
 import { format_count } from "../core/locale";
 import { mark_columns } from "../core/marks";
@@ -17,8 +18,24 @@ export interface RecordMeasure {
 /** Those that the table's records can have, in the order of the server. */
 export function measures_of(table: Pick<Table, "columns">): RecordMeasure[] {
   const words = texts.tables;
-  const area: RecordMeasure = { name: "area_m2", label: words.area, text: ({ area_m2 }) => (area_m2 ? format_area(area_m2) : "") };
-  const length: RecordMeasure = { name: "length_m", label: words.length, text: ({ length_m }) => (length_m ? format_length(length_m) : "") };
-  const points: RecordMeasure = { name: "point_count", label: words.points, text: ({ point_count }) => (point_count ? format_count(point_count) : "") };
-  return [area, mark_columns(table, "line").length > 0 ? length : [], mark_columns(table, "point").length > 0 ? points : []].flat();
+  const area: RecordMeasure = {
+    name: "area_m2",
+    label: words.area,
+    text: ({ area_m2 }) => (area_m2 ? format_area(area_m2) : ""),
+  };
+  const length: RecordMeasure = {
+    name: "length_m",
+    label: words.length,
+    text: ({ length_m }) => (length_m ? format_length(length_m) : ""),
+  };
+  const points: RecordMeasure = {
+    name: "point_count",
+    label: words.points,
+    text: ({ point_count }) => (point_count ? format_count(point_count) : ""),
+  };
+  return [
+    area,
+    mark_columns(table, "line").length > 0 ? length : [],
+    mark_columns(table, "point").length > 0 ? points : [],
+  ].flat();
 }

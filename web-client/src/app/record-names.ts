@@ -1,5 +1,6 @@
-// What the records of a table are called: for relations, legends and the brush. Asked for once somebody needs a name, all at once,
-// since a search over them must not wait; of very large tables the first ones.
+// What the records of a table are called: for relations, legends and the brush. Asked for once
+// somebody needs a name, all at once, since a search over them must not wait; of very large tables
+// the first ones.
 
 import { ApiError, type Api } from "../core/api";
 import { label_column, label_of_record, type NameOfKey } from "../core/cells";
@@ -15,7 +16,10 @@ const kAtOnce = 1000;
 export const kMostNames = 20_000;
 const kMostFound = 60;
 
-/** Of other tables of the project: their terms' places in the list, and what their records are called. */
+/**
+ * Of other tables of the project: their terms' places in the list, and what their records are
+ * called.
+ */
 export interface OtherNames {
   name_of: NameOfKey;
   /** By key; null: the table is no list of terms, as far as is known. */
@@ -52,7 +56,10 @@ export class RecordNames {
     return this.complete_ && !this.records_.has(key);
   }
 
-  /** By the tree of the list, or the alphabet of the person's language. Where names begin with the text first, then where they hold it; by key, too. */
+  /**
+   * By the tree of the list, or the alphabet of the person's language. Where names begin with the
+   * text first, then where they hold it; by key, too.
+   */
   search(text: string): NamedRecord[] {
     this.want();
     const wanted = text.trim().toLowerCase();
@@ -61,7 +68,11 @@ export class RecordNames {
     for (const { key, label } of this.in_order()) {
       const name = label.toLowerCase();
       if (name.startsWith(wanted) || String(key) === wanted) begins.push({ key, label });
-      else if (holds.length < kMostFound && (name.includes(wanted) || String(key).startsWith(wanted))) holds.push({ key, label });
+      else if (
+        holds.length < kMostFound &&
+        (name.includes(wanted) || String(key).startsWith(wanted))
+      )
+        holds.push({ key, label });
       if (begins.length >= kMostFound) break;
     }
     return [...begins, ...holds].slice(0, kMostFound);
@@ -104,12 +115,20 @@ export class RecordNames {
     const of_title = !own && title?.kind === "term" ? this.others_.places(title.target ?? 0) : null;
     const place = (key: number): number => {
       const named = of_title ? this.records_.get(key)?.values[title!.slug] : undefined;
-      return own?.get(key) ?? (typeof named === "number" ? of_title!.get(named) : undefined) ?? Infinity;
+      return (
+        own?.get(key) ?? (typeof named === "number" ? of_title!.get(named) : undefined) ?? Infinity
+      );
     };
-    const named = [...this.records_].map(([key, record]) => ({ key, label: this.name(record), place: place(key) }));
+    const named = [...this.records_].map(([key, record]) => ({
+      key,
+      label: this.name(record),
+      place: place(key),
+    }));
     const nameless = ({ label }: NamedRecord): number => Number(label === ""); // they come last
     named.sort((a, b) =>
-      a.place === b.place ? nameless(a) - nameless(b) || collator.compare(a.label, b.label) || a.key - b.key : a.place - b.place,
+      a.place === b.place
+        ? nameless(a) - nameless(b) || collator.compare(a.label, b.label) || a.key - b.key
+        : a.place - b.place,
     );
     return (this.sorted_ = named.map(({ key, label }) => ({ key, label })));
   }
@@ -128,7 +147,10 @@ export class RecordNames {
         let complete = false;
         for (let offset = 0; offset < kMostNames; offset += kAtOnce) {
           const sortby = label_column(table)?.slug ?? "key";
-          const { records, total } = await this.api_.records({ table: table.id }, { sortby, limit: kAtOnce, offset });
+          const { records, total } = await this.api_.records(
+            { table: table.id },
+            { sortby, limit: kAtOnce, offset },
+          );
           for (const record of records) names.set(record.key, record);
           complete = offset + kAtOnce >= total;
           if (complete) break;

@@ -1,5 +1,6 @@
-// The records of a table in an order and by a filter, as far as somebody has looked at them. Rows are asked for in pages; what was
-// seen stays until its newer state is here, so that nothing flickers.
+// The records of a table in an order and by a filter, as far as somebody has looked at them. Rows
+// are asked for in pages; what was seen stays until its newer state is here, so that nothing
+// flickers.
 
 import { ApiError, type RecordQuery } from "../core/api";
 import { same_value } from "../core/cells";
@@ -58,7 +59,10 @@ export class RecordRows {
 
   /** Rows that are to be shown, from first to last. */
   want(first: number, last: number): void {
-    this.wanted_ = [Math.floor(Math.max(0, first) / kPageRows), Math.floor(Math.max(0, last) / kPageRows)];
+    this.wanted_ = [
+      Math.floor(Math.max(0, first) / kPageRows),
+      Math.floor(Math.max(0, last) / kPageRows),
+    ];
     this.pump();
   }
 
@@ -101,11 +105,19 @@ export class RecordRows {
       const here = this.index_of(key);
       if (here !== null) return here;
       if (offset > 0 && offset >= this.total) return null;
-      const { records, total } = await this.host_.ask({ sortby: this.sortby_, filter: this.filter_, limit: kSearchedRows, offset });
+      const { records, total } = await this.host_.ask({
+        sortby: this.sortby_,
+        filter: this.filter_,
+        limit: kSearchedRows,
+        offset,
+      });
       if (generation_ !== this.generation_) return this.locate(key);
       this.take_total(total);
       for (let at = 0; at < records.length; at += kPageRows) {
-        this.pages_.set((offset + at) / kPageRows, { rows: records.slice(at, at + kPageRows), generation: generation_ });
+        this.pages_.set((offset + at) / kPageRows, {
+          rows: records.slice(at, at + kPageRows),
+          generation: generation_,
+        });
       }
       this.host_.changed();
     }
@@ -118,11 +130,19 @@ export class RecordRows {
       if (at < 0) continue;
       const before = page.rows[at]!;
       if (record.version < before.version) return; // told before, and late
-      const { area_m2, length_m, point_count } = before; // the table's own answers do not know the layer, or its model
-      const measures = Object.fromEntries(Object.entries({ area_m2, length_m, point_count }).filter(([, value]) => value !== undefined));
-      page.rows = page.rows.map((row) => (row === before ? { ...record, ...(record.area_m2 === undefined ? measures : {}) } : row));
+      // the table's own answers do not know the layer, or its model
+      const { area_m2, length_m, point_count } = before;
+      const measures = Object.fromEntries(
+        Object.entries({ area_m2, length_m, point_count }).filter(
+          ([, value]) => value !== undefined,
+        ),
+      );
+      page.rows = page.rows.map((row) =>
+        row === before ? { ...record, ...(record.area_m2 === undefined ? measures : {}) } : row,
+      );
       this.host_.changed();
-      if (record.area_m2 === undefined && !same_marks(before, record)) this.host_.measures_outdated();
+      if (record.area_m2 === undefined && !same_marks(before, record))
+        this.host_.measures_outdated();
       return;
     }
   }
@@ -131,8 +151,10 @@ export class RecordRows {
     const [first, last] = this.wanted_;
     for (let page = first; page <= last; ++page) {
       if (this.asked_.size >= kMostAtOnce || this.problem) return;
-      const known = this.loaded && !this.replaces_ && page > 0 && page * kPageRows >= this.total; // past the end
-      if (known || this.asked_.has(page) || this.pages_.get(page)?.generation === this.generation_) continue;
+      // past the end
+      const known = this.loaded && !this.replaces_ && page > 0 && page * kPageRows >= this.total;
+      if (known || this.asked_.has(page) || this.pages_.get(page)?.generation === this.generation_)
+        continue;
       void this.load(page);
     }
   }
@@ -141,7 +163,12 @@ export class RecordRows {
     const { generation_ } = this;
     this.asked_.add(page);
     try {
-      const query = { sortby: this.sortby_, filter: this.filter_, limit: kPageRows, offset: page * kPageRows };
+      const query = {
+        sortby: this.sortby_,
+        filter: this.filter_,
+        limit: kPageRows,
+        offset: page * kPageRows,
+      };
       const { records, total } = await this.host_.ask(query);
       if (generation_ !== this.generation_) return;
       if (this.replaces_) this.pages_.clear();
@@ -172,5 +199,7 @@ export class RecordRows {
 
 function same_marks(before: TableRecord, now: TableRecord): boolean {
   const slugs = new Set([...Object.keys(before.values), ...Object.keys(now.values)]);
-  return [...slugs].every((slug) => same_value(marks_of(before.values[slug]), marks_of(now.values[slug])));
+  return [...slugs].every((slug) =>
+    same_value(marks_of(before.values[slug]), marks_of(now.values[slug])),
+  );
 }

@@ -1,4 +1,5 @@
-// Records that were looked at, kept until something tells that they changed. The oldest make room for new ones.
+// Records that were looked at, kept until something tells that they changed. The oldest make room
+// for new ones.
 
 import { ApiError, type Api } from "../core/api";
 import type { TableRecord } from "../core/protocol.gen";
@@ -26,7 +27,8 @@ export class RecordShelf {
     if (this.kept_.delete(name_of(table, key))) this.changed_();
   }
   forget_table(table: number): void {
-    for (const name of [...this.kept_.keys()]) if (name.startsWith(name_of(table, ""))) this.kept_.delete(name);
+    for (const name of [...this.kept_.keys()])
+      if (name.startsWith(name_of(table, ""))) this.kept_.delete(name);
   }
   forget_all(): void {
     this.kept_.clear();

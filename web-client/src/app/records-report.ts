@@ -48,7 +48,8 @@ export const report_styles = css`
 `;
 
 /** It would be written, and change something. */
-export const is_useful = (report: RecordsReport): boolean => report.problems.length === 0 && report.created + report.changed > 0;
+export const is_useful = (report: RecordsReport): boolean =>
+  report.problems.length === 0 && report.created + report.changed > 0;
 
 /** `rows`: what the file's rows are called. */
 export function records_report(report: RecordsReport, rows: string): TemplateResult {
@@ -70,8 +71,10 @@ function what_is_wrong({ problems }: RecordsReport): TemplateResult {
   const has_lines = sorted.some(({ line }) => line > 0);
   const has_codes = sorted.some(({ code }) => code);
   const has_columns = sorted.some(({ column }) => column);
-  const cell = (shown: boolean, content: unknown, style = ""): TemplateResult | typeof nothing => (shown ? html`<td class=${style}>${content}</td>` : nothing);
-  const head = (shown: boolean, content: string): TemplateResult | typeof nothing => (shown ? html`<th scope="col">${content}</th>` : nothing);
+  const cell = (shown: boolean, content: unknown, style = ""): TemplateResult | typeof nothing =>
+    shown ? html`<td class=${style}>${content}</td>` : nothing;
+  const head = (shown: boolean, content: string): TemplateResult | typeof nothing =>
+    shown ? html`<th scope="col">${content}</th>` : nothing;
   return html`<p class="error" role="alert">${words.wrong(new Set(problems.map(({ line, code = "" }) => `${line} ${code}`)).size)}</p>
     <div class="wrong">
       <table>

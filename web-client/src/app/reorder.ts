@@ -15,7 +15,12 @@ export interface ReorderHost<T> {
 }
 
 /** Moves `one` to the place `index` of the list, which is bottom to top. */
-export async function reorder<T extends Ordered>(all: readonly T[], one: T, index: number, host: ReorderHost<T>): Promise<void> {
+export async function reorder<T extends Ordered>(
+  all: readonly T[],
+  one: T,
+  index: number,
+  host: ReorderHost<T>,
+): Promise<void> {
   const wanted = all.filter((other) => other.id !== one.id);
   wanted.splice(Math.max(0, Math.min(index, wanted.length)), 0, one);
   const moved = wanted.map((each, order) => ({ ...each, order }));

@@ -1,4 +1,5 @@
-// <strata-review-panel>: what of the model's layers waits for review, and for curators what becomes of it.
+// <strata-review-panel>: what of the model's layers waits for review, and for curators what becomes
+// of it.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
@@ -92,15 +93,19 @@ export class StrataReviewPanel extends FoldingPanel {
 
   protected override beside_heading(): unknown {
     const { count } = this.session.reviews;
-    return count > 0 ? html`<span class="number numeric" role="img" aria-label=${words.waiting(count)}>${format_count(count)}</span>` : nothing;
+    return count > 0
+      ? html`<span class="number numeric" role="img" aria-label=${words.waiting(count)}>${format_count(count)}</span>`
+      : nothing;
   }
 
   protected content(): TemplateResult {
     const { reviews, can_curate } = this.session;
-    return html`${reviews.failed
-      ? html`<p class="error" role="alert">${words.failed}</p>
+    return html`${
+      reviews.failed
+        ? html`<p class="error" role="alert">${words.failed}</p>
           <button @click=${() => void reviews.load_all()}>${texts.try_again}</button>`
-      : nothing}
+        : nothing
+    }
     ${reviews.count === 0 && !reviews.failed ? html`<p class="hint">${can_curate ? words.none : words.none_of_you}</p>` : nothing}
     ${reviews.waiting.map((waiting) => this.layer(waiting))}`;
   }
@@ -111,14 +116,17 @@ export class StrataReviewPanel extends FoldingPanel {
     const all: Rejecting["what"] = { all: true };
     return html`<div class="layer">
         <h3>${label_of(layer)}</h3>
-        ${can_curate
-          ? html`<button class="quiet" ?disabled=${this.busy_} @click=${() => void this.decide(layer, { decision: "accept", ...all })}>${words.accept_all}</button>
+        ${
+          can_curate
+            ? html`<button class="quiet" ?disabled=${this.busy_} @click=${() => void this.decide(layer, { decision: "accept", ...all })}>${words.accept_all}</button>
               <button class="quiet" ?disabled=${this.busy_} @click=${() => this.ask(layer, all)}>${words.reject_all}</button>`
-          : nothing}
+            : nothing
+        }
       </div>
       ${same(this.rejecting_, layer, all) ? this.reason_form(layer, all) : nothing}
-      ${can_curate && queue.people.length > 1
-        ? html`<div class="people">
+      ${
+        can_curate && queue.people.length > 1
+          ? html`<div class="people">
             ${queue.people.map(
               (person) =>
                 html`<button class="link" ?disabled=${this.busy_} @click=${() => void this.decide(layer, { decision: "accept", user: person.user })}>
@@ -126,7 +134,8 @@ export class StrataReviewPanel extends FoldingPanel {
                 </button>`,
             )}
           </div>`
-        : nothing}
+          : nothing
+      }
       <ul aria-label=${label_of(layer)}>
         ${repeat(
           queue.strokes,
@@ -148,8 +157,9 @@ export class StrataReviewPanel extends FoldingPanel {
         <span></span>
         <span class="more-of-it hint">${[told_time(stroke.time), format_area(stroke.area_m2)].join(" · ")}</span>
       </button>
-      ${can_curate
-        ? html`<span class="decide">
+      ${
+        can_curate
+          ? html`<span class="decide">
             <button
               class="icon quiet"
               ?disabled=${this.busy_}
@@ -163,7 +173,8 @@ export class StrataReviewPanel extends FoldingPanel {
               ${icon("close")}
             </button>
           </span>`
-        : nothing}
+          : nothing
+      }
       ${same(this.rejecting_, layer, what) ? this.reason_form(layer, what) : nothing}
     </li>`;
   }
@@ -212,7 +223,8 @@ export class StrataReviewPanel extends FoldingPanel {
     this.busy_ = true;
     const done = await this.session.reviews.decide(layer, decision);
     const { decision: _, reason: __, ...what } = decision;
-    if (done && decision.decision === "reject" && same(this.rejecting_, layer, what)) this.give_up();
+    if (done && decision.decision === "reject" && same(this.rejecting_, layer, what))
+      this.give_up();
     this.busy_ = false;
   }
 }

@@ -1,4 +1,5 @@
-// What of the open model's layers waits for review, and what curators decide about it. It is read anew soon after something changed on a layer.
+// What of the open model's layers waits for review, and what curators decide about it. It is read
+// anew soon after something changed on a layer.
 
 import { label_of } from "../core/cells";
 import { ApiError, type Api } from "../core/api";
@@ -33,10 +34,12 @@ export interface Waiting {
 
 export class Reviews {
   private readonly failed_ = new Set<number>(); // layers of which it could not be read
-  private readonly told_ = new Set<number>(); // layers on which something waited, or was decided, since the page is open
+  // layers on which something waited, or was decided, since the page is open
+  private readonly told_ = new Set<number>();
   private readonly queues_ = new Map<number, ReviewQueue>(); // by layer
   private readonly outdated_ = new Set<number>();
-  private readonly asked_ = new Map<number, number>(); // the newest question by layer; answers of older ones come too late
+  // the newest question by layer; answers of older ones come too late
+  private readonly asked_ = new Map<number, number>();
   private readonly again_ = new ReadAgain((last) => void this.load(last));
 
   constructor(
@@ -78,8 +81,13 @@ export class Reviews {
     if (review || provisional) this.told_.add(layer_id);
     const me = this.host_.me();
     const layer = this.host_.layers.find(layer_id);
-    if (!review || !layer || user === undefined || user === me || !review.authors.includes(me)) return;
-    notices.show(review.decision === "reject" ? "problem" : "info", words.told[review.decision](this.host_.name_of(user), label_of(layer)), review.reason ?? "");
+    if (!review || !layer || user === undefined || user === me || !review.authors.includes(me))
+      return;
+    notices.show(
+      review.decision === "reject" ? "problem" : "info",
+      words.told[review.decision](this.host_.name_of(user), label_of(layer)),
+      review.reason ?? "",
+    );
   }
 
   /** This person changed something, somewhere. */
@@ -97,7 +105,10 @@ export class Reviews {
     this.again_.stop();
   }
 
-  /** What curators see holds layers, too, that ask for no review any more, of which something still waits. */
+  /**
+   * What curators see holds layers, too, that ask for no review any more, of which something still
+   * waits.
+   */
   async load_all(): Promise<void> {
     if (!this.host_.can_paint()) return;
     const layers = this.host_.layers.all.filter((layer) => layer.review || this.host_.can_curate());
@@ -105,7 +116,11 @@ export class Reviews {
   }
 
   private async load(last: boolean): Promise<void> {
-    const layers = this.host_.can_paint() ? [...this.outdated_].filter((id) => this.host_.layers.find(id)?.review || this.told_.has(id) || this.waits_on(id)) : [];
+    const layers = this.host_.can_paint()
+      ? [...this.outdated_].filter(
+          (id) => this.host_.layers.find(id)?.review || this.told_.has(id) || this.waits_on(id),
+        )
+      : [];
     if (last) this.outdated_.clear();
     await Promise.all(layers.map((id) => this.read(id)));
   }
@@ -140,19 +155,36 @@ export class Reviews {
     if (camera) view.fly(place_like(camera, view.camera));
   }
 
-  /** True: it is decided, which the person can take back for a moment. Otherwise why not was told. */
+  /**
+   * True: it is decided, which the person can take back for a moment. Otherwise why not was told.
+   */
   async decide(layer: Layer, decision: Review): Promise<boolean> {
-    const { strokes, total, people } = this.queues_.get(layer.id) ?? { strokes: [], total: 0, people: [] };
+    const { strokes, total, people } = this.queues_.get(layer.id) ?? {
+      strokes: [],
+      total: 0,
+      people: [],
+    };
     const is_about = ({ sequence, user }: WaitingStroke): boolean =>
-      decision.edits ? decision.edits.includes(sequence) : decision.user === undefined || decision.user === user;
+      decision.edits
+        ? decision.edits.includes(sequence)
+        : decision.user === undefined || decision.user === user;
     const edits = strokes.filter(is_about).map(({ sequence }) => sequence);
-    const count = decision.edits ? edits.length : decision.user === undefined ? total : (people.find(({ user }) => user === decision.user)?.strokes ?? 0);
+    const count = decision.edits
+      ? edits.length
+      : decision.user === undefined
+        ? total
+        : (people.find(({ user }) => user === decision.user)?.strokes ?? 0);
     const done = await this.send(layer, decision);
     if (!done) return false;
     // What is not listed cannot be named.
     const act = (): void => void this.send(layer, { decision: "reopen", edits });
     const take_back = edits.length === count && count > 0 ? { label: words.take_back, act } : null;
-    notices.show("success", words.done[decision.decision as "accept" | "reject"](count), label_of(layer), take_back);
+    notices.show(
+      "success",
+      words.done[decision.decision as "accept" | "reject"](count),
+      label_of(layer),
+      take_back,
+    );
     return true;
   }
 

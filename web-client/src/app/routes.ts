@@ -1,7 +1,9 @@
-// The page's addresses: /, /projects/{slug}, /models/{id}, and /join#SECRET for who is invited; /kiosk/SECRET is another page (kiosk/).
+// The page's addresses: /, /projects/{slug}, /models/{id}, and /join#SECRET for who is invited;
+// /kiosk/SECRET is another page (kiosk/).
 
 /** `project`: the one whose models are looked at; null: all that there is. */
-export type Route = { page: "home"; project: string | null } | { page: "join" } | { page: "model"; model: string };
+export type Route =
+  { page: "home"; project: string | null } | { page: "join" } | { page: "model"; model: string };
 
 const kHome: Route = { page: "home", project: null };
 
@@ -70,7 +72,10 @@ export function on_navigate(listener: () => void): void {
   listeners.add(listener);
 }
 
-/** `may_leave`: asked before the page shows something else, by which what is written there would be lost. Returns what lets go of it. */
+/**
+ * `may_leave`: asked before the page shows something else, by which what is written there would be
+ * lost. Returns what lets go of it.
+ */
 export function hold_page(may_leave: Question): () => void {
   held = may_leave;
   return () => {
@@ -94,7 +99,8 @@ async function leave(go: () => void): Promise<void> {
 }
 
 const without_place = (address: string): string => address.split(/[?#]/)[0]!;
-const is_held_from = (path: string): boolean => held !== null && without_place(path) !== without_place(shown);
+const is_held_from = (path: string): boolean =>
+  held !== null && without_place(path) !== without_place(shown);
 
 /** Forward and back: the browser went there before it told. */
 function on_history(): void {
@@ -120,7 +126,14 @@ export function replace_address(path: string): void {
 
 /** For links: goes there without loading the page anew, unless a new tab is asked for. */
 export function follow(event: MouseEvent): void {
-  if (event.defaultPrevented || event.button !== 0 || event.metaKey || event.ctrlKey || event.shiftKey) return;
+  if (
+    event.defaultPrevented ||
+    event.button !== 0 ||
+    event.metaKey ||
+    event.ctrlKey ||
+    event.shiftKey
+  )
+    return;
   const link = event.currentTarget as HTMLAnchorElement;
   event.preventDefault();
   navigate(link.getAttribute("href") ?? "/");

@@ -1,5 +1,6 @@
-// <strata-scale-dialog>: "This object is 105 × 99 × 91 mm: right?" Corrects the unit and the up direction; nothing that was painted changes.
-// It stands beside the model, which shows what is chosen while the question stands.
+// <strata-scale-dialog>: "This object is 105 × 99 × 91 mm: right?" Corrects the unit and the up
+// direction; nothing that was painted changes. It stands beside the model, which shows what is
+// chosen while the question stands.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -92,7 +93,9 @@ export class StrataScaleDialog extends LitElement {
     const words = texts.scale;
     if (!model) return html``;
     const metres = metres_per(this.unit_);
-    const sides = [0, 1, 2].map((axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres);
+    const sides = [0, 1, 2].map(
+      (axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres,
+    );
     const asked = model.proposal && !model.scale_verified ? model.proposal : null;
     return html`<strata-dialog docked heading=${words.title(format_size(sides))} way_out=${model.scale_verified ? texts.cancel : words.later} @closed=${this.on_closed}>
       <p class="hint">${words.lead}</p>
@@ -158,7 +161,12 @@ export class StrataScaleDialog extends LitElement {
 
 const kSure = 0.6; // below it the words say that it is a guess among several
 
-function unit_reason({ unit, unit_reason: reason, unit_confidence, unit_comment }: ScaleProposal): string {
+function unit_reason({
+  unit,
+  unit_reason: reason,
+  unit_confidence,
+  unit_comment,
+}: ScaleProposal): string {
   const words = texts.scale;
   switch (reason) {
     case "given":

@@ -5,12 +5,19 @@ import type { LitElement, ReactiveController } from "lit";
 const kReached_px = 2; // nearer to an end it is there: browsers round
 
 /** Ends beyond which there is more, of what has `all` and shows `seen` of it from `at` on. */
-export const hidden_ends = (at: number, seen: number, all: number): { before: boolean; after: boolean } => ({
+export const hidden_ends = (
+  at: number,
+  seen: number,
+  all: number,
+): { before: boolean; after: boolean } => ({
   before: at > kReached_px,
   after: all - seen - at > kReached_px,
 });
 
-/** Follows how far an element is scrolled across, and marks it by the attributes `more-before` and `more-after`: what they look like is its own. */
+/**
+ * Follows how far an element is scrolled across, and marks it by the attributes `more-before` and
+ * `more-after`: what they look like is its own.
+ */
 export class ScrollFade implements ReactiveController {
   private readonly sized_ = new ResizeObserver(() => this.mark());
 

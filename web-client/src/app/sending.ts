@@ -6,8 +6,10 @@ import { texts } from "./texts";
 
 export type Begin<T> = (progress: (share: number) => void) => Upload<T>;
 
-/** One at a time: a new one takes the place of the one before. What is under way when the element leaves is given up where
- *  `gives_up` says so. */
+/**
+ * One at a time: a new one takes the place of the one before. What is under way when the element
+ * leaves is given up where `gives_up` says so.
+ */
 export class Sending implements ReactiveController {
   busy = false;
   share: number | null = null; // of the bytes; null: not known
@@ -43,7 +45,10 @@ export class Sending implements ReactiveController {
       return await upload.done;
     } catch (error) {
       const cancelled = error instanceof ApiError && error.status === 499;
-      if (!cancelled) this.put({ problem: error instanceof ApiError ? error.message : texts.problems.unexpected });
+      if (!cancelled)
+        this.put({
+          problem: error instanceof ApiError ? error.message : texts.problems.unexpected,
+        });
       return null;
     } finally {
       if (this.upload_ === upload) this.put({ busy: false });

@@ -1,5 +1,5 @@
-// Every model session that may still have something to save: the one on the page, and those that linger after their page
-// is gone.
+// Every model session that may still have something to save: the one on the page, and those that
+// linger after their page is gone.
 
 import type { ModelSession } from "./model-session";
 
@@ -8,14 +8,18 @@ const sessions = new Set<ModelSession>();
 export const remember = (session: ModelSession): void => void sessions.add(session);
 export const forget = (session: ModelSession): void => void sessions.delete(session);
 
-export const unsaved_changes = (): number => [...sessions].reduce((sum, session) => sum + session.saving.waiting, 0);
+export const unsaved_changes = (): number =>
+  [...sessions].reduce((sum, session) => sum + session.saving.waiting, 0);
 
 /** The network changed, or the page came back to the front. */
 export function check_connections(): void {
   for (const session of sessions) session.check_connection();
 }
 
-/** Somebody else signed in, in whose name they must not go out. Returns how many changes wait for them to come back. */
+/**
+ * Somebody else signed in, in whose name they must not go out. Returns how many changes wait for
+ * them to come back.
+ */
 export function discard_unsaved(): number {
   const lost = unsaved_changes();
   for (const session of [...sessions]) session.discard();

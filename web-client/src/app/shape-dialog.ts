@@ -1,4 +1,5 @@
-// <strata-shape-dialog>: a picture becomes a shape of the brush: what of it, and under what name, with a look at the result.
+// <strata-shape-dialog>: a picture becomes a shape of the brush: what of it, and under what name,
+// with a look at the result.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -86,7 +87,10 @@ export class StrataShapeDialog extends LitElement {
     // Looked at without the square around it, which would seem transparent.
     const { width, height } = this.picture_;
     const { width: small_width, height: small_height } = in_square(width, height, kShapeSide);
-    const canvas = new OffscreenCanvas(Math.max(1, Math.round(small_width)), Math.max(1, Math.round(small_height)));
+    const canvas = new OffscreenCanvas(
+      Math.max(1, Math.round(small_width)),
+      Math.max(1, Math.round(small_height)),
+    );
     const context = canvas.getContext("2d")!;
     context.drawImage(this.picture_, 0, 0, canvas.width, canvas.height);
     this.show(likely_part(context.getImageData(0, 0, canvas.width, canvas.height)));
@@ -95,7 +99,11 @@ export class StrataShapeDialog extends LitElement {
   private show(part: ShapePart): void {
     if (!this.picture_) return;
     this.part_ = part;
-    const { x, y, width, height } = in_square(this.picture_.width, this.picture_.height, kShapeSide);
+    const { x, y, width, height } = in_square(
+      this.picture_.width,
+      this.picture_.height,
+      kShapeSide,
+    );
     const context = this.canvas_.getContext("2d", { willReadFrequently: true })!;
     context.clearRect(0, 0, kShapeSide, kShapeSide);
     context.imageSmoothingQuality = "high";

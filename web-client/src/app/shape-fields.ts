@@ -1,4 +1,5 @@
-// <strata-shape-fields>: which values are computed from the shape, and with what parameters; part of the dialog of a new layer.
+// <strata-shape-fields>: which values are computed from the shape, and with what parameters; part
+// of the dialog of a new layer.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -6,7 +7,15 @@ import { ApiError } from "../core/api";
 import type { Model, VertexPropertyName } from "../core/types";
 import type { ModelSession } from "./model-session";
 import { number_input } from "./number-input";
-import { kRays, kShapeGroups, other_models, recipe_of, shape_kind, type ShapeInput, type ShapeKind } from "./shape-kinds";
+import {
+  kRays,
+  kShapeGroups,
+  other_models,
+  recipe_of,
+  shape_kind,
+  type ShapeInput,
+  type ShapeKind,
+} from "./shape-kinds";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
@@ -17,7 +26,15 @@ export class StrataShapeFields extends LitElement {
   @property({ attribute: false }) session!: ModelSession;
   /** The field that the server or the dialog found wrong. */
   @property() wrong = "";
-  @state() private input_: ShapeInput = { kind: "mean_curvature", radius: "", distance: "", rays: "", absolute: false, model: "", property: "" };
+  @state() private input_: ShapeInput = {
+    kind: "mean_curvature",
+    radius: "",
+    distance: "",
+    rays: "",
+    absolute: false,
+    model: "",
+    property: "",
+  };
   @state() private models_: Model[] = [];
   @state() private properties_: VertexPropertyName[] = [];
 
@@ -65,7 +82,10 @@ export class StrataShapeFields extends LitElement {
   private async load(): Promise<void> {
     const { api, model_id, model } = this.session;
     try {
-      const [models, properties] = await Promise.all([api.models(), api.vertex_properties(model_id)]);
+      const [models, properties] = await Promise.all([
+        api.models(),
+        api.vertex_properties(model_id),
+      ]);
       this.models_ = model ? other_models(models, model) : [];
       this.properties_ = properties;
       const [first_model, first_property] = [this.models_[0], properties[0]];
@@ -80,7 +100,9 @@ export class StrataShapeFields extends LitElement {
 
   get kind_title(): string {
     const { kind, property: chosen } = this.input_;
-    return kind === "vertex_property" && chosen ? chosen.slice(chosen.indexOf("/") + 1) : shape_kind(kind).title;
+    return kind === "vertex_property" && chosen
+      ? chosen.slice(chosen.indexOf("/") + 1)
+      : shape_kind(kind).title;
   }
 
   recipe(): ReturnType<typeof recipe_of> {
@@ -97,22 +119,27 @@ export class StrataShapeFields extends LitElement {
               html`<optgroup label=${group.title}>
                 ${group.kinds
                   .filter(({ kind }) => this.is_possible(kind))
-                  .map(({ kind, title }) => html`<option value=${kind} ?selected=${kind === info.kind}>${title}</option>`)}
+                  .map(
+                    ({ kind, title }) =>
+                      html`<option value=${kind} ?selected=${kind === info.kind}>${title}</option>`,
+                  )}
               </optgroup>`,
           )}
         </select>
       </label>
       <p class="hint lead">${info.lead}</p>
-      ${info.takes.length === 0
-        ? nothing
-        : html`<div class="parameters">
+      ${
+        info.takes.length === 0
+          ? nothing
+          : html`<div class="parameters">
             ${info.takes.includes("model") ? this.model_field() : nothing}
             ${info.takes.includes("property") ? this.property_field() : nothing}
             ${info.takes.includes("radius") ? this.length_field("radius", words.radius, words.radius_hint) : nothing}
             ${info.takes.includes("distance") ? this.length_field("distance", words.distance, words.distance_hint) : nothing}
             ${info.takes.includes("rays") ? this.rays_field() : nothing}
             ${info.takes.includes("absolute") ? this.absolute_field() : nothing}
-          </div>`}`;
+          </div>`
+      }`;
   }
 
   private is_possible(kind: ShapeKind): boolean {

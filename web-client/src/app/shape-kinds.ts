@@ -82,7 +82,8 @@ export function recipe_of(input: ShapeInput): ShapeRecipe | { problem: string; f
   if (takes.includes("rays") && input.rays.trim() !== "") {
     const rays = read_number(input.rays);
     const { least, most } = kRays;
-    if (!Number.isInteger(rays) || rays < least || rays > most) return { problem: texts.shape.bad_rays(least, most), field: "rays" };
+    if (!Number.isInteger(rays) || rays < least || rays > most)
+      return { problem: texts.shape.bad_rays(least, most), field: "rays" };
     recipe.rays = rays;
   }
   if (takes.includes("absolute") && input.absolute) recipe.absolute = true;
@@ -102,5 +103,8 @@ export function recipe_of(input: ShapeInput): ShapeRecipe | { problem: string; f
 /** Others that this one can be compared with: of the same project first. */
 export function other_models(all: readonly Model[], model: Model): Model[] {
   const others = all.filter((other) => other.id !== model.id);
-  return [...others.filter((other) => other.project === model.project), ...others.filter((other) => other.project !== model.project)];
+  return [
+    ...others.filter((other) => other.project === model.project),
+    ...others.filter((other) => other.project !== model.project),
+  ];
 }

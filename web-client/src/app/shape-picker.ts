@@ -1,5 +1,5 @@
-// <strata-shape-picker>: what the brush is shaped like: round, square, or as a picture that somebody gave. A picture that is
-// dropped here becomes a shape.
+// <strata-shape-picker>: what the brush is shaped like: round, square, or as a picture that
+// somebody gave. A picture that is dropped here becomes a shape.
 
 import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -18,7 +18,8 @@ import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import { shape_picture } from "./tool-shapes";
 
-const is_picture = ({ type }: { type: string }): boolean => type === "image/png" || type === "image/jpeg";
+const is_picture = ({ type }: { type: string }): boolean =>
+  type === "image/png" || type === "image/jpeg";
 
 @customElement("strata-shape-picker")
 export class StrataShapePicker extends LitElement {
@@ -107,7 +108,10 @@ export class StrataShapePicker extends LitElement {
     const { shape } = session.painting.brush;
     const words = texts.shapes;
     const tool = session.shapes.find(shape);
-    const builtin = (value: "disc" | "square", content: TemplateResult): RadioChoice<ToolShape> => ({
+    const builtin = (
+      value: "disc" | "square",
+      content: TemplateResult,
+    ): RadioChoice<ToolShape> => ({
       value,
       title: texts.brush[value],
       content: html`<svg viewBox="0 0 24 24" aria-hidden="true">${content}</svg><span class="visually-hidden">${texts.brush[value]}</span>`,
@@ -130,20 +134,26 @@ export class StrataShapePicker extends LitElement {
           chosen: shape,
           choose: (chosen) => session.painting.set_brush((brush) => (brush.shape = chosen)),
         })}
-        ${session.can_paint
-          ? html`<button aria-label=${words.new_shape} title=${words.new_hint} @click=${() => this.input_.click()}>${icon("plus")}</button>
+        ${
+          session.can_paint
+            ? html`<button aria-label=${words.new_shape} title=${words.new_hint} @click=${() => this.input_.click()}>${icon("plus")}</button>
               <input type="file" accept="image/png,image/jpeg" hidden aria-label=${words.new_shape} @change=${this.on_file} />`
-          : nothing}
+            : nothing
+        }
       </div>
-      ${tool && session.can_curate
-        ? html`<strata-menu label=${texts.layers.options(tool.name)}>
+      ${
+        tool && session.can_curate
+          ? html`<strata-menu label=${texts.layers.options(tool.name)}>
             <button class="quiet" role="menuitem" @click=${() => void this.rename(tool)}>${icon("edit")}${words.rename}</button>
             <button class="quiet" role="menuitem" @click=${() => void this.remove_tool(tool)}>${icon("trash")}${texts.layers.delete}</button>
           </strata-menu>`
-        : nothing}
-      ${this.file_
-        ? html`<strata-shape-dialog .session=${session} .file=${this.file_} @closed=${() => (this.file_ = null)}></strata-shape-dialog>`
-        : nothing}`;
+          : nothing
+      }
+      ${
+        this.file_
+          ? html`<strata-shape-dialog .session=${session} .file=${this.file_} @closed=${() => (this.file_ = null)}></strata-shape-dialog>`
+          : nothing
+      }`;
   }
 
   private on_file(): void {
@@ -158,13 +168,25 @@ export class StrataShapePicker extends LitElement {
 
   private async rename(tool: Tool): Promise<void> {
     const words = texts.shapes;
-    const name = await ask_text({ heading: words.rename_title(tool.name), label: words.name, text: tool.name, yes: words.rename });
-    if (name && name !== tool.name) await this.session.shapes.rename(tool, name).catch((error: unknown) => notices.error(error));
+    const name = await ask_text({
+      heading: words.rename_title(tool.name),
+      label: words.name,
+      text: tool.name,
+      yes: words.rename,
+    });
+    if (name && name !== tool.name)
+      await this.session.shapes.rename(tool, name).catch((error: unknown) => notices.error(error));
   }
 
   private async remove_tool(tool: Tool): Promise<void> {
     const words = texts.shapes;
-    const question = { heading: words.delete_title(tool.name), lead: words.delete_lead, yes: texts.delete, danger: true };
-    if (await ask(question)) await this.session.shapes.remove(tool).catch((error: unknown) => notices.error(error));
+    const question = {
+      heading: words.delete_title(tool.name),
+      lead: words.delete_lead,
+      yes: texts.delete,
+      danger: true,
+    };
+    if (await ask(question))
+      await this.session.shapes.remove(tool).catch((error: unknown) => notices.error(error));
   }
 }

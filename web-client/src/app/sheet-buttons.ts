@@ -1,4 +1,5 @@
-// What is done with a table of numbers: it is copied, to be pasted into a spreadsheet, or saved as a file.
+// What is done with a table of numbers: it is copied, to be pasted into a spreadsheet, or saved as
+// a file.
 
 import { html, type TemplateResult } from "lit";
 import { csv_separator, page_locale } from "../core/locale";
@@ -8,10 +9,15 @@ import { icon } from "./icons";
 import { notices } from "./notices";
 import { texts } from "./texts";
 
-export const sheet_query = (f: SheetQuery["f"]): SheetQuery => ({ f, lang: page_locale(), separator: csv_separator() });
+export const sheet_query = (f: SheetQuery["f"]): SheetQuery => ({
+  f,
+  lang: page_locale(),
+  separator: csv_separator(),
+});
 
 /** `rows`: of texts. Cells that hold tabs or lines would fall apart where they are pasted. */
-export const as_pasted = (rows: readonly (readonly string[])[]): string => rows.map((row) => row.map((cell) => cell.replaceAll(/[\t\r\n]+/g, " ")).join("\t")).join("\n");
+export const as_pasted = (rows: readonly (readonly string[])[]): string =>
+  rows.map((row) => row.map((cell) => cell.replaceAll(/[\t\r\n]+/g, " ")).join("\t")).join("\n");
 
 async function copy(rows: readonly (readonly string[])[], holder: HTMLElement): Promise<void> {
   const text = as_pasted(rows);
@@ -24,10 +30,17 @@ async function copy(rows: readonly (readonly string[])[], holder: HTMLElement): 
     field.select();
     return () => field.remove();
   });
-  notices.show(copied ? "success" : "problem", copied ? texts.statistics.copied : texts.statistics.not_copied);
+  notices.show(
+    copied ? "success" : "problem",
+    copied ? texts.statistics.copied : texts.statistics.not_copied,
+  );
 }
 
-export function sheet_buttons(of: { what: string; rows: () => readonly (readonly string[])[]; save: (f: SheetQuery["f"]) => void }): TemplateResult {
+export function sheet_buttons(of: {
+  what: string;
+  rows: () => readonly (readonly string[])[];
+  save: (f: SheetQuery["f"]) => void;
+}): TemplateResult {
   const words = texts.statistics;
   const files: SheetQuery["f"][] = ["csv", "xlsx"];
   return html`<button type="button" aria-label="${words.copy}: ${of.what}" @click=${(event: Event) => void copy(of.rows(), event.currentTarget as HTMLElement)}>${icon("copy")}${words.copy}</button>

@@ -4,7 +4,14 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
 import { up_name } from "../core/camera";
 import { format_count } from "../core/locale";
-import { detail_choices, format_area, format_bytes, format_length, format_size, metres_per } from "../core/measure";
+import {
+  detail_choices,
+  format_area,
+  format_bytes,
+  format_length,
+  format_size,
+  metres_per,
+} from "../core/measure";
 import { may_download, type Model, type Role } from "../core/types";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
@@ -109,8 +116,12 @@ export class StrataAboutSheet extends LitElement {
     const { model } = this;
     const words = texts.model.details_list;
     const metres = metres_per(model.unit);
-    const sides = [0, 1, 2].map((axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres);
-    const detail = detail_choices(model.atlas).find((choice) => choice.resolution === model.default_resolution);
+    const sides = [0, 1, 2].map(
+      (axis) => (model.bounds.max[axis]! - model.bounds.min[axis]!) * metres,
+    );
+    const detail = detail_choices(model.atlas).find(
+      (choice) => choice.resolution === model.default_resolution,
+    );
     const rows: [string, string][] = [
       [words.size, format_size(sides)],
       [words.area, format_area(model.area_m2)],
@@ -124,33 +135,42 @@ export class StrataAboutSheet extends LitElement {
       [words.captured, model.captured],
       [words.rights, model.rights_uri],
       [words.credit, model.credit],
-      [words.repairs, model.repairs.map((repair) => `${repair.what}: ${format_count(repair.count)}`).join("; ")],
+      [
+        words.repairs,
+        model.repairs.map((repair) => `${repair.what}: ${format_count(repair.count)}`).join("; "),
+      ],
     ];
     return html`<strata-dialog wide prose heading=${model.name} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <dl>
         ${rows.map(([name, value]) => (value ? html`<dt>${name}</dt><dd class="numeric">${value}</dd>` : nothing))}
-        ${model.source_files.length > 0
-          ? html`<dt>${words.files}</dt>
+        ${
+          model.source_files.length > 0
+            ? html`<dt>${words.files}</dt>
               <dd>
                 ${model.source_files.map(
                   (file) =>
                     html`<div>
-                      ${may_download(this.viewer, model)
-                        ? html`<a class="text" href="/api/v1/models/${model.id}/source/${encodeURIComponent(file.name)}" download=${file.name}>${file.name}</a>`
-                        : file.name}
+                      ${
+                        may_download(this.viewer, model)
+                          ? html`<a class="text" href="/api/v1/models/${model.id}/source/${encodeURIComponent(file.name)}" download=${file.name}>${file.name}</a>`
+                          : file.name
+                      }
                       <span class="hint numeric">${format_bytes(file.bytes)}</span>
                     </div>`,
                 )}
                 ${may_download(this.viewer, model) ? nothing : html`<p class="hint">${texts.visibility.no_download}</p>`}
               </dd>`
-          : nothing}
+            : nothing
+        }
       </dl>
       ${this.correctable ? this.download_choice() : nothing}
-      ${this.correctable
-        ? html`<button slot="actions" @click=${() => this.dispatchEvent(new CustomEvent("correct"))}>
+      ${
+        this.correctable
+          ? html`<button slot="actions" @click=${() => this.dispatchEvent(new CustomEvent("correct"))}>
             ${texts.model.correct_size}
           </button>`
-        : nothing}
+          : nothing
+      }
     </strata-dialog>`;
   }
 

@@ -23,15 +23,20 @@ export function shown_value(session: ModelSession, column: Column, value: CellVa
   if (value === null) return "";
   if (names_records(column)) {
     const target = column.target ?? 0;
-    return format_list(named_keys(value).map((key) => session.tables.label(target, key) ?? texts.tables.record(key)));
+    return format_list(
+      named_keys(value).map((key) => session.tables.label(target, key) ?? texts.tables.record(key)),
+    );
   }
   if (holds_marks(column)) return shown_marks(session, column, value);
   if (column.kind === "document") return texts.files.count(named_keys(value).length);
   if (column.kind === "picture") {
     const ids = named_keys(value);
-    return html`${ids.slice(0, kMostPictures).map(
-      (id) => html`<img class="thumbnail" src=${session.api.attachment_url(id, 64)} alt=${texts.files.file(id)} loading="lazy" height="24" @load=${show_whether(true)} @error=${show_whether(false)} />`,
-    )}${ids.length > kMostPictures ? ` +${ids.length - kMostPictures}` : ""}`;
+    return html`${ids
+      .slice(0, kMostPictures)
+      .map(
+        (id) =>
+          html`<img class="thumbnail" src=${session.api.attachment_url(id, 64)} alt=${texts.files.file(id)} loading="lazy" height="24" @load=${show_whether(true)} @error=${show_whether(false)} />`,
+      )}${ids.length > kMostPictures ? ` +${ids.length - kMostPictures}` : ""}`;
   }
   if (column.kind === "boolean") return value ? texts.tables.yes : texts.tables.no;
   const text = cell_text(value);
@@ -42,11 +47,21 @@ export function shown_value(session: ModelSession, column: Column, value: CellVa
 }
 
 /** "2 lines · 1.24 m": on this model; others are counted. */
-export function shown_marks({ model }: ModelSession, { kind }: Pick<Column, "kind">, value: CellValue): string {
+export function shown_marks(
+  { model }: ModelSession,
+  { kind }: Pick<Column, "kind">,
+  value: CellValue,
+): string {
   if (!model || marks_of(value).length === 0) return "";
   const words = texts.marks;
   const { here, elsewhere, metres } = summary_of(value, model);
   const count = kind === "line" ? words.lines : words.points;
   if (here === 0) return words.elsewhere(count(elsewhere));
-  return [count(here), kind === "line" ? format_length(metres) : [], elsewhere > 0 ? words.and_elsewhere(elsewhere) : []].flat().join(" · ");
+  return [
+    count(here),
+    kind === "line" ? format_length(metres) : [],
+    elsewhere > 0 ? words.and_elsewhere(elsewhere) : [],
+  ]
+    .flat()
+    .join(" · ");
 }

@@ -1,4 +1,5 @@
-// <strata-sign-in>: for who opens the page without a session: name and password, or a token or the link that the server printed.
+// <strata-sign-in>: for who opens the page without a session: name and password, or a token or the
+// link that the server printed.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// <strata-stage>: the streamed picture, the pointer's gestures, and what is drawn over it: brush footprint, other
-// people's pointers, scale bar.
+// <strata-stage>: the streamed picture, the pointer's gestures, and what is drawn over it: brush
+// footprint, other people's pointers, scale bar.
 
 import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -165,7 +165,11 @@ export class StrataStage extends LitElement {
     });
     this.session.on_frame = (part) => this.frames_?.push(part);
     this.session.on_reset_frames = () => this.frames_?.reset();
-    this.input_ = new StageInput(this.surface_, this.session.gestures, () => this.session.view.scale);
+    this.input_ = new StageInput(
+      this.surface_,
+      this.session.gestures,
+      () => this.session.view.scale,
+    );
     this.observer_ = new ResizeObserver(() => this.measure());
     this.observer_.observe(this);
     this.measure();
@@ -199,7 +203,11 @@ export class StrataStage extends LitElement {
     const { clientWidth: width, clientHeight: height } = this;
     if (width < 2 || height < 2) return;
     const most = Math.sqrt(kMostWindowPixels / (width * height));
-    this.session.view.set_viewport(width, height, Math.min(window.devicePixelRatio || 1, kMostScale, most));
+    this.session.view.set_viewport(
+      width,
+      height,
+      Math.min(window.devicePixelRatio || 1, kMostScale, most),
+    );
   }
 
   override render(): TemplateResult {
@@ -207,7 +215,16 @@ export class StrataStage extends LitElement {
     const tool = session.tools.active;
     const locked = session.locked_target !== null;
     const paints = !locked && (tool === "brush" || tool === "eraser");
-    const aims = tool === "polygon" || tool === "lasso" || tool === "bucket" || tool === "pick" || tool === "line" || tool === "point" || tool === "comment" || tool === "measure" || tool === "face";
+    const aims =
+      tool === "polygon" ||
+      tool === "lasso" ||
+      tool === "bucket" ||
+      tool === "pick" ||
+      tool === "line" ||
+      tool === "point" ||
+      tool === "comment" ||
+      tool === "measure" ||
+      tool === "face";
     return html`<div
         class="surface ${locked ? "locked" : paints ? "paint" : aims ? "aim" : tool}"
         tabindex="0"
@@ -221,9 +238,11 @@ export class StrataStage extends LitElement {
       </div>
       <strata-people-overlay .session=${session}></strata-people-overlay>
       ${this.scale_bar()}
-      ${session.view.frames_drawn === 0
-        ? html`<div class="waiting" role="status">${texts.model.waiting_for_picture}</div>`
-        : nothing}`;
+      ${
+        session.view.frames_drawn === 0
+          ? html`<div class="waiting" role="status">${texts.model.waiting_for_picture}</div>`
+          : nothing
+      }`;
   }
 
   /** The footprint in the picture: what the stroke covers, to the pixel. */
@@ -236,12 +255,19 @@ export class StrataStage extends LitElement {
     const radius = session.painting.radius_window_px() / scale;
     const layer = session.layers.selected;
     const erases = session.tools.active === "eraser";
-    const color = layer && !erases ? color_of(layer.palette, session.painting.brush.value_of(layer)) : null;
+    const color =
+      layer && !erases ? color_of(layer.palette, session.painting.brush.value_of(layer)) : null;
     const fill = color ? css_color(color) : "none";
     const { shape } = session.painting.brush;
     const square = shape === "square";
-    if (typeof shape === "number" && radius >= 4) return this.shape_cursor(shape, x, y, radius, erases ? null : color);
-    const outline = (width: number, stroke: string, dashes: string, filled: boolean): TemplateResult =>
+    if (typeof shape === "number" && radius >= 4)
+      return this.shape_cursor(shape, x, y, radius, erases ? null : color);
+    const outline = (
+      width: number,
+      stroke: string,
+      dashes: string,
+      filled: boolean,
+    ): TemplateResult =>
       square
         ? svg`<rect x=${x - radius} y=${y - radius} width=${2 * radius} height=${2 * radius} fill=${filled ? fill : "none"}
             fill-opacity="0.32" stroke=${stroke} stroke-width=${width} stroke-dasharray=${dashes} />`
@@ -250,29 +276,45 @@ export class StrataStage extends LitElement {
     const dashes = erases ? "5 4" : "none";
     return html`<svg class="over" aria-hidden="true">
       ${outline(3, "var(--mark-rim)", "none", true)} ${outline(1.5, "var(--mark-light)", dashes, false)}
-      ${radius < 4
-        ? svg`<path d="M${x - 10} ${y}h6M${x + 4} ${y}h6M${x} ${y - 10}v6M${x} ${y + 4}v6" stroke="var(--mark-dark)" stroke-width="1.5" />`
-        : svg`<circle cx=${x} cy=${y} r="1.2" fill="var(--mark-light)" />`}
+      ${
+        radius < 4
+          ? svg`<path d="M${x - 10} ${y}h6M${x + 4} ${y}h6M${x} ${y - 10}v6M${x} ${y + 4}v6" stroke="var(--mark-dark)" stroke-width="1.5" />`
+          : svg`<circle cx=${x} cy=${y} r="1.2" fill="var(--mark-light)" />`
+      }
     </svg>`;
   }
 
   /** The same for a shape of a picture: a tint with a dark rim, in the layer's colour or clear. */
-  private shape_cursor(tool: number, x: number, y: number, radius: number, color: string | null): TemplateResult {
+  private shape_cursor(
+    tool: number,
+    x: number,
+    y: number,
+    radius: number,
+    color: string | null,
+  ): TemplateResult {
     const square = {
       left: `${x - radius}px`,
       top: `${y - radius}px`,
       width: `${2 * radius}px`,
       height: `${2 * radius}px`,
     };
-    const tint = { "mask-image": `url(${shape_picture(tool)})`, background: color ? css_color(color) : "var(--mark-light)" };
+    const tint = {
+      "mask-image": `url(${shape_picture(tool)})`,
+      background: color ? css_color(color) : "var(--mark-light)",
+    };
     return html`<div class="shape-cursor" aria-hidden="true" ${styled(square)}><i ${styled(tint)}></i></div>`;
   }
 
   private scale_bar(): TemplateResult {
     const { session } = this;
     if (!session.model || session.view.frames_drawn === 0) return html``;
-    const depth = session.pointer.picked?.hit ? session.pointer.surface_depth() : session.view.camera.distance;
-    const metres_per_px = session.view.camera.unit_per_pixel(depth) * session.view.scale * metres_per(session.shown_unit);
+    const depth = session.pointer.picked?.hit
+      ? session.pointer.surface_depth()
+      : session.view.camera.distance;
+    const metres_per_px =
+      session.view.camera.unit_per_pixel(depth) *
+      session.view.scale *
+      metres_per(session.shown_unit);
     const bar = scale_bar(metres_per_px, kScaleBar_px);
     const lowered = session.together.followed || session.together.leading;
     return html`<div class="scale numeric ${lowered ? "lowered" : ""}"><i ${styled({ width: `${bar.px.toFixed(1)}px` })}></i>${bar.label}${session.model.scale_verified ? nothing : html`<small>${texts.home.scale_open}</small>`}</div>`;

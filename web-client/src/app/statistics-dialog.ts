@@ -171,11 +171,13 @@ export class StrataStatisticsDialog extends LitElement {
       heading=${texts.statistics.title(label_of(this.layer))}
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
-      ${this.problem_
-        ? html`<p class="error" role="alert">${this.problem_}</p>`
-        : this.statistics_
-          ? this.content(this.statistics_)
-          : html`<p class="hint" role="status">${texts.loading}</p>`}
+      ${
+        this.problem_
+          ? html`<p class="error" role="alert">${this.problem_}</p>`
+          : this.statistics_
+            ? this.content(this.statistics_)
+            : html`<p class="hint" role="status">${texts.loading}</p>`
+      }
       ${this.statistics_ && has_classes(this.layer) ? html`<strata-cross-table .session=${this.session} .layer=${this.layer}></strata-cross-table>` : nothing}
       <button slot="actions" @click=${() => void this.load()}>${texts.statistics.refresh}</button>
     </strata-dialog>`;
@@ -204,11 +206,17 @@ export class StrataStatisticsDialog extends LitElement {
   /** As they are copied: what is read here, each number in a cell. */
   private rows(statistics: Statistics): string[][] {
     const words = texts.statistics;
-    const line = (name: string, area: number): string[] => [name, format_area(area), this.share(area)];
+    const line = (name: string, area: number): string[] => [
+      name,
+      format_area(area),
+      this.share(area),
+    ];
     if (this.layer.palette.mode === "categorical")
       return [
         [words.class, words.area, words.share],
-        ...sorted(statistics).map((key) => line(describe_value(this.layer, key.key, this.session.tables), key.area_m2)),
+        ...sorted(statistics).map((key) =>
+          line(describe_value(this.layer, key.key, this.session.tables), key.area_m2),
+        ),
         line(words.sum, statistics.area_m2),
       ];
     const { unit } = this.layer;
@@ -216,12 +224,19 @@ export class StrataStatisticsDialog extends LitElement {
       line(words.area, statistics.area_m2),
       ...this.measures(statistics).map(([name, value]) => [name, format_number(value, 4), unit]),
       [words.from, words.to, words.area],
-      ...statistics.histogram.map((bin) => [format_number(bin.from, 4), format_number(bin.to, 4), format_area(bin.area_m2)]),
+      ...statistics.histogram.map((bin) => [
+        format_number(bin.from, 4),
+        format_number(bin.to, 4),
+        format_area(bin.area_m2),
+      ]),
     ];
   }
 
   private save(f: SheetQuery["f"]): void {
-    save_from(this.session.api.quantities_url(this.session.model_id, this.layer.id, sheet_query(f)), `${this.layer.slug}-quantities.${f}`);
+    save_from(
+      this.session.api.quantities_url(this.session.model_id, this.layer.id, sheet_query(f)),
+      `${this.layer.slug}-quantities.${f}`,
+    );
   }
 
   private measures(statistics: Statistics): [string, number][] {
@@ -232,7 +247,9 @@ export class StrataStatisticsDialog extends LitElement {
       [words.max, statistics.max],
       [words.std, statistics.std],
     ];
-    return all.flatMap(([name, value]): [string, number][] => (value === null || value === undefined ? [] : [[name, value]]));
+    return all.flatMap(([name, value]): [string, number][] =>
+      value === null || value === undefined ? [] : [[name, value]],
+    );
   }
 
   private keys(statistics: Statistics): TemplateResult {
@@ -264,8 +281,9 @@ export class StrataStatisticsDialog extends LitElement {
     return html`<dl class="numeric">
         ${this.measures(statistics).map(([name, value]) => html`<div><dt>${name}</dt><dd>${format_number(value, 4)}${unit}</dd></div>`)}
       </dl>
-      ${bins.length > 1
-        ? html`<div>
+      ${
+        bins.length > 1
+          ? html`<div>
             <p class="caption">${words.spread}</p>
             <div class="histogram" role="img" aria-label=${words.spread}>
               ${bins.map((bin) => {
@@ -280,13 +298,18 @@ export class StrataStatisticsDialog extends LitElement {
               <span>${format_number(bins[bins.length - 1]!.to, 4)}${unit}</span>
             </div>
           </div>`
-        : nothing}`;
+          : nothing
+      }`;
   }
 
   /** Two handles, for the pointer and the arrow keys: the colours run from the one to the other. */
   private limits(palette: Palette, from: number, to: number, unit: string): TemplateResult {
     const words = texts.statistics;
-    const handle = (label: string, value: number, range: (moved: number) => [number, number]): TemplateResult =>
+    const handle = (
+      label: string,
+      value: number,
+      range: (moved: number) => [number, number],
+    ): TemplateResult =>
       html`<input
         type="range"
         aria-label=${label}
@@ -327,4 +350,5 @@ export class StrataStatisticsDialog extends LitElement {
 }
 
 /** The largest first. */
-const sorted = (statistics: Statistics): KeyStatistics[] => [...(statistics.keys ?? [])].sort((a, b) => b.area_m2 - a.area_m2);
+const sorted = (statistics: Statistics): KeyStatistics[] =>
+  [...(statistics.keys ?? [])].sort((a, b) => b.area_m2 - a.area_m2);

@@ -1,5 +1,5 @@
-// <strata-app>: who is signed in, which page the address names, and what all pages share: scans dropped anywhere, and
-// changes that still wait to be saved.
+// <strata-app>: who is signed in, which page the address names, and what all pages share: scans
+// dropped anywhere, and changes that still wait to be saved.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, state } from "lit/decorators.js";
@@ -18,7 +18,16 @@ import { notices } from "./notices";
 import "./notices-view";
 import { has_part, load_part_later } from "./page-parts";
 import { curates, kDefaultProject } from "./project-list";
-import { may_leave_page, navigate, on_navigate, path_now, path_of_model, replace_address, route_of, type Route } from "./routes";
+import {
+  may_leave_page,
+  navigate,
+  on_navigate,
+  path_now,
+  path_of_model,
+  replace_address,
+  route_of,
+  type Route,
+} from "./routes";
 import { check_connections, discard_unsaved, keep_views, unsaved_changes } from "./sessions";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
@@ -124,7 +133,10 @@ export class StrataApp extends LitElement {
     }
   };
 
-  /** `next`: where what was changed is seen. It is gone to with nothing to come back to from there where the place itself is gone. */
+  /**
+   * `next`: where what was changed is seen. It is gone to with nothing to come back to from there
+   * where the place itself is gone.
+   */
   private async take_projects(next: string | null): Promise<void> {
     await this.refresh_me();
     if (next === null || next === path_now()) return;
@@ -146,7 +158,11 @@ export class StrataApp extends LitElement {
     if (!(await may_leave_page())) return;
     const lost = unsaved_changes();
     const words = texts.account;
-    const question = { heading: words.sign_out_title, lead: words.sign_out_lead(lost), yes: words.sign_out };
+    const question = {
+      heading: words.sign_out_title,
+      lead: words.sign_out_lead(lost),
+      yes: words.sign_out,
+    };
     if (lost > 0 && !(await ask({ ...question, danger: true }))) return;
     try {
       await this.api_.logout();
@@ -162,18 +178,21 @@ export class StrataApp extends LitElement {
 
   override render(): TemplateResult {
     return html`${this.page()} ${this.session_ === "signed-in" && this.me_ ? this.dialog(this.me_) : nothing}
-      ${this.dropping_
-        ? html`<div class="drop-target">
+      ${
+        this.dropping_
+          ? html`<div class="drop-target">
             <div>${icon("upload")}<b>${texts.home.drop_title}</b><span>${texts.home.drop_lead}</span></div>
           </div>`
-        : nothing}
+          : nothing
+      }
       <strata-notices></strata-notices>`;
   }
 
   private page(): unknown {
     const { session_: session, me_: me } = this;
     if (session === "unknown") return nothing;
-    if (session === "unreachable") return html`<strata-blank heading=${texts.connection.lost} lead=${this.problem_}></strata-blank>`;
+    if (session === "unreachable")
+      return html`<strata-blank heading=${texts.connection.lost} lead=${this.problem_}></strata-blank>`;
     if (this.route_.page === "join") return this.join_page(session === "signed-in" ? me : null);
     if (session === "signed-out" || !me) {
       if (!has_part("sign_in", this)) return nothing;
@@ -251,7 +270,8 @@ export class StrataApp extends LitElement {
     if (this.dialog_ === "kiosks") {
       return html`<strata-kiosks-dialog .api=${this.api_} @closed=${closed} @signed-out=${this.signed_out}></strata-kiosks-dialog>`;
     }
-    if (this.dialog_ === "preferences") return html`<strata-preferences-dialog @closed=${closed}></strata-preferences-dialog>`;
+    if (this.dialog_ === "preferences")
+      return html`<strata-preferences-dialog @closed=${closed}></strata-preferences-dialog>`;
     return nothing;
   }
 
@@ -264,9 +284,13 @@ export class StrataApp extends LitElement {
   private get curated(): readonly Project[] {
     return this.projects_.filter(curates);
   }
-  /** The project that scans are imported into, which is the one that is looked at; null: they may not import. */
+  /**
+   * The project that scans are imported into, which is the one that is looked at; null: they may
+   * not import.
+   */
   private get into(): Project | null {
-    const by_slug = (slug: string): Project | undefined => this.curated.find((project) => project.slug === slug);
+    const by_slug = (slug: string): Project | undefined =>
+      this.curated.find((project) => project.slug === slug);
     const { route_: route } = this;
     if (route.page === "home" && route.project !== null) return by_slug(route.project) ?? null;
     return by_slug(this.chosen_project_) ?? by_slug(kDefaultProject) ?? this.curated[0] ?? null;
@@ -286,15 +310,24 @@ export class StrataApp extends LitElement {
   }
 
   private readonly repeat_import = ({ detail }: CustomEvent<ImportEntry>): void => {
-    void this.take_import(this.imports_.repeat(detail.key), detail.name, this.imports_.entries.length === 1);
+    void this.take_import(
+      this.imports_.repeat(detail.key),
+      detail.name,
+      this.imports_.entries.length === 1,
+    );
   };
 
-  private async take_import(ending: Promise<ImportResult>, name: string, alone: boolean): Promise<void> {
+  private async take_import(
+    ending: Promise<ImportResult>,
+    name: string,
+    alone: boolean,
+  ): Promise<void> {
     const { model, problem } = await ending;
     this.imported_ += 1;
     if (problem && this.route_.page !== "home") notices.problem(problem); // the home page lists it
     if (model === null) return;
-    const opens = alone && this.route_.page === "home"; // a person at work on another model is not carried off
+    // a person at work on another model is not carried off
+    const opens = alone && this.route_.page === "home";
     const link = { href: path_of_model(model), label: texts.import.open };
     notices.show("success", texts.import.ready(name), "", opens ? null : link);
     if (opens) navigate(link.href);
@@ -308,7 +341,8 @@ export class StrataApp extends LitElement {
   };
   private readonly on_drag_over = (event: DragEvent): void => {
     if (!has_files(event)) return;
-    this.dropping_ = !event.defaultPrevented && this.import_refusal === null; // something on the page may take the file itself
+    // something on the page may take the file itself
+    this.dropping_ = !event.defaultPrevented && this.import_refusal === null;
     event.preventDefault(); // else the browser opens the file in place of the page
   };
   private readonly on_drag_leave = (): void => {
@@ -322,6 +356,7 @@ export class StrataApp extends LitElement {
     event.preventDefault();
     const refusal = this.import_refusal;
     if (refusal) notices.show("problem", refusal);
-    else if (event.dataTransfer) void dropped_files(event.dataTransfer).then((files) => this.import_files(files));
+    else if (event.dataTransfer)
+      void dropped_files(event.dataTransfer).then((files) => this.import_files(files));
   };
 }

@@ -1,5 +1,5 @@
-// Sets style properties one by one through the style object of an element. Lit's own styleMap writes a style
-// attribute at first, which the content security policy forbids.
+// Sets style properties one by one through the style object of an element. Lit's own styleMap
+// writes a style attribute at first, which the content security policy forbids.
 
 import { noChange, type ElementPart } from "lit";
 import { directive, Directive, PartType, type PartInfo } from "lit/directive.js";
@@ -11,7 +11,8 @@ class StyledDirective extends Directive {
 
   constructor(part: PartInfo) {
     super(part);
-    if (part.type !== PartType.ELEMENT) throw new Error("styled() belongs in the element, not in an attribute");
+    if (part.type !== PartType.ELEMENT)
+      throw new Error("styled() belongs in the element, not in an attribute");
   }
 
   render(_properties: Properties): symbol {

@@ -305,7 +305,10 @@ export const form_styles = css`
   }
 `;
 
-/** A form inside a dialog that makes a link, and the link, which is shown once. How many fields are beside each other is the dialog's. */
+/**
+ * A form inside a dialog that makes a link, and the link, which is shown once. How many fields are
+ * beside each other is the dialog's.
+ */
 export const link_making_styles = css`
   form,
   .made {
@@ -345,7 +348,10 @@ export const choices_styles = css`
   }
 `;
 
-/** A number with its unit inside the field, however long the unit is: the field is drawn around both. */
+/**
+ * A number with its unit inside the field, however long the unit is: the field is drawn around
+ * both.
+ */
 export const number_field_styles = css`
   .number {
     display: flex;

@@ -1,4 +1,5 @@
-// <strata-table-panel>: the records of a database layer as a table: sorted, filtered, written into. Only the rows in sight are drawn.
+// <strata-table-panel>: the records of a database layer as a table: sorted, filtered, written into.
+// Only the rows in sight are drawn.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -51,10 +52,27 @@ const kNarrow_px = 820; // of the panel, where one row of tools has no room for 
 const kAbove = 6; // rows drawn beyond those in sight
 const kKeyWidth = 92;
 const kMeasureWidth = 110;
-const kWidths: Partial<Record<Column["kind"], number>> = { text: 190, numeric: 126, integer: 120, boolean: 110, date: 126, timestamp: 200, url: 200, relation: 190 };
+const kWidths: Partial<Record<Column["kind"], number>> = {
+  text: 190,
+  numeric: 126,
+  integer: 120,
+  boolean: 110,
+  date: 126,
+  timestamp: 200,
+  url: 200,
+  relation: 190,
+};
 const kUsualWidth = 150;
 const kLeastWidth = 56;
-const kEditorWidth: Partial<Record<Column["kind"], number>> = { text: 260, url: 260, relation: 280, term: 240, period: 200, timestamp: 220, date: 160 };
+const kEditorWidth: Partial<Record<Column["kind"], number>> = {
+  text: 260,
+  url: 260,
+  relation: 280,
+  term: 240,
+  period: 200,
+  timestamp: 220,
+  date: 160,
+};
 
 interface Editing {
   key: number;
@@ -72,7 +90,8 @@ export class StrataTablePanel extends LitElement {
   @state() private active_ = { row: 0, column: 0 };
   @state() private editing_: Editing | null = null;
   @state() private editor_problem_ = "";
-  @state() private filtered_: { column: Column; anchor: HTMLElement } | null = null; // whose filter is open
+  // whose filter is open
+  @state() private filtered_: { column: Column; anchor: HTMLElement } | null = null;
   private claim_: RecordClaim | null = null; // of the record that is written into
   @query(".scroller") private scroller_!: HTMLElement | null;
   @query(".editor strata-cell-input") private input_!: StrataCellInput | null;
@@ -122,12 +141,17 @@ export class StrataTablePanel extends LitElement {
   /** Others see which record is written into. */
   private claim_edited(): void {
     const { editing_: editing, view } = this;
-    if (this.claim_?.key === editing?.key && (editing === null || this.claim_?.table === view.table_id)) return;
+    if (
+      this.claim_?.key === editing?.key &&
+      (editing === null || this.claim_?.table === view.table_id)
+    )
+      return;
     this.claim_?.release();
     this.claim_ = editing ? this.session.editors.claim(view.table_id, editing.key) : null;
   }
 
-  // ── what is in sight ──────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is in sight
+  // ──────────────────────────────────────────────────────────────────────────────────────────────
 
   private get row_px(): number {
     return kRow_px * this.growth_;
@@ -161,12 +185,16 @@ export class StrataTablePanel extends LitElement {
   /** Left edges of the columns, then of what is measured; at last the right one. */
   private edges(table: Table): number[] {
     const edges = [this.widths_.get("key") ?? kKeyWidth * this.growth_];
-    const widths = [...table.columns.map((column) => this.width_of(column)), ...measures_of(table).map((measure) => this.width_of_measure(measure))];
+    const widths = [
+      ...table.columns.map((column) => this.width_of(column)),
+      ...measures_of(table).map((measure) => this.width_of_measure(measure)),
+    ];
     for (const width of widths) edges.push(edges[edges.length - 1]! + width);
     return edges;
   }
 
-  // ── drawing ───────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── drawing
+  // ───────────────────────────────────────────────────────────────────────────────────────────────────────
 
   override render(): TemplateResult {
     const { view, layer } = this;
@@ -179,7 +207,8 @@ export class StrataTablePanel extends LitElement {
     const words = texts.tables;
     const { view, session } = this;
     const { rows } = view;
-    const shown = rows.filter === "" ? words.records(rows.total) : words.records_of(rows.total, table.records);
+    const shown =
+      rows.filter === "" ? words.records(rows.total) : words.records_of(rows.total, table.records);
     return html`<div class="bar">
       <h2 class="ellipsis" title=${table.description}>${label_of(table)}</h2>
       <span class="hint numeric count" role="status">${view.told || (rows.loaded ? shown : "")}</span>
@@ -197,46 +226,58 @@ export class StrataTablePanel extends LitElement {
           @change=${this.on_filter}
           @keydown=${this.on_filter_key}
         />
-        ${rows.filter === ""
-          ? nothing
-          : html`<button class="icon quiet" aria-label=${words.filter_clear} title=${words.filter_clear} @click=${() => rows.set_query({ filter: "" })}>
+        ${
+          rows.filter === ""
+            ? nothing
+            : html`<button class="icon quiet" aria-label=${words.filter_clear} title=${words.filter_clear} @click=${() => rows.set_query({ filter: "" })}>
               ${icon("close")}
-            </button>`}
+            </button>`
+        }
       </div>
       <span class="grow"></span>
       ${this.on_model()}
-      ${this.can_write
-        ? html`<button aria-label=${words.new_record} title=${words.new_record} @click=${() => this.request({ dialog: "record", layer, key: null })}>
+      ${
+        this.can_write
+          ? html`<button aria-label=${words.new_record} title=${words.new_record} @click=${() => this.request({ dialog: "record", layer, key: null })}>
               ${icon("plus")}<span class="words">${words.new_record}</span>
             </button>
             ${this.is_narrow ? nothing : this.turns("tool")}`
-        : nothing}
-      ${this.is_narrow
-        ? nothing
-        : html`<span class="files">
+          : nothing
+      }
+      ${
+        this.is_narrow
+          ? nothing
+          : html`<span class="files">
             <button title=${words.save_xlsx} aria-label=${words.save_xlsx} @click=${() => this.save_sheet(table, "xlsx")}>XLSX</button>
             <button title=${words.save_csv} aria-label=${words.save_csv} @click=${() => this.save_sheet(table, "csv")}>CSV</button>
-          </span>`}
+          </span>`
+      }
       <strata-menu label=${words.more}>
         ${this.can_write && this.is_narrow ? html`${this.turns("menuitem")}<hr />` : nothing}
-        ${session.can_curate
-          ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "column", table: table.id, column: null })}>
+        ${
+          session.can_curate
+            ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "column", table: table.id, column: null })}>
                 ${icon("plus")}${words.new_column}
               </button>
               <hr />`
-          : nothing}
+            : nothing
+        }
         <button class="quiet" role="menuitem" @click=${() => this.save_sheet(table, "xlsx")}>${icon("import")}${words.save_xlsx}</button>
         <button class="quiet" role="menuitem" @click=${() => this.save_sheet(table, "csv")}>${icon("import")}${words.save_csv}</button>
         <button class="quiet" role="menuitem" @click=${() => this.save_sheet(table, "csv", { separator: "semicolon" })}>${icon("import")}${words.save_csv_semicolon}</button>
         ${table.kind === "terms" ? this.terms_menu(table) : nothing}
-        ${this.can_write
-          ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_csv(table)}>${icon("upload")}${words.import_csv}</button>
-              ${table.columns.some(holds_files)
-                ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_photos(table)}>${icon("picture")}${texts.files.add_menu}</button>`
-                : nothing}
+        ${
+          this.can_write
+            ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_csv(table)}>${icon("upload")}${words.import_csv}</button>
+              ${
+                table.columns.some(holds_files)
+                  ? html`<button class="quiet" role="menuitem" @click=${() => this.choose_photos(table)}>${icon("picture")}${texts.files.add_menu}</button>`
+                  : nothing
+              }
               <hr />
               <button class="quiet" role="menuitem" @click=${() => void open_bin_of(session)}>${icon("trash")}${texts.bin.open}</button>`
-          : nothing}
+            : nothing
+        }
       </strata-menu>
       <button class="icon quiet" aria-label=${words.close} title="${words.close} (T)" @click=${() => session.tables.close()}>${icon("close")}</button>
     </div>`;
@@ -256,15 +297,18 @@ export class StrataTablePanel extends LitElement {
   private terms_menu(table: Table): TemplateResult {
     const words = texts.terms_dialog;
     const { api, can_curate } = this.session;
-    const save = (format: "csv" | "turtle", ending: string) => () => save_from(api.terms_url(table.id, format), `${table.slug}.${ending}`);
+    const save = (format: "csv" | "turtle", ending: string) => () =>
+      save_from(api.terms_url(table.id, format), `${table.slug}.${ending}`);
     return html`<hr />
       <button class="quiet" role="menuitem" @click=${save("csv", "csv")}>${icon("import")}${words.save_csv}</button>
       <button class="quiet" role="menuitem" @click=${save("turtle", "ttl")}>${icon("import")}${words.save_turtle}</button>
-      ${can_curate
-        ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "terms", table: table.id, file: null })}>
+      ${
+        can_curate
+          ? html`<button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "terms", table: table.id, file: null })}>
             ${icon("upload")}${words.open_more}
           </button>`
-        : nothing}
+          : nothing
+      }
       <hr />`;
   }
 
@@ -272,14 +316,19 @@ export class StrataTablePanel extends LitElement {
     const words = texts.tables;
     const keys = [...this.view.selected];
     if (keys.length === 0) return nothing;
-    const area = this.view.extent?.area_m2 ?? keys.reduce((sum, key) => sum + (this.view.rows.find(key)?.area_m2 ?? 0), 0);
+    const area =
+      this.view.extent?.area_m2 ??
+      keys.reduce((sum, key) => sum + (this.view.rows.find(key)?.area_m2 ?? 0), 0);
     const [key] = keys;
     const one = keys.length === 1 && key !== undefined;
-    const name = one ? (this.session.tables.label(this.view.table_id, key) ?? words.record(key)) : words.chosen(keys.length);
+    const name = one
+      ? (this.session.tables.label(this.view.table_id, key) ?? words.record(key))
+      : words.chosen(keys.length);
     return html`<div class="chosen" role="group" aria-label=${words.chosen(keys.length)}>
       <span class="numeric ellipsis">${name} · ${format_area(area)}</span>
-      ${one && this.can_write
-        ? html`<button class="icon quiet" aria-label=${words.paint_with} title=${words.paint_with} @click=${() => this.paint_with(layer, key)}>
+      ${
+        one && this.can_write
+          ? html`<button class="icon quiet" aria-label=${words.paint_with} title=${words.paint_with} @click=${() => this.paint_with(layer, key)}>
               ${icon("brush")}
             </button>
             <button class="icon quiet" aria-label=${words.edit} title=${words.edit} @click=${() => this.request({ dialog: "record", layer, key })}>
@@ -288,7 +337,8 @@ export class StrataTablePanel extends LitElement {
             <button class="icon quiet" aria-label=${words.delete} title=${words.delete} @click=${() => this.request({ dialog: "delete-record", layer, key })}>
               ${icon("trash")}
             </button>`
-        : nothing}
+          : nothing
+      }
       <button class="icon quiet" aria-label=${words.choose_none} title=${words.choose_none} @click=${() => this.view.select_none()}>${icon("close")}</button>
     </div>`;
   }
@@ -334,9 +384,11 @@ export class StrataTablePanel extends LitElement {
     const characters = [...filter];
     return html`<div class="wrong" role="alert">
       <span>${problem.detail ?? problem.title}</span>
-      ${problem.field === "filter" && offset !== undefined
-        ? html`<code>${characters.slice(0, offset).join("")}<mark>${characters[offset] ?? " "}</mark>${characters.slice(offset + 1).join("")}</code>`
-        : nothing}
+      ${
+        problem.field === "filter" && offset !== undefined
+          ? html`<code>${characters.slice(0, offset).join("")}<mark>${characters[offset] ?? " "}</mark>${characters.slice(offset + 1).join("")}</code>`
+          : nothing
+      }
     </div>`;
   }
 
@@ -377,9 +429,11 @@ export class StrataTablePanel extends LitElement {
     const words = texts.tables;
     return html`<div class="empty">
       <span>${table.records === 0 ? words.empty : words.nothing_matches}</span>
-      ${table.records === 0 && this.can_write
-        ? html`<button @click=${() => this.request({ dialog: "record", layer, key: null })}>${icon("plus")}${words.new_record}</button>`
-        : nothing}
+      ${
+        table.records === 0 && this.can_write
+          ? html`<button @click=${() => this.request({ dialog: "record", layer, key: null })}>${icon("plus")}${words.new_record}</button>`
+          : nothing
+      }
     </div>`;
   }
 
@@ -399,15 +453,18 @@ export class StrataTablePanel extends LitElement {
     return html`<div class="cell ${kind}" role="columnheader" aria-sort=${sorted}>
       <button class="sort" tabindex="-1" title=${column?.comment || words.sort(label)} @click=${() => this.sort(name)}>
         <span class="ellipsis"
-          >${label}${column?.unit ? html` <span class="unit">${column.unit}</span>` : nothing}${column?.required
-            ? html`<span class="required" title=${words.required}> *</span>`
-            : nothing}</span
+          >${label}${column?.unit ? html` <span class="unit">${column.unit}</span>` : nothing}${
+            column?.required
+              ? html`<span class="required" title=${words.required}> *</span>`
+              : nothing
+          }</span
         >
         ${column ? visibility_badge(column.visibility) : nothing} ${sorted === "none" ? nothing : icon(sorted === "ascending" ? "up" : "down")}
       </button>
       ${column ? this.filter_button(column, label) : nothing}
-      ${column && this.session.can_curate
-        ? html`<strata-menu label=${words.column_menu(label)} small>
+      ${
+        column && this.session.can_curate
+          ? html`<strata-menu label=${words.column_menu(label)} small>
             <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "column", table: this.view.table_id, column })}>
               ${icon("edit")}${words.change_column}
             </button>
@@ -416,7 +473,8 @@ export class StrataTablePanel extends LitElement {
               ${icon("trash")}${words.drop_column}
             </button>
           </strata-menu>`
-        : nothing}
+          : nothing
+      }
       <span class="edge" @pointerdown=${(event: PointerEvent) => this.on_edge(event, name)}></span>
     </div>`;
   }
@@ -465,10 +523,15 @@ export class StrataTablePanel extends LitElement {
   private line(table: Table, layer: Layer, index: number): TemplateResult {
     const record = this.view.rows.row(index);
     const chosen = record !== null && this.view.selected.has(record.key);
-    const is_active = (column: number): string => (this.active_.row === index && this.active_.column === column ? "active" : "");
+    const is_active = (column: number): string =>
+      this.active_.row === index && this.active_.column === column ? "active" : "";
     const color = record ? record_color(this.session.layers.palette(layer), record) : null;
     const writer = record ? this.session.editors.other(table.id, record.key) : null;
-    const told = writer ? (writer.is_me ? texts.tables.edited_elsewhere : texts.tables.edited_by(writer.user)) : "";
+    const told = writer
+      ? writer.is_me
+        ? texts.tables.edited_elsewhere
+        : texts.tables.edited_by(writer.user)
+      : "";
     return html`<div
       class="line ${chosen ? "chosen-row" : ""} ${writer ? "held" : ""}"
       role="row"
@@ -496,7 +559,13 @@ export class StrataTablePanel extends LitElement {
     </div>`;
   }
 
-  private cell(record: TableRecord | null, column: Column, row: number, at: number, active: string): TemplateResult {
+  private cell(
+    record: TableRecord | null,
+    column: Column,
+    row: number,
+    at: number,
+    active: string,
+  ): TemplateResult {
     const edit = record ? this.view.edits.of(record.key, column.slug) : null;
     const value = edit ? edit.value : (record?.values[column.slug] ?? null);
     const state = edit ? (edit.state === "saving" ? "saving" : "refused") : "";
@@ -515,7 +584,8 @@ export class StrataTablePanel extends LitElement {
     return shown_value(this.session, column, value);
   }
 
-  // ── writing into a cell ───────────────────────────────────────────────────────────────────────────────────────────
+  // ── writing into a cell
+  // ───────────────────────────────────────────────────────────────────────────────────────────
 
   private editor(edges: readonly number[]): TemplateResult | typeof nothing {
     const editing = this.editing_;
@@ -541,11 +611,13 @@ export class StrataTablePanel extends LitElement {
         ></strata-cell-input>
       </div>
       ${this.is_taken ? this.taken(editing, edges[at]!) : nothing}
-      ${this.editor_problem_
-        ? html`<div class="bubble" role="alert" ${styled(this.beside(editing.row, edges[at]!))}>
+      ${
+        this.editor_problem_
+          ? html`<div class="bubble" role="alert" ${styled(this.beside(editing.row, edges[at]!))}>
             <span class="error">${this.editor_problem_}</span>
           </div>`
-        : nothing}`;
+          : nothing
+      }`;
   }
 
   /** Somebody else has the record that is written into here. */
@@ -565,7 +637,10 @@ export class StrataTablePanel extends LitElement {
     </div>`;
   }
 
-  /** Asks whoever would write into a record that somebody else has; `work` is done if it is, or was, to be had. */
+  /**
+   * Asks whoever would write into a record that somebody else has; `work` is done if it is, or was,
+   * to be had.
+   */
   private async take_over(key: number, work: () => void = () => {}): Promise<void> {
     const words = texts.tables;
     const { session, view } = this;
@@ -573,7 +648,10 @@ export class StrataTablePanel extends LitElement {
     const { other } = claim;
     const name = session.tables.label(view.table_id, key) ?? words.record(key);
     const lead = other?.is_me ? words.take_over_own : words.take_over_lead(other?.user ?? "");
-    if (!other || (await ask({ heading: words.take_over_title(name), lead, yes: words.take_over }))) {
+    if (
+      !other ||
+      (await ask({ heading: words.take_over_title(name), lead, yes: words.take_over }))
+    ) {
       if (other) claim.take_over();
       work();
       await this.updateComplete; // what is written into from now on has a claim of its own
@@ -591,8 +669,14 @@ export class StrataTablePanel extends LitElement {
   private beside(row: number, left: number): Record<string, string | null> {
     const { scrollTop = 0, clientHeight = 0 } = this.scroller_ ?? {};
     const below = row === 0 || row * this.row_px - scrollTop < (clientHeight - this.head_px) / 2;
-    const [top, bottom] = below ? [(row + 1) * this.row_px + 3, null] : [null, (this.view.rows.total - row) * this.row_px + 3];
-    return { left: `${left}px`, top: top === null ? null : `${top}px`, bottom: bottom === null ? null : `${bottom}px` };
+    const [top, bottom] = below
+      ? [(row + 1) * this.row_px + 3, null]
+      : [null, (this.view.rows.total - row) * this.row_px + 3];
+    return {
+      left: `${left}px`,
+      top: top === null ? null : `${top}px`,
+      bottom: bottom === null ? null : `${bottom}px`,
+    };
   }
 
   /** What the server refused, and what somebody else wrote meanwhile. */
@@ -600,7 +684,8 @@ export class StrataTablePanel extends LitElement {
     return this.view.edits.open.map((edit) => {
       const row = this.view.rows.index_of(edit.key);
       const at = table.columns.findIndex((column) => column.slug === edit.slug);
-      const written_again = this.editing_?.key === edit.key && this.editing_.column.slug === edit.slug;
+      const written_again =
+        this.editing_?.key === edit.key && this.editing_.column.slug === edit.slug;
       if (row === null || at < 0 || written_again) return nothing;
       return html`<div class="bubble" role="alert" ${styled(this.beside(row, edges[at]!))}>
         ${edit.theirs ? this.conflict(table.columns[at]!, edit) : this.refused(edit, row, at + 1)}
@@ -620,7 +705,8 @@ export class StrataTablePanel extends LitElement {
   private conflict(column: Column, edit: CellEdit): TemplateResult {
     const words = texts.tables;
     const theirs = edit.theirs!;
-    const shown = (value: CellValue): unknown => (value === null ? words.no_value : this.shown(column, value));
+    const shown = (value: CellValue): unknown =>
+      value === null ? words.no_value : this.shown(column, value);
     const time = theirs.time ? told_clock(theirs.time) : "";
     return html`<span>${words.changed_by(theirs.user || words.somebody, time)} <b>${shown(theirs.value)}</b></span>
       <span>${words.yours} <b>${shown(edit.value)}</b></span>
@@ -647,7 +733,8 @@ export class StrataTablePanel extends LitElement {
       this.request({ dialog: "record", layer: this.layer!, key: record.key });
       return;
     }
-    if (this.is_held(record.key)) void this.take_over(record.key, () => this.edit_now(row, at, typed));
+    if (this.is_held(record.key))
+      void this.take_over(record.key, () => this.edit_now(row, at, typed));
     else this.edit_now(row, at, typed);
   }
 
@@ -656,7 +743,8 @@ export class StrataTablePanel extends LitElement {
   }
 
   private clear_cell(record: TableRecord, { slug }: Column): void {
-    const clear = (): void => void this.view.write(record.key, slug, null, this.base_of(record, slug));
+    const clear = (): void =>
+      void this.view.write(record.key, slug, null, this.base_of(record, slug));
     if (this.is_held(record.key)) void this.take_over(record.key, clear);
     else clear();
   }
@@ -674,7 +762,14 @@ export class StrataTablePanel extends LitElement {
     this.activate(row, at);
     this.scroll_to_active(this.view.table!);
     const base = this.base_of(record, column.slug);
-    this.editing_ = { key: record.key, row, column, value: this.view.edits.of(record.key, column.slug)?.value ?? base, base, typed };
+    this.editing_ = {
+      key: record.key,
+      row,
+      column,
+      value: this.view.edits.of(record.key, column.slug)?.value ?? base,
+      base,
+      typed,
+    };
     this.editor_problem_ = "";
     void this.updateComplete.then(async () => {
       const input = this.input_;
@@ -732,11 +827,16 @@ export class StrataTablePanel extends LitElement {
 
   private readonly on_editor_left = (event: FocusEvent): void => {
     const editor = event.currentTarget as HTMLElement;
-    if (!this.editing_ || (event.relatedTarget instanceof Node && editor.contains(event.relatedTarget))) return;
+    if (
+      !this.editing_ ||
+      (event.relatedTarget instanceof Node && editor.contains(event.relatedTarget))
+    )
+      return;
     this.commit();
   };
 
-  // ── keys and the pointer ──────────────────────────────────────────────────────────────────────────────────────────
+  // ── keys and the pointer
+  // ──────────────────────────────────────────────────────────────────────────────────────────
 
   private activate(row: number, column: number): void {
     this.active_ = { row, column };
@@ -745,7 +845,10 @@ export class StrataTablePanel extends LitElement {
   private move_to(row: number, column: number): void {
     const { table, rows } = this.view;
     if (!table || !this.scroller_) return;
-    this.activate(Math.min(Math.max(0, row), Math.max(0, rows.total - 1)), Math.min(Math.max(0, column), table.columns.length + measures_of(table).length));
+    this.activate(
+      Math.min(Math.max(0, row), Math.max(0, rows.total - 1)),
+      Math.min(Math.max(0, column), table.columns.length + measures_of(table).length),
+    );
     this.scroll_to_active(table);
     this.scroller_.focus({ preventScroll: true });
   }
@@ -755,7 +858,8 @@ export class StrataTablePanel extends LitElement {
     const { row, column } = this.active_;
     const top = row * this.row_px;
     if (top < box.scrollTop) box.scrollTop = top;
-    else if (top + this.row_px > box.scrollTop + box.clientHeight - this.head_px) box.scrollTop = top + this.row_px - box.clientHeight + this.head_px;
+    else if (top + this.row_px > box.scrollTop + box.clientHeight - this.head_px)
+      box.scrollTop = top + this.row_px - box.clientHeight + this.head_px;
     if (column === 0) return;
     const edges = this.edges(table);
     const left = edges[column - 1]!;
@@ -775,10 +879,19 @@ export class StrataTablePanel extends LitElement {
     }
   };
 
-  private on_grid_key(event: KeyboardEvent, table: Table, row: number, column: number, total: number): boolean {
+  private on_grid_key(
+    event: KeyboardEvent,
+    table: Table,
+    row: number,
+    column: number,
+    total: number,
+  ): boolean {
     const { key } = event;
     const last = table.columns.length + measures_of(table).length;
-    const page = Math.max(1, Math.floor(((this.scroller_?.clientHeight ?? 0) - this.head_px) / this.row_px) - 1);
+    const page = Math.max(
+      1,
+      Math.floor(((this.scroller_?.clientHeight ?? 0) - this.head_px) / this.row_px) - 1,
+    );
     if (event.ctrlKey || event.metaKey) {
       if (event.altKey) return false;
       if (key.toLowerCase() === "z") {
@@ -808,8 +921,10 @@ export class StrataTablePanel extends LitElement {
     if (key === "Escape") this.scroller_?.blur();
     else if (key === " " && record) this.view.select(record.key, "toggle");
     else if (key === "Enter" || key === "F2") this.enter(record, row, column);
-    else if ((key === "Delete" || key === "Backspace") && record && cell && this.can_write) this.clear_cell(record, cell);
-    else if (key.length === 1 && !event.altKey && cell && this.can_write && may_be_text(cell, key)) this.edit_at(row, column, takes_typing(cell) ? key : null);
+    else if ((key === "Delete" || key === "Backspace") && record && cell && this.can_write)
+      this.clear_cell(record, cell);
+    else if (key.length === 1 && !event.altKey && cell && this.can_write && may_be_text(cell, key))
+      this.edit_at(row, column, takes_typing(cell) ? key : null);
     else return key === " ";
     return true;
   }
@@ -818,7 +933,8 @@ export class StrataTablePanel extends LitElement {
   private enter(record: TableRecord | null, row: number, column: number): void {
     const { layer } = this;
     if (this.view.table?.columns[column - 1]) this.edit_at(row, column, null);
-    else if (record && layer && this.can_write) this.request({ dialog: "record", layer, key: record.key });
+    else if (record && layer && this.can_write)
+      this.request({ dialog: "record", layer, key: record.key });
   }
 
   private on_cell(event: MouseEvent, row: number, column: number): void {
@@ -835,7 +951,11 @@ export class StrataTablePanel extends LitElement {
     this.scroller_?.focus({ preventScroll: true });
     if (!record) return;
     if (event.shiftKey) this.view.select_rows(this.from_, row);
-    else this.view.select(record.key, event.ctrlKey || event.metaKey || this.view.selected.has(record.key) ? "toggle" : "only");
+    else
+      this.view.select(
+        record.key,
+        event.ctrlKey || event.metaKey || this.view.selected.has(record.key) ? "toggle" : "only",
+      );
     this.from_ = row;
   }
 
@@ -845,14 +965,22 @@ export class StrataTablePanel extends LitElement {
     edge.setPointerCapture(event.pointerId);
     event.preventDefault();
     const move = (moved: PointerEvent): void => {
-      this.widths_.set(name, Math.max(kLeastWidth, Math.round(width + moved.clientX - event.clientX)));
+      this.widths_.set(
+        name,
+        Math.max(kLeastWidth, Math.round(width + moved.clientX - event.clientX)),
+      );
       this.requestUpdate();
     };
     edge.addEventListener("pointermove", move);
-    edge.addEventListener("lostpointercapture", () => edge.removeEventListener("pointermove", move), { once: true });
+    edge.addEventListener(
+      "lostpointercapture",
+      () => edge.removeEventListener("pointermove", move),
+      { once: true },
+    );
   }
 
-  // ── the filter, files, and what else is asked for ─────────────────────────────────────────────────────────────────
+  // ── the filter, files, and what else is asked for
+  // ─────────────────────────────────────────────────────────────────
 
   private on_filter(): void {
     this.set_filter(this.filter_.value.trim());
@@ -894,13 +1022,29 @@ export class StrataTablePanel extends LitElement {
   }
 
   /** Of the rows that the filter finds, in their order. */
-  private save_sheet(table: Table, format: "csv" | "xlsx", more: Record<string, string> = {}): void {
+  private save_sheet(
+    table: Table,
+    format: "csv" | "xlsx",
+    more: Record<string, string> = {},
+  ): void {
     const { sortby, filter } = this.view.rows;
-    const query = { f: format, ...more, ...(sortby ? { sortby } : {}), ...(filter ? { filter } : {}) };
-    save_from(this.session.api.records_url({ model: this.session.model_id, layer: this.view.layer_id }, query), `${table.slug}.${format}`);
+    const query = {
+      f: format,
+      ...more,
+      ...(sortby ? { sortby } : {}),
+      ...(filter ? { filter } : {}),
+    };
+    save_from(
+      this.session.api.records_url(
+        { model: this.session.model_id, layer: this.view.layer_id },
+        query,
+      ),
+      `${table.slug}.${format}`,
+    );
   }
 
-  // ── the filter of a column ────────────────────────────────────────────────────────────────────────────────────────
+  // ── the filter of a column
+  // ────────────────────────────────────────────────────────────────────────────────────────
 
   private open_filter(column: Column, event: Event): void {
     this.filtered_ = { column, anchor: event.currentTarget as HTMLElement };
@@ -942,13 +1086,18 @@ export class StrataTablePanel extends LitElement {
     input.click();
   }
 
-  /** One text is records, or terms where the table is a list of them; everything else is files of records. */
+  /**
+   * One text is records, or terms where the table is a list of them; everything else is files of
+   * records.
+   */
   private take_files(files: File[]): void {
     const table = this.view.table_id;
     const [file] = files;
     const takes_terms = this.view.table?.kind === "terms" && this.session.can_curate;
-    if (files.length === 1 && file && takes_terms && terms_type(file.name)) this.request({ dialog: "terms", table, file });
-    else if (files.length === 1 && file && /\.(csv|tsv|txt)$/i.test(file.name)) this.request({ dialog: "csv", table, file });
+    if (files.length === 1 && file && takes_terms && terms_type(file.name))
+      this.request({ dialog: "terms", table, file });
+    else if (files.length === 1 && file && /\.(csv|tsv|txt)$/i.test(file.name))
+      this.request({ dialog: "csv", table, file });
     else if (files.length > 0) this.request({ dialog: "photos", table, files });
   }
 

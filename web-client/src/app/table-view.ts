@@ -1,8 +1,15 @@
-// One table as it is looked at below the stage, under the layer whose areas it shows: its rows, what is written into them and which
-// are chosen.
+// One table as it is looked at below the stage, under the layer whose areas it shows: its rows,
+// what is written into them and which are chosen.
 
 import { ApiError, type Api } from "../core/api";
-import type { CellValue, Extent, Highlight, RecordEvent, Table, TableChanged } from "../core/protocol.gen";
+import type {
+  CellValue,
+  Extent,
+  Highlight,
+  RecordEvent,
+  Table,
+  TableChanged,
+} from "../core/protocol.gen";
 import { CellEdits } from "./cell-edits";
 import { notices } from "./notices";
 import { RecordRows } from "./record-rows";
@@ -50,7 +57,11 @@ export class TableView {
     private readonly host_: TableViewHost,
   ) {
     const place = { model: host_.model_id, layer: host_.layer_id };
-    this.rows = new RecordRows({ ask: (query) => api_.records(place, query), changed: () => this.changed(), measures_outdated: () => this.refresh_soon() });
+    this.rows = new RecordRows({
+      ask: (query) => api_.records(place, query),
+      changed: () => this.changed(),
+      measures_outdated: () => this.refresh_soon(),
+    });
     this.edits = new CellEdits(api_, {
       table: host_.table_id,
       row: (key) => this.rows.find(key),
@@ -74,12 +85,18 @@ export class TableView {
     return this.host_.table();
   }
 
-  // ── order and choice ──────────────────────────────────────────────────────────────────────────────────────────────
+  // ── order and choice
+  // ──────────────────────────────────────────────────────────────────────────────────────────────
 
-  /** `name`: the slug of a column, `key` or `area_m2`. Again turns the order round; a third time takes it away. */
+  /**
+   * `name`: the slug of a column, `key` or `area_m2`. Again turns the order round; a third time
+   * takes it away.
+   */
   sort(name: string): void {
     const { sortby } = this.rows;
-    this.rows.set_query({ sortby: sortby === name ? `-${name}` : sortby === `-${name}` ? "" : name });
+    this.rows.set_query({
+      sortby: sortby === name ? `-${name}` : sortby === `-${name}` ? "" : name,
+    });
   }
 
   select(key: number, how: "only" | "toggle"): void {
@@ -111,14 +128,16 @@ export class TableView {
     this.changed();
   }
 
-  // ── on the model ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── on the model
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
   /** What is to stand out: the rows that are chosen, else those that the filter finds. */
   get highlight(): Highlight | null {
     const { filter, settled } = this.rows;
     const isolate = this.isolates ? { isolate: true } : {};
     if (!this.lights_up) return null;
-    if (this.selected.size > 0) return { keys: [...this.selected].slice(0, kMostHighlighted), ...isolate };
+    if (this.selected.size > 0)
+      return { keys: [...this.selected].slice(0, kMostHighlighted), ...isolate };
     return filter !== "" && settled ? { filter, ...isolate } : null;
   }
   set_lights_up(lights_up: boolean): void {
@@ -136,10 +155,19 @@ export class TableView {
     void this.find_extent();
   }
 
-  /** What others wrote brought records into the filter, or took some out of it, that the rows do not follow by themselves. */
+  /**
+   * What others wrote brought records into the filter, or took some out of it, that the rows do not
+   * follow by themselves.
+   */
   get outdated(): boolean {
     const { extent, rows } = this;
-    return extent !== null && rows.loaded && this.selected.size === 0 && rows.filter !== "" && extent.records !== rows.total;
+    return (
+      extent !== null &&
+      rows.loaded &&
+      this.selected.size === 0 &&
+      rows.filter !== "" &&
+      extent.records !== rows.total
+    );
   }
 
   private light_up(): void {
@@ -167,7 +195,8 @@ export class TableView {
     this.host_.changed();
   }
 
-  // ── changes ───────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── changes
+  // ───────────────────────────────────────────────────────────────────────────────────────────────────────
 
   write(key: number, slug: string, value: CellValue, base: CellValue): void {
     this.told = "";
@@ -181,7 +210,10 @@ export class TableView {
     await this.turn(() => this.api_.redo_table(this.table_id), texts.tables.redone);
   }
 
-  private async turn(step: () => Promise<TableChanged>, told: (created: number, changed: number, deleted: number) => string): Promise<void> {
+  private async turn(
+    step: () => Promise<TableChanged>,
+    told: (created: number, changed: number, deleted: number) => string,
+  ): Promise<void> {
     try {
       const what = await step();
       if (what.columns_changed) await this.host_.columns_changed();
@@ -200,11 +232,13 @@ export class TableView {
     this.rows.refresh();
   }
 
-  // ── what others do ────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what others do
+  // ────────────────────────────────────────────────────────────────────────────────────────────────
 
   on_record(event: RecordEvent): void {
     if (event.event === "changed" && event.record) {
-      this.rows.put(event.record); // where it stands: rows that jump away while somebody reads them help nobody
+      // where it stands: rows that jump away while somebody reads them help nobody
+      this.rows.put(event.record);
       this.refresh_soon(false);
       return;
     }

@@ -1,8 +1,17 @@
-// The tables of the project that this page has needed so far: their columns, and what their records are called.
+// The tables of the project that this page has needed so far: their columns, and what their records
+// are called.
 
 import { ApiError, type Api } from "../core/api";
 import { label_of_record } from "../core/cells";
-import type { Bounds, Highlight, Picked, RecordEvent, Table, TableEvent, TableRecord } from "../core/protocol.gen";
+import type {
+  Bounds,
+  Highlight,
+  Picked,
+  RecordEvent,
+  Table,
+  TableEvent,
+  TableRecord,
+} from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 import { notices } from "./notices";
 import { RecordNames, type OtherNames } from "./record-names";
@@ -56,7 +65,12 @@ export class Tables {
     if (!table) return null;
     let names = this.names_.get(id);
     if (!names) {
-      names = new RecordNames(this.api_, () => this.find(id) ?? table, this.host_.changed, this.others_);
+      names = new RecordNames(
+        this.api_,
+        () => this.find(id) ?? table,
+        this.host_.changed,
+        this.others_,
+      );
       this.names_.set(id, names);
     }
     return names;
@@ -132,11 +146,14 @@ export class Tables {
     this.host_.changed();
   }
 
-  /** The card of the record that was taken; none where the layer has no records, or is not painted. */
+  /**
+   * The card of the record that was taken; none where the layer has no records, or is not painted.
+   */
   show_card(layer: Layer | null, { values }: Picked): void {
     const found = layer ? values?.[layer.slug] : undefined;
     const key = found?.valid ? found.value : undefined;
-    this.card = layer?.table === undefined || key === undefined ? null : { layer, key, record: null };
+    this.card =
+      layer?.table === undefined || key === undefined ? null : { layer, key, record: null };
     this.host_.changed();
     void this.load_card();
   }
@@ -164,7 +181,9 @@ export class Tables {
       return;
     }
     try {
-      const what = await (way === "undo" ? this.api_.undo_table(table) : this.api_.redo_table(table));
+      const what = await (way === "undo"
+        ? this.api_.undo_table(table)
+        : this.api_.redo_table(table));
       if (what.columns_changed) await this.reload(table);
       const told = way === "undo" ? texts.tables.undone : texts.tables.redone;
       notices.show("success", told(what.created.length, what.changed.length, what.deleted.length));
@@ -236,12 +255,16 @@ export class Tables {
     const { card } = this;
     if (!card) return;
     try {
-      const record = await this.api_.record({ model: this.host_.model_id, layer: card.layer.id }, card.key);
+      const record = await this.api_.record(
+        { model: this.host_.model_id, layer: card.layer.id },
+        card.key,
+      );
       if (this.card?.key !== card.key || this.card.layer.id !== card.layer.id) return;
       this.card = { ...card, record };
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (this.card === card) this.card = null; // paint that an undo brought back, without its record
+      // paint that an undo brought back, without its record
+      if (this.card === card) this.card = null;
     }
     this.host_.changed();
   }

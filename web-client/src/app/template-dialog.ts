@@ -1,4 +1,5 @@
-// <strata-template-dialog>: templates, and what each makes; one press makes its tables, and its layers on this model.
+// <strata-template-dialog>: templates, and what each makes; one press makes its tables, and its
+// layers on this model.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -104,11 +105,13 @@ export class StrataTemplateDialog extends LitElement {
     const { templates_: templates } = this;
     return html`<strata-dialog wide prose heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p class="hint">${words.lead}</p>
-      ${templates
-        ? templates.length === 0
-          ? html`<p>${words.none}</p>`
-          : html`<ul>${templates.map((template) => this.card(template))}</ul>`
-        : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
+      ${
+        templates
+          ? templates.length === 0
+            ? html`<p>${words.none}</p>`
+            : html`<ul>${templates.map((template) => this.card(template))}</ul>`
+          : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`
+      }
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
       ${this.problem_ ? html`<button slot="actions" class="primary" @click=${() => void this.load()}>${texts.try_again}</button>` : nothing}
     </strata-dialog>`;
@@ -133,7 +136,8 @@ export class StrataTemplateDialog extends LitElement {
             </div>`,
         )}
         ${template.layers.map(
-          (layer) => html`<div>${icon("brush")}<span class="ellipsis">${named(layer)}</span><span class="hint">${words.layer}</span></div>`,
+          (layer) =>
+            html`<div>${icon("brush")}<span class="ellipsis">${named(layer)}</span><span class="hint">${words.layer}</span></div>`,
         )}
       </div>
       ${this.refused_?.slug === slug ? html`<p class="error" role="alert">${this.refused_.problem}</p>` : nothing}
@@ -147,7 +151,10 @@ export class StrataTemplateDialog extends LitElement {
     this.making_ = slug;
     this.refused_ = null;
     try {
-      const { tables, layers } = await session.api.use_template(session.model.project, slug, { model: session.model_id, language: person_languages()[0]! });
+      const { tables, layers } = await session.api.use_template(session.model.project, slug, {
+        model: session.model_id,
+        language: person_languages()[0]!,
+      });
       for (const layer of layers) session.layers.put(layer);
       const first = layers.find(({ kind }) => kind === "database");
       if (first) session.add_created(first);
@@ -162,14 +169,21 @@ export class StrataTemplateDialog extends LitElement {
   }
 }
 
-/** The server names what it makes in one language, that of the page's person: here it is called the same. */
-const named = ({ name, labels = {} }: Pick<Template, "name" | "labels">): string => label_of({ name, labels });
+/**
+ * The server names what it makes in one language, that of the page's person: here it is called the
+ * same.
+ */
+const named = ({ name, labels = {} }: Pick<Template, "name" | "labels">): string =>
+  label_of({ name, labels });
 
-const contents = ({ terms, columns }: TemplateTable): string => (terms ? words.terms(terms.length) : words.columns(columns?.length ?? 0));
+const contents = ({ terms, columns }: TemplateTable): string =>
+  terms ? words.terms(terms.length) : words.columns(columns?.length ?? 0);
 
 function colors({ terms = [] }: TemplateTable): TemplateResult | typeof nothing {
   const some = terms.flatMap(({ color }) => color ?? []).slice(0, kMostColors);
-  return some.length === 0 ? nothing : html`<span class="colors">${some.map((color) => html`<span ${styled({ background: color })}></span>`)}</span>`;
+  return some.length === 0
+    ? nothing
+    : html`<span class="colors">${some.map((color) => html`<span ${styled({ background: color })}></span>`)}</span>`;
 }
 
 declare global {

@@ -1,4 +1,5 @@
-// <strata-term-chooser>: which term of a list is painted: a tree that is searched by typing and gone through by keys, as it is coloured on the model.
+// <strata-term-chooser>: which term of a list is painted: a tree that is searched by typing and
+// gone through by keys, as it is coloured on the model.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -43,7 +44,8 @@ export class StrataTermChooser extends LitElement {
   @query("input") private input_!: HTMLInputElement;
   @query(".tree") private tree_!: HTMLElement | null;
   private rows_: TermRow[] = [];
-  private whole_px_ = 0; // height of the tree without a search: what lies below does not jump while one types
+  // height of the tree without a search: what lies below does not jump while one types
+  private whole_px_ = 0;
   private walks_ = false; // the arrow keys go through the tree, and not through the text
   private generation_ = 0; // of the terms that were folded
   private searching_: Promise<void> | null = null;
@@ -170,7 +172,9 @@ export class StrataTermChooser extends LitElement {
     if (terms && terms.generation !== this.generation_) this.take(terms);
     if (changed.has("chosen") || other_list) this.reveal();
     if (!this.found_) this.whole_px_ = Math.min(kTree_px, this.tree_?.offsetHeight ?? 0);
-    this.rows_ = this.found_ ? rows_of(this.found_.terms, this.found_folded_) : rows_of(terms?.terms ?? [], this.folded_);
+    this.rows_ = this.found_
+      ? rows_of(this.found_.terms, this.found_folded_)
+      : rows_of(terms?.terms ?? [], this.folded_);
   }
 
   /** The terms are here, or have changed. */
@@ -184,7 +188,8 @@ export class StrataTermChooser extends LitElement {
   /** The chosen one is brought into sight, where it is. */
   private reveal(): void {
     const above = path_to(this.terms?.terms ?? [], this.chosen);
-    if (above.some(({ key }) => this.folded_.has(key))) this.folded_ = without(this.folded_, ...above.map(({ key }) => key));
+    if (above.some(({ key }) => this.folded_.has(key)))
+      this.folded_ = without(this.folded_, ...above.map(({ key }) => key));
     void this.updateComplete.then(() => this.scroll_to(this.chosen));
   }
 
@@ -212,9 +217,11 @@ export class StrataTermChooser extends LitElement {
           @focus=${() => this.input_.select()}
           @keydown=${this.on_key}
         />
-        ${this.text_ === ""
-          ? nothing
-          : html`<button class="icon quiet" aria-label=${words.show_all} title=${words.show_all} @click=${this.clear}>${icon("close")}</button>`}
+        ${
+          this.text_ === ""
+            ? nothing
+            : html`<button class="icon quiet" aria-label=${words.show_all} title=${words.show_all} @click=${this.clear}>${icon("close")}</button>`
+        }
       </div>
       ${problem ? html`<p class="error" role="alert">${problem}</p>` : nothing}
       <div class="tree" id="tree" role="tree" tabindex="-1" aria-label=${words.tree} ${styled({ "min-height": found ? `${this.whole_px_}px` : null })} @scroll=${() => this.requestUpdate()} @pointerdown=${this.keep_focus}>
@@ -229,13 +236,21 @@ export class StrataTermChooser extends LitElement {
       <p class="hint" role="status" ?hidden=${this.told(terms, found) === ""}>${this.told(terms, found)}</p>`;
   }
 
-  /** What the brush has now, in words also for those who do not see the tree, and cannot point at a term to read about it. */
+  /**
+   * What the brush has now, in words also for those who do not see the tree, and cannot point at a
+   * term to read about it.
+   */
   private now({ terms }: TermTree): TemplateResult {
     const { chosen, found_: found } = this;
-    const known = [terms, found?.terms ?? []].find((some) => some.some(({ key }) => key === chosen)) ?? [];
+    const known =
+      [terms, found?.terms ?? []].find((some) => some.some(({ key }) => key === chosen)) ?? [];
     const term = known.find(({ key }) => key === chosen);
     const above = path_to(known, chosen);
-    const name = term?.name ?? this.session.tables.label(this.layer.table ?? 0, chosen) ?? texts.tables.record(chosen); // of a very large list
+    // of a very large list
+    const name =
+      term?.name ??
+      this.session.tables.label(this.layer.table ?? 0, chosen) ??
+      texts.tables.record(chosen);
     return html`<div class="now">
       ${this.swatch(chosen)}
       <span>${above.length === 0 ? nothing : html`<span class="above">${above.map((each) => `${each.name} › `)}</span>`}<b>${name}</b></span>
@@ -263,19 +278,33 @@ export class StrataTermChooser extends LitElement {
     </div>`;
   }
 
-  /** As the layer draws it for this person; nothing where something else than the term says its colour. */
+  /**
+   * As the layer draws it for this person; nothing where something else than the term says its
+   * colour.
+   */
   private swatch(key: number): TemplateResult {
     const palette = this.session.layers.palette(this.layer);
     const color = color_of(palette, key);
     const point = point_of(palette, key) ?? (color === null ? null : { color });
-    return point && !palette.column ? html`<span class="swatch" ${styled(swatch_style(point))}></span>` : html`<span></span>`;
+    return point && !palette.column
+      ? html`<span class="swatch" ${styled(swatch_style(point))}></span>`
+      : html`<span></span>`;
   }
 
   /** How much of the list is not shown; empty: all of it is. */
   private told(terms: TermTree, found: FoundTerms | null): string {
-    if (found) return found.total === 0 ? words.none_found : found.total > found.terms.length ? words.more_found(found.total - found.terms.length) : "";
+    if (found)
+      return found.total === 0
+        ? words.none_found
+        : found.total > found.terms.length
+          ? words.more_found(found.total - found.terms.length)
+          : "";
     if (terms.problem) return "";
-    return terms.total === 0 ? words.empty : terms.total > terms.terms.length ? words.more(terms.terms.length, terms.total) : "";
+    return terms.total === 0
+      ? words.empty
+      : terms.total > terms.terms.length
+        ? words.more(terms.terms.length, terms.total)
+        : "";
   }
 
   private in_sight(): [number, TermRow][] {
@@ -291,10 +320,12 @@ export class StrataTermChooser extends LitElement {
     if (!tree || index < 0) return;
     const top = index * kRow_px;
     if (top < tree.scrollTop) tree.scrollTop = top;
-    else if (top + kRow_px > tree.scrollTop + tree.clientHeight) tree.scrollTop = top + kRow_px - tree.clientHeight;
+    else if (top + kRow_px > tree.scrollTop + tree.clientHeight)
+      tree.scrollTop = top + kRow_px - tree.clientHeight;
   }
 
-  // ── choosing ──────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── choosing
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private choose(key: number): void {
     this.at_ = key;
@@ -313,7 +344,8 @@ export class StrataTermChooser extends LitElement {
   }
 
   private fold(key: number, fold: boolean): void {
-    const change = (keys: ReadonlySet<number>): Set<number> => (fold ? new Set([...keys, key]) : without(keys, key));
+    const change = (keys: ReadonlySet<number>): Set<number> =>
+      fold ? new Set([...keys, key]) : without(keys, key);
     if (this.found_) this.found_folded_ = change(this.found_folded_);
     else this.folded_ = change(this.folded_);
   }
@@ -322,16 +354,29 @@ export class StrataTermChooser extends LitElement {
     const { key } = event;
     if (key === "Enter") void this.on_enter();
     else if (key === "Escape") this.on_escape();
-    else if (event.ctrlKey || event.metaKey || event.altKey || event.shiftKey || !this.on_tree_key(key)) return;
+    else if (
+      event.ctrlKey ||
+      event.metaKey ||
+      event.altKey ||
+      event.shiftKey ||
+      !this.on_tree_key(key)
+    )
+      return;
     event.preventDefault();
     event.stopPropagation();
   }
 
   /** Left and right are for the text until the arrows have gone into the tree. */
   private on_tree_key(key: string): boolean {
-    if ((key === "ArrowLeft" || key === "ArrowRight") && !this.walks_ && this.text_ !== "") return false;
+    if ((key === "ArrowLeft" || key === "ArrowRight") && !this.walks_ && this.text_ !== "")
+      return false;
     const at = this.rows_.findIndex(({ term }) => term.key === (this.at_ ?? this.chosen));
-    const step = tree_step(key, this.rows_, at, Math.floor((this.tree_?.clientHeight ?? kTree_px) / kRow_px));
+    const step = tree_step(
+      key,
+      this.rows_,
+      at,
+      Math.floor((this.tree_?.clientHeight ?? kTree_px) / kRow_px),
+    );
     if (!step) return false;
     this.walks_ = true;
     const next = "at" in step ? this.rows_[step.at]! : this.rows_[at]!;
@@ -354,7 +399,8 @@ export class StrataTermChooser extends LitElement {
     else this.clear();
   }
 
-  // ── searching ─────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── searching
+  // ─────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private on_input(): void {
     this.text_ = this.input_.value;
@@ -400,7 +446,8 @@ export class StrataTermChooser extends LitElement {
   }
 }
 
-const without = (keys: ReadonlySet<number>, ...gone: number[]): Set<number> => new Set([...keys].filter((key) => !gone.includes(key)));
+const without = (keys: ReadonlySet<number>, ...gone: number[]): Set<number> =>
+  new Set([...keys].filter((key) => !gone.includes(key)));
 
 declare global {
   interface HTMLElementTagNameMap {

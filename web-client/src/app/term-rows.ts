@@ -14,7 +14,10 @@ export interface TermRow {
 
 const kMostUnfolded = 60; // terms of a tree that is shown whole at first
 
-/** Keys of the terms that are folded when a tree is shown first: of a long one all but those above `chosen`. */
+/**
+ * Keys of the terms that are folded when a tree is shown first: of a long one all but those above
+ * `chosen`.
+ */
 export function folded_at_first(terms: readonly ListedTerm[], chosen: number): Set<number> {
   const folded = new Set<number>();
   if (terms.length <= kMostUnfolded) return folded;
@@ -41,9 +44,14 @@ export function path_to(terms: readonly ListedTerm[], key: number): ListedTerm[]
 
 const plain = (text: string): string => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
 
-/** Those that have all of the words in their names, whatever the case and the accents, with those above them, which do not `match`. */
+/**
+ * Those that have all of the words in their names, whatever the case and the accents, with those
+ * above them, which do not `match`.
+ */
 export function terms_with(terms: readonly ListedTerm[], words: string): ListedTerm[] {
-  const wanted = plain(words).split(/\s+/).filter((word) => word !== "");
+  const wanted = plain(words)
+    .split(/\s+/)
+    .filter((word) => word !== "");
   const matches = terms.map(({ name }) => wanted.every((word) => plain(name).includes(word)));
   const shown = new Set<number>();
   let depth = 0; // of what was shown below: who is above it is less deep
@@ -56,7 +64,9 @@ export function terms_with(terms: readonly ListedTerm[], words: string): ListedT
       depth = Math.min(depth, term.depth);
     }
   }
-  return terms.flatMap((term, index) => (shown.has(index) ? { ...term, match: matches[index]! } : []));
+  return terms.flatMap((term, index) =>
+    shown.has(index) ? { ...term, match: matches[index]! } : [],
+  );
 }
 
 /** `terms`: each before those below it. */
@@ -74,7 +84,8 @@ export function rows_of(terms: readonly ListedTerm[], folded: ReadonlySet<number
   return rows;
 }
 
-const has_below = (terms: readonly ListedTerm[], index: number): boolean => (terms[index + 1]?.depth ?? 0) > terms[index]!.depth;
+const has_below = (terms: readonly ListedTerm[], index: number): boolean =>
+  (terms[index + 1]?.depth ?? 0) > terms[index]!.depth;
 
 /** Rows of one parent stand at one depth, with nothing less deep between them. */
 function number_siblings(rows: readonly TermRow[]): void {
@@ -92,8 +103,16 @@ function number_siblings(rows: readonly TermRow[]): void {
   close(0);
 }
 
-/** What a key does at a row (-1: at none): goes to another one, folds its term or unfolds it. Null: nothing, it is for others. `page`: rows in sight. */
-export function tree_step(key: string, rows: readonly TermRow[], at: number, page: number): { at: number } | { fold: boolean } | null {
+/**
+ * What a key does at a row (-1: at none): goes to another one, folds its term or unfolds it. Null:
+ * nothing, it is for others. `page`: rows in sight.
+ */
+export function tree_step(
+  key: string,
+  rows: readonly TermRow[],
+  at: number,
+  page: number,
+): { at: number } | { fold: boolean } | null {
   const row = rows[at];
   const by = { ArrowDown: 1, ArrowUp: -1, PageDown: page, PageUp: -page }[key];
   if (by !== undefined) {

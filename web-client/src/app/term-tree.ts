@@ -1,5 +1,5 @@
-// The terms of a list in the person's language. Asked for once somebody needs them, and again when the list changes; of very large lists the
-// first ones, since the server finds the others.
+// The terms of a list in the person's language. Asked for once somebody needs them, and again when
+// the list changes; of very large lists the first ones, since the server finds the others.
 
 import { ApiError, type Api } from "../core/api";
 import { person_languages } from "../core/locale";
@@ -47,7 +47,12 @@ export class TermTree {
 
   /** Those that have all of the words, with those above them. */
   async search(words: string): Promise<FoundTerms> {
-    return this.api_.terms(this.table_, { q: words, lang: this.language_, limit: kMostFound, offset: 0 });
+    return this.api_.terms(this.table_, {
+      q: words,
+      lang: this.language_,
+      limit: kMostFound,
+      offset: 0,
+    });
   }
 
   refresh(): void {
@@ -63,7 +68,11 @@ export class TermTree {
         const terms: ListedTerm[] = [];
         let total = 1;
         while (terms.length < Math.min(total, kMostTerms)) {
-          const page = await this.api_.terms(this.table_, { lang: this.language_, limit: kAtOnce, offset: terms.length });
+          const page = await this.api_.terms(this.table_, {
+            lang: this.language_,
+            limit: kAtOnce,
+            offset: terms.length,
+          });
           total = page.total;
           if (page.terms.length === 0) break; // some were deleted meanwhile
           terms.push(...page.terms);

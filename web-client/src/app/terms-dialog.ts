@@ -1,4 +1,5 @@
-// <strata-terms-dialog>: a list of terms from a CSV or SKOS file, or more terms for one: first what the file would do, then it is done.
+// <strata-terms-dialog>: a list of terms from a CSV or SKOS file, or more terms for one: first what
+// the file would do, then it is done.
 
 import { html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -39,10 +40,7 @@ export class StrataTermsDialog extends LitElement {
   private named_ = false; // by the person, and not after the file
   private asked_ = 0;
 
-  static override styles = [
-    shared_styles,
-    report_styles,
-  ];
+  static override styles = [shared_styles, report_styles];
 
   override connectedCallback(): void {
     super.connectedCallback();
@@ -98,7 +96,9 @@ export class StrataTermsDialog extends LitElement {
   }
 
   private get into(): { project: number | string; name: string } | { table: number } {
-    return this.table === null ? { project: this.session.model?.project ?? 0, name: this.name_ } : { table: this.table };
+    return this.table === null
+      ? { project: this.session.model?.project ?? 0, name: this.name_ }
+      : { table: this.table };
   }
 
   /** What it would do. The newest question counts. */
@@ -106,7 +106,12 @@ export class StrataTermsDialog extends LitElement {
     const asked = ++this.asked_;
     const type = terms_type(file.name);
     this.report_ = null;
-    this.problem_ = type === null ? words.unknown(file.name) : this.table === null && this.name_ === "" ? words.name_missing : "";
+    this.problem_ =
+      type === null
+        ? words.unknown(file.name)
+        : this.table === null && this.name_ === ""
+          ? words.name_missing
+          : "";
     if (type === null || this.problem_ !== "") return;
     try {
       const report = await this.session.api.import_terms(this.into, file, type, true);
@@ -127,7 +132,8 @@ export class StrataTermsDialog extends LitElement {
       const report = await session.api.import_terms(this.into, file, type, false);
       if (this.table !== null) await session.tables.reload(this.table);
       notices.show("success", words.done(report.created, report.changed));
-      if (this.table === null && this.with_layer_ && report.table) await this.make_layer(report.table, report.created);
+      if (this.table === null && this.with_layer_ && report.table)
+        await this.make_layer(report.table, report.created);
       this.dialog_.close();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -137,12 +143,22 @@ export class StrataTermsDialog extends LitElement {
     }
   }
 
-  /** Where that is refused the list is there all the same: it is told as what it is, and not as a failed import. */
+  /**
+   * Where that is refused the list is there all the same: it is told as what it is, and not as a
+   * failed import.
+   */
   private async make_layer({ id, name }: Table, terms: number): Promise<void> {
     const { session } = this;
     try {
       const type = terms > kMostOfU16 ? "u32" : "u16";
-      session.add_created(await session.api.create_layer(session.model_id, { name, kind: "database", type, table: id }));
+      session.add_created(
+        await session.api.create_layer(session.model_id, {
+          name,
+          kind: "database",
+          type,
+          table: id,
+        }),
+      );
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       notices.show("problem", words.no_layer(name), error.message);

@@ -9,7 +9,9 @@ const kTypes: [TermsType, string[]][] = [
 ];
 
 /** For a file chooser. */
-export const kTermsEndings = kTypes.flatMap(([, endings]) => endings.map((ending) => `.${ending}`)).join(",");
+export const kTermsEndings = kTypes
+  .flatMap(([, endings]) => endings.map((ending) => `.${ending}`))
+  .join(",");
 
 /** What a file is sent as; null: it is no list of terms. */
 export function terms_type(name: string): TermsType | null {

@@ -1,4 +1,5 @@
-// <strata-thumbnail>: one small rendered picture of a model, or of what a named view shows, asked for when it comes into sight.
+// <strata-thumbnail>: one small rendered picture of a model, or of what a named view shows, asked
+// for when it comes into sight.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -15,13 +16,18 @@ const kHeight = 480;
 const kSmallWidth = 240; // on screens with two pixels for one, too
 const kSmallHeight = 180;
 const kViewSide = 256;
-let busy: Promise<void> = Promise.resolve(); // one picture at a time, so that a gallery never crowds out people at work
+// one picture at a time, so that a gallery never crowds out people at work
+let busy: Promise<void> = Promise.resolve();
 
 @customElement("strata-thumbnail")
 export class StrataThumbnail extends LitElement {
   @property({ attribute: false }) api!: Api;
   @property({ attribute: false }) model!: Model;
-  @property({ attribute: false, hasChanged: (now: View | null, before: View | null) => now?.id !== before?.id || now?.version !== before?.version })
+  @property({
+    attribute: false,
+    hasChanged: (now: View | null, before: View | null) =>
+      now?.id !== before?.id || now?.version !== before?.version,
+  })
   view: View | null = null;
   /** Small, and with this direction up in place of the model's own. */
   @property() up: Model["up"] | null = null;
@@ -80,7 +86,10 @@ export class StrataThumbnail extends LitElement {
     this.wanted_?.abort();
     this.settled_ = false;
     const { signal } = (this.wanted_ = new AbortController());
-    signal.addEventListener("abort", when_seen(this, () => (busy = busy.then(() => this.load(signal)))));
+    signal.addEventListener(
+      "abort",
+      when_seen(this, () => (busy = busy.then(() => this.load(signal)))),
+    );
   }
 
   private async load(signal: AbortSignal): Promise<void> {

@@ -1,4 +1,5 @@
-// <strata-together-bar>: around the picture, in their colour, that somebody else moves the view; or who looks with this person.
+// <strata-together-bar>: around the picture, in their colour, that somebody else moves the view; or
+// who looks with this person.
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";

@@ -1,5 +1,5 @@
-// Looking together: who is at the model, whom this person looks with, who is asked to look with them, and what the others are told of all
-// that.
+// Looking together: who is at the model, whom this person looks with, who is asked to look with
+// them, and what the others are told of all that.
 
 import { called } from "../core/people";
 import { followers_of, leads_back, people_here, type PersonHere } from "../core/people-here";
@@ -16,7 +16,10 @@ export interface TogetherHost {
   session(): string; // this connection
   ready(): boolean;
   send(shown: Omit<PresenceUpdate, "op">): void;
-  readonly view: Pick<ViewControl, "camera" | "gliding" | "look_along" | "look_alone" | "turn_around">;
+  readonly view: Pick<
+    ViewControl,
+    "camera" | "gliding" | "look_along" | "look_alone" | "turn_around"
+  >;
   /** What is seen at a pixel of the window? */
   ask(id: string, x: number, y: number): void;
   changed(): void;
@@ -43,7 +46,10 @@ export class Together {
     });
   }
 
-  /** What somebody is called who is here, or was: by their account's name where nothing else is known. */
+  /**
+   * What somebody is called who is here, or was: by their account's name where nothing else is
+   * known.
+   */
   name_of(user: string): string {
     const here = this.people.find((person) => person.user === user);
     return called(here ?? { user });
@@ -53,7 +59,10 @@ export class Together {
     return followers_of(this.people, this.host_.session());
   }
 
-  /** Whether this person may look with somebody: there is a window of theirs, and it does not follow this one. */
+  /**
+   * Whether this person may look with somebody: there is a window of theirs, and it does not follow
+   * this one.
+   */
   can_follow({ viewer }: PersonHere): boolean {
     return viewer !== null && !leads_back(this.viewers, viewer.session, this.host_.session());
   }
@@ -90,7 +99,9 @@ export class Together {
     this.keep_up();
     this.hear_invitations();
     // Pointers and cameras move all the time: only for them the page need not be drawn again.
-    const told = JSON.stringify(viewers, (name, value: unknown) => (name === "pointer" || name === "camera" ? undefined : value));
+    const told = JSON.stringify(viewers, (name, value: unknown) =>
+      name === "pointer" || name === "camera" ? undefined : value,
+    );
     if (told !== this.told_) this.host_.changed();
     this.told_ = told;
   }
@@ -114,7 +125,10 @@ export class Together {
     this.middle_.stop();
   }
 
-  /** A camera says where it looks, not at what. Who goes on from here alone will turn around what they see. */
+  /**
+   * A camera says where it looks, not at what. Who goes on from here alone will turn around what
+   * they see.
+   */
   came_to_rest(): void {
     const { width, height } = this.host_.view.camera;
     if (this.followed) this.middle_.ask({ x: width / 2, y: height / 2 });
@@ -124,7 +138,10 @@ export class Together {
     return this.middle_.answer(message);
   }
 
-  /** True when the refusal is of a question of this, or about whom this person follows; then all is said and done. */
+  /**
+   * True when the refusal is of a question of this, or about whom this person follows; then all is
+   * said and done.
+   */
   refused({ ref, field, status, detail }: Omit<ProblemMessage, "op">): boolean {
     if (this.middle_.refused(ref)) return true;
     if (field !== "follow") return false;
@@ -161,14 +178,20 @@ export class Together {
 
   /** Who asks to look with them is told of once. */
   private hear_invitations(): void {
-    const leaders = this.viewers.filter(({ leading, session }) => leading && session !== this.host_.session());
-    for (const session of this.invitations_.keys()) if (!leaders.some((leader) => leader.session === session)) this.withdraw(session, true);
+    const leaders = this.viewers.filter(
+      ({ leading, session }) => leading && session !== this.host_.session(),
+    );
+    for (const session of this.invitations_.keys())
+      if (!leaders.some((leader) => leader.session === session)) this.withdraw(session, true);
     for (const leader of leaders) {
       if (this.invitations_.has(leader.session)) continue;
       const words = texts.together;
       const link = { label: words.accept, act: () => this.follow(leader) };
       const known = leader.session === this.followed?.session;
-      this.invitations_.set(leader.session, known ? 0 : notices.show("info", words.invites(name_of(leader)), "", link));
+      this.invitations_.set(
+        leader.session,
+        known ? 0 : notices.show("info", words.invites(name_of(leader)), "", link),
+      );
     }
   }
 
@@ -190,8 +213,13 @@ export class Together {
 
   private send(): void {
     const { leading, followed, shown_: shown } = this;
-    this.host_.send({ ...shown, ...(leading ? { leading } : {}), ...(followed ? { follow: followed.session } : {}) });
+    this.host_.send({
+      ...shown,
+      ...(leading ? { leading } : {}),
+      ...(followed ? { follow: followed.session } : {}),
+    });
   }
 }
 
-export const name_of = ({ name, full_name }: PresenceUser): string => called({ user: name, full_name: full_name ?? "" });
+export const name_of = ({ name, full_name }: PresenceUser): string =>
+  called({ user: name, full_name: full_name ?? "" });

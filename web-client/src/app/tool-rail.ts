@@ -158,8 +158,8 @@ export class StrataToolRail extends LitElement {
     const words = texts.model;
     const shown = kTools.filter(([name]) => this.shows(name));
     return html`${shown.map(
-        ([name, key]) =>
-          html`<button
+      ([name, key]) =>
+        html`<button
             class="icon quiet"
             data-tour=${kOfTour[name] ?? nothing}
             aria-pressed=${session.tools.active === name}
@@ -169,9 +169,10 @@ export class StrataToolRail extends LitElement {
           >
             ${icon(name)}
           </button>`,
-      )}
-      ${session.can_paint
-        ? html`<div class="turns">
+    )}
+      ${
+        session.can_paint
+          ? html`<div class="turns">
             <hr />
             <button
               class="icon quiet"
@@ -194,7 +195,8 @@ export class StrataToolRail extends LitElement {
             </button>
             <hr />
           </div>`
-        : html`<hr />`}
+          : html`<hr />`
+      }
       <button
         class="icon quiet"
         aria-label=${texts.views.fit}
@@ -219,7 +221,11 @@ export class StrataToolRail extends LitElement {
   private shows(name: ToolName): boolean {
     const { session } = this;
     if (kChangingTools.includes(name) && !session.can_paint) return false;
-    return (name !== "line" && name !== "point") || session.tools.active === name || session.marks.column(name) !== null;
+    return (
+      (name !== "line" && name !== "point") ||
+      session.tools.active === name ||
+      session.marks.column(name) !== null
+    );
   }
 
   private projection(perspective: boolean, label: string, key: string): TemplateResult {

@@ -1,4 +1,5 @@
-// The shapes that the brush can have beside round and square: tools of the site, made of pictures. All people share them.
+// The shapes that the brush can have beside round and square: tools of the site, made of pictures.
+// All people share them.
 
 import type { Api } from "../core/api";
 import { compare_words } from "../core/locale";

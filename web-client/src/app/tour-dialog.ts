@@ -1,5 +1,6 @@
-// <strata-tour-dialog>: makes a tour of the model's views, or changes one: its languages, its stops, what is said and shown at each. Nothing is sent before it
-// is saved; what others save meanwhile is told, and nothing that was written here is lost by it.
+// <strata-tour-dialog>: makes a tour of the model's views, or changes one: its languages, its
+// stops, what is said and shown at each. Nothing is sent before it is saved; what others save
+// meanwhile is told, and nothing that was written here is lost by it.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -8,9 +9,21 @@ import { language_in_words } from "../core/languages";
 import { page_locale } from "../core/locale";
 import type { Tour, TourEntry } from "../core/protocol.gen";
 import {
-  body_of, differs, draft_of, empty_tour, is_about, kSeconds, language_of_field, place_of, problem_of, without_language, writes_in,
-  type DraftProblem, type StopDraft, type TourDraft,
-} from "../core/tours"; // prettier-ignore
+  body_of,
+  differs,
+  draft_of,
+  empty_tour,
+  is_about,
+  kSeconds,
+  language_of_field,
+  place_of,
+  problem_of,
+  without_language,
+  writes_in,
+  type DraftProblem,
+  type StopDraft,
+  type TourDraft,
+} from "../core/tours";
 import { ask } from "./dialog";
 import type { StrataDialog } from "./dialog";
 import { follow_session } from "./follow-session";
@@ -149,7 +162,8 @@ export class StrataTourDialog extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     addEventListener("beforeunload", this.on_unload);
-    this.let_go_ = hold_page(this.may_close); // a stop is tried on the page, whose links lead elsewhere
+    // a stop is tried on the page, whose links lead elsewhere
+    this.let_go_ = hold_page(this.may_close);
     void this.read();
   }
 
@@ -191,11 +205,17 @@ export class StrataTourDialog extends LitElement {
 
   private readonly may_close = async (): Promise<boolean> => {
     if (!this.changed) return true;
-    this.asked_ ??= ask({ heading: words.leave_title, lead: words.leave_lead, yes: words.leave_yes, danger: true }).finally(() => (this.asked_ = null));
+    this.asked_ ??= ask({
+      heading: words.leave_title,
+      lead: words.leave_lead,
+      yes: words.leave_yes,
+      danger: true,
+    }).finally(() => (this.asked_ = null));
     return this.asked_; // once, whichever way somebody wants to leave by
   };
 
-  // ── what is seen ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is seen
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
   override render(): TemplateResult {
     const { draft_: draft, problem_: problem } = this;
@@ -208,16 +228,20 @@ export class StrataTourDialog extends LitElement {
       @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
     >
       ${draft ? this.content(draft) : html`<p class="hint" role="status" ?hidden=${problem !== null}>${texts.loading}</p>`}
-      ${this.theirs_
-        ? html`<div slot="told" class="told" role="alert">
+      ${
+        this.theirs_
+          ? html`<div slot="told" class="told" role="alert">
             <span>${words.conflict}</span>
             <button class="link" @click=${() => void this.take_theirs()}>${words.take_theirs}</button>
           </div>`
-        : nothing}
+          : nothing
+      }
       ${problem && this.general(problem.field) ? html`<p slot="told" class="error told" role="alert">${problem.text}</p>` : nothing}
-      ${draft
-        ? html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => void this.save()}>${texts.save}</button>`
-        : nothing}
+      ${
+        draft
+          ? html`<button slot="actions" class="primary" ?disabled=${this.busy_} @click=${() => void this.save()}>${texts.save}</button>`
+          : nothing
+      }
       ${!draft && problem ? html`<button slot="actions" @click=${() => void this.read()}>${texts.try_again}</button>` : nothing}
     </strata-dialog>`;
   }
@@ -243,8 +267,9 @@ export class StrataTourDialog extends LitElement {
           }}
         ></strata-tour-stops>
         <div class="stop ${this.chosen_ === null ? "unchosen" : ""}">
-          ${stop
-            ? html`<button class="back" @click=${() => (this.chosen_ = null)}>${icon("back")}${words.all_stops}</button>
+          ${
+            stop
+              ? html`<button class="back" @click=${() => (this.chosen_ = null)}>${icon("back")}${words.all_stops}</button>
                 <strata-tour-stop-fields
                   .session=${this.session}
                   .stop=${stop}
@@ -256,7 +281,8 @@ export class StrataTourDialog extends LitElement {
                   @changed=${({ detail }: CustomEvent<StopDraft>) => this.put({ stops: draft.stops.map((each) => (each.id === detail.id ? detail : each)) })}
                   @try=${() => this.try_stop(index)}
                 ></strata-tour-stop-fields>`
-            : html`<p class="hint">${words.stops_lead}</p>`}
+              : html`<p class="hint">${words.stops_lead}</p>`
+          }
         </div>
       </div>
     </div>`;
@@ -309,11 +335,18 @@ export class StrataTourDialog extends LitElement {
 
   /** Of the stop that is looked at: wide windows always show one. */
   private shown_index({ stops }: TourDraft): number {
-    return Math.max(0, stops.findIndex(({ id }) => id === this.chosen_));
+    return Math.max(
+      0,
+      stops.findIndex(({ id }) => id === this.chosen_),
+    );
   }
 
   private refusal(field: string): string {
-    return this.problem_ && is_about(this.problem_.field, field) && place_of(this.problem_.field).stop === null ? this.problem_.text : "";
+    return this.problem_ &&
+      is_about(this.problem_.field, field) &&
+      place_of(this.problem_.field).stop === null
+      ? this.problem_.text
+      : "";
   }
   /** What no field of the dialog shows. */
   private general(field: string): boolean {
@@ -322,7 +355,8 @@ export class StrataTourDialog extends LitElement {
     return !["name", "idle_s", "text", "languages", "stops"].some((each) => is_about(field, each));
   }
 
-  // ── what is changed ───────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is changed
+  // ───────────────────────────────────────────────────────────────────────────────────────────────
 
   private put(change: Partial<TourDraft>): void {
     if (!this.draft_) return;
@@ -340,7 +374,12 @@ export class StrataTourDialog extends LitElement {
   private async remove_language(language: string): Promise<void> {
     if (!this.draft_) return;
     const name = language_in_words(language);
-    const question = { heading: words.language_remove_title(name), lead: words.language_remove_lead, yes: words.language_remove_yes, danger: true };
+    const question = {
+      heading: words.language_remove_title(name),
+      lead: words.language_remove_lead,
+      yes: words.language_remove_yes,
+      danger: true,
+    };
     if (writes_in(this.draft_, language) && !(await ask(question))) return;
     this.put(without_language(this.draft_, language));
   }
@@ -357,11 +396,21 @@ export class StrataTourDialog extends LitElement {
 
   private async take_theirs(): Promise<void> {
     const theirs = this.theirs_;
-    if (!theirs || !(await ask({ heading: words.theirs_title, lead: words.leave_lead, yes: words.take_theirs, danger: true }))) return;
+    if (
+      !theirs ||
+      !(await ask({
+        heading: words.theirs_title,
+        lead: words.leave_lead,
+        yes: words.take_theirs,
+        danger: true,
+      }))
+    )
+      return;
     this.take(draft_of(theirs));
   }
 
-  // ── saving ────────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── saving
+  // ────────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private async save(): Promise<void> {
     const { draft_: draft } = this;
@@ -372,7 +421,9 @@ export class StrataTourDialog extends LitElement {
     try {
       const body = body_of(draft);
       const { tours } = this.session;
-      this.base_ = await (this.base_ ? tours.change(this.base_, body) : tours.make(body, this.key_));
+      this.base_ = await (this.base_
+        ? tours.change(this.base_, body)
+        : tours.make(body, this.key_));
       this.saved_ = draft;
       notices.show("success", words.saved(body.name));
       this.dialog_?.close();
@@ -419,4 +470,5 @@ export class StrataTourDialog extends LitElement {
   }
 }
 
-const told = ({ wrong, range }: DraftProblem): string => (wrong === "seconds" ? words.wrong_seconds(...(range ?? [0, 0])) : words.wrong[wrong]);
+const told = ({ wrong, range }: DraftProblem): string =>
+  wrong === "seconds" ? words.wrong_seconds(...(range ?? [0, 0])) : words.wrong[wrong];

@@ -11,7 +11,9 @@ import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
 const words = texts.tours;
-const offered = kCommonLanguages.map((tag) => ({ value: tag, name: language_in_words(tag) })).sort((a, b) => compare_words(a.name, b.name));
+const offered = kCommonLanguages
+  .map((tag) => ({ value: tag, name: language_in_words(tag) }))
+  .sort((a, b) => compare_words(a.name, b.name));
 
 @customElement("strata-tour-languages")
 export class StrataTourLanguages extends LitElement {
@@ -72,9 +74,11 @@ export class StrataTourLanguages extends LitElement {
       <ul aria-labelledby="caption">
         ${languages.map((tag, index) => this.chip(tag, index))}
       </ul>
-      ${languages.length < kMostLanguages
-        ? add_from(words.language_add, others, (tag) => this.put([...languages, tag]))
-        : nothing}`;
+      ${
+        languages.length < kMostLanguages
+          ? add_from(words.language_add, others, (tag) => this.put([...languages, tag]))
+          : nothing
+      }`;
   }
 
   private chip(tag: string, index: number): TemplateResult {
@@ -82,11 +86,13 @@ export class StrataTourLanguages extends LitElement {
     if (this.languages.length === 1) return html`<li>${name}</li>`;
     return html`<li>
       ${name}
-      ${index === 0
-        ? html`<small>${words.first_language}</small>`
-        : html`<button type="button" class="icon quiet" aria-label=${words.make_first(name)} title=${words.make_first(name)} @click=${() => this.put([tag, ...this.languages.filter((each) => each !== tag)])}>
+      ${
+        index === 0
+          ? html`<small>${words.first_language}</small>`
+          : html`<button type="button" class="icon quiet" aria-label=${words.make_first(name)} title=${words.make_first(name)} @click=${() => this.put([tag, ...this.languages.filter((each) => each !== tag)])}>
             ${icon("up")}
-          </button>`}
+          </button>`
+      }
       <button type="button" class="icon quiet" aria-label=${words.language_remove(name)} title=${words.language_remove(name)} @click=${() => this.dispatchEvent(new CustomEvent<string>("remove", { detail: tag }))}>
         ${icon("close")}
       </button>

@@ -1,4 +1,5 @@
-// <strata-tour-list>: the tours of the model, for those who make them; part of the panel of the view, below the views that tours are made of.
+// <strata-tour-list>: the tours of the model, for those who make them; part of the panel of the
+// view, below the views that tours are made of.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -15,7 +16,8 @@ import { shared_styles } from "./styles";
 import { texts } from "./texts";
 
 /** The tour's editor (without `tour`, of a new one), or its links for kiosks. */
-export type TourRequest = { dialog: "tour"; tour: TourEntry | null } | { dialog: "kiosks"; tour: TourEntry };
+export type TourRequest =
+  { dialog: "tour"; tour: TourEntry | null } | { dialog: "kiosks"; tour: TourEntry };
 
 const words = texts.tours;
 
@@ -89,7 +91,15 @@ export class StrataTourList extends LitElement {
   }
 
   private async delete_tour(tour: TourEntry): Promise<void> {
-    if (!(await ask({ heading: words.delete_title(tour.name), lead: words.delete_lead, yes: texts.delete, danger: true }))) return;
+    if (
+      !(await ask({
+        heading: words.delete_title(tour.name),
+        lead: words.delete_lead,
+        yes: texts.delete,
+        danger: true,
+      }))
+    )
+      return;
     await this.session.tours.remove(tour).catch((error: unknown) => notices.error(error));
   }
 }

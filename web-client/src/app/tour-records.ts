@@ -1,4 +1,5 @@
-// <strata-tour-records>: the records that a stop of a tour shows: of which tables, which of them, with which columns, and what these are called there.
+// <strata-tour-records>: the records that a stop of a tour shows: of which tables, which of them,
+// with which columns, and what these are called there.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -74,17 +75,19 @@ export class StrataTourRecords extends LitElement {
     const { records, tables_ } = this;
     const others = tables_.filter(({ slug }) => !records.some(({ table }) => table === slug));
     return html`${repeat(
-        records,
-        ({ table }) => table,
-        (each, index) => this.of_table(each, index),
-      )}
-      ${others.length > 0 && records.length < kMostRecordTables
-        ? add_from(
-            words.table_add,
-            others.map((table) => ({ value: table.slug, name: label_of(table) })),
-            (table) => this.put([...records, { table, keys: [], columns: [] }]),
-          )
-        : nothing}
+      records,
+      ({ table }) => table,
+      (each, index) => this.of_table(each, index),
+    )}
+      ${
+        others.length > 0 && records.length < kMostRecordTables
+          ? add_from(
+              words.table_add,
+              others.map((table) => ({ value: table.slug, name: label_of(table) })),
+              (table) => this.put([...records, { table, keys: [], columns: [] }]),
+            )
+          : nothing
+      }
       ${tables_.length === 0 && records.length === 0 ? html`<p class="hint">${words.no_tables}</p>` : nothing}`;
   }
 
@@ -101,8 +104,9 @@ export class StrataTourRecords extends LitElement {
         </button>
       </div>
       ${wrong ? html`<p class="error" role="alert">${this.problem}</p>` : nothing}
-      ${table
-        ? html`<strata-record-chooser
+      ${
+        table
+          ? html`<strata-record-chooser
               .session=${this.session}
               .table=${table.id}
               .chosen=${each.keys}
@@ -122,7 +126,8 @@ export class StrataTourRecords extends LitElement {
               .more=${(slug: string) => this.labels(index, table, slug)}
               @chosen=${(event: CustomEvent<string[]>) => this.choose_columns(index, event.detail)}
             ></strata-ordered-choice>`
-        : nothing}
+          : nothing
+      }
     </section>`;
   }
 
@@ -146,13 +151,17 @@ export class StrataTourRecords extends LitElement {
   }
 
   private label(index: number, slug: string, language: string, text: string): void {
-    const columns = this.records[index]!.columns.map((each) => (each.column === slug ? { ...each, labels: { ...each.labels, [language]: text } } : each));
+    const columns = this.records[index]!.columns.map((each) =>
+      each.column === slug ? { ...each, labels: { ...each.labels, [language]: text } } : each,
+    );
     this.change(index, { columns });
   }
 
   private choose_columns(index: number, slugs: readonly string[]): void {
     const { columns } = this.records[index]!;
-    this.change(index, { columns: slugs.map((column) => columns.find((each) => each.column === column) ?? { column }) });
+    this.change(index, {
+      columns: slugs.map((column) => columns.find((each) => each.column === column) ?? { column }),
+    });
   }
 
   private change(index: number, change: Partial<TourRecords>): void {

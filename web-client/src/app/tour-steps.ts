@@ -1,4 +1,5 @@
-// The steps of the tour of a model's page: for whom each is, what it speaks of, and where that is just now.
+// The steps of the tour of a model's page: for whom each is, what it speaks of, and where that is
+// just now.
 
 import type { Box } from "../core/beside";
 
@@ -8,15 +9,21 @@ export type StepName = (typeof kSteps)[number];
 const kForPainters: readonly StepName[] = ["brush", "undo"];
 
 /** Those for who may paint here, or only look. */
-export const steps_for = (can_paint: boolean): StepName[] => kSteps.filter((name) => can_paint || !kForPainters.includes(name));
+export const steps_for = (can_paint: boolean): StepName[] =>
+  kSteps.filter((name) => can_paint || !kForPainters.includes(name));
 
-/** The step itself where its thing is there; otherwise the next one whose is, or else the last one before. Null: nothing is there. */
+/**
+ * The step itself where its thing is there; otherwise the next one whose is, or else the last one
+ * before. Null: nothing is there.
+ */
 export function nearest_step(name: StepName, there: readonly StepName[]): StepName | null {
   const after = kSteps.slice(kSteps.indexOf(name)).find((each) => there.includes(each));
   return after ?? there[there.length - 1] ?? null;
 }
 
-/** What a step speaks of, and the bar that it stands in. `is_room`: there is no one thing to mark. */
+/**
+ * What a step speaks of, and the bar that it stands in. `is_room`: there is no one thing to mark.
+ */
 export interface TourThing {
   element: Element;
   bar: Element;
@@ -28,13 +35,19 @@ export interface TourThing {
 /** Where it is on the page; null: nowhere, or not to be seen. */
 export function thing_of(name: StepName, page: ParentNode): TourThing | null {
   const found = find(name, page);
-  return found && found.element.checkVisibility() && found.element.getClientRects().length > 0 ? found : null;
+  return found && found.element.checkVisibility() && found.element.getClientRects().length > 0
+    ? found
+    : null;
 }
 
 function find(name: StepName, page: ParentNode): TourThing | null {
   const rail = page.querySelector("strata-tool-rail");
   const head = page.querySelector("header");
-  const within = (bar: Element | null, root: ParentNode | null | undefined, what: string): TourThing | null => {
+  const within = (
+    bar: Element | null,
+    root: ParentNode | null | undefined,
+    what: string,
+  ): TourThing | null => {
     const element = root?.querySelector(what);
     return bar && element ? { element, bar } : null;
   };

@@ -1,11 +1,19 @@
-// <strata-tour-stop-fields>: one stop of a tour: its view, what is said of it in each language, how long and how one comes there, what there is to see.
+// <strata-tour-stop-fields>: one stop of a tour: its view, what is said of it in each language, how
+// long and how one comes there, what there is to see.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { label_of } from "../core/cells";
 import { language_in_words } from "../core/languages";
-import { is_about, kMostLayers, kSeconds, language_of_field, untranslated, type StopDraft } from "../core/tours";
+import {
+  is_about,
+  kMostLayers,
+  kSeconds,
+  language_of_field,
+  untranslated,
+  type StopDraft,
+} from "../core/tours";
 import type { TourTransition } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 import { follow_session } from "./follow-session";
@@ -116,7 +124,8 @@ export class StrataTourStopFields extends LitElement {
   /** To what was refused. */
   async focus_wrong(): Promise<void> {
     await this.updateComplete;
-    const find = (selector: string): HTMLElement | null => this.renderRoot.querySelector<HTMLElement>(selector);
+    const find = (selector: string): HTMLElement | null =>
+      this.renderRoot.querySelector<HTMLElement>(selector);
     const field = find('[aria-invalid="true"]') ?? find("#refusal") ?? find("strata-tour-records");
     field?.scrollIntoView({ block: "center" }); // with what is said of it, below
     field?.focus({ preventScroll: true });
@@ -126,7 +135,9 @@ export class StrataTourStopFields extends LitElement {
     return this.wrong !== "" && is_about(this.wrong, field);
   }
   private refusal(...fields: string[]): TemplateResult | typeof nothing {
-    return fields.some((field) => this.is_wrong(field)) ? html`<p class="error" role="alert" id="refusal">${this.problem}</p>` : nothing;
+    return fields.some((field) => this.is_wrong(field))
+      ? html`<p class="error" role="alert" id="refusal">${this.problem}</p>`
+      : nothing;
   }
   private invalid(field: string): "true" | "false" {
     return this.is_wrong(field) ? "true" : "false";
@@ -164,10 +175,15 @@ export class StrataTourStopFields extends LitElement {
       </div>`;
   }
 
-  /** What visitors read on the buttons of the layers. It is the layers' own, and kept with them at once. */
+  /**
+   * What visitors read on the buttons of the layers. It is the layers' own, and kept with them at
+   * once.
+   */
   private layer_names(): TemplateResult | typeof nothing {
     const { session, stop } = this;
-    const layers = stop.layers.flatMap((slug) => session.layers.all.find((layer) => layer.slug === slug) ?? []);
+    const layers = stop.layers.flatMap(
+      (slug) => session.layers.all.find((layer) => layer.slug === slug) ?? [],
+    );
     if (layers.length === 0 || this.languages.length < 2) return nothing;
     return html`<p class="hint">${words.layer_names}</p>
       <div class="layer-names">
@@ -194,7 +210,9 @@ export class StrataTourStopFields extends LitElement {
     const { [language]: _, ...others } = layer.labels;
     const name = typed.trim();
     try {
-      await this.session.layers.change(layer, { labels: name === "" ? others : { ...others, [language]: name } });
+      await this.session.layers.change(layer, {
+        labels: name === "" ? others : { ...others, [language]: name },
+      });
     } catch (error) {
       notices.error(error);
     }
@@ -213,7 +231,8 @@ export class StrataTourStopFields extends LitElement {
           ${repeat(
             all,
             ({ id }) => id,
-            ({ slug, name }) => html`<option value=${slug} .selected=${slug === stop.view}>${name}</option>`,
+            ({ slug, name }) =>
+              html`<option value=${slug} .selected=${slug === stop.view}>${name}</option>`,
           )}
         </select>
         <button type="button" ?disabled=${!known} @click=${() => this.dispatchEvent(new CustomEvent("try"))}>${icon("eye")}${words.try_stop}</button>
@@ -222,12 +241,16 @@ export class StrataTourStopFields extends LitElement {
     </div>`;
   }
 
-  // ── what is said of it ────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is said of it
+  // ────────────────────────────────────────────────────────────────────────────────────────────
 
   /** The first language, and the one that is written beside it. */
   private get written(): string[] {
     const [first = ""] = this.languages;
-    const other = this.languages.includes(this.language) && this.language !== first ? this.language : this.languages[1];
+    const other =
+      this.languages.includes(this.language) && this.language !== first
+        ? this.language
+        : this.languages[1];
     return other === undefined ? [first] : [first, other];
   }
 
@@ -236,18 +259,30 @@ export class StrataTourStopFields extends LitElement {
     const { written, stop } = this;
     const lacks = untranslated(stop, this.languages);
     const mark = (language: string): unknown =>
-      lacks.includes(language) ? html`<span class="dot" role="img" aria-label=${words.lacks} title=${words.lacks}></span>` : nothing;
+      lacks.includes(language)
+        ? html`<span class="dot" role="img" aria-label=${words.lacks} title=${words.lacks}></span>`
+        : nothing;
     return html`<div class="part">
-      ${others.length > 1
-        ? radio_group<string>({
-            label: words.translation,
-            class: "segments",
-            choices: others.map((language) => ({ value: language, content: html`${language_in_words(language)}${mark(language)}` })),
-            chosen: written[1] ?? null,
-            choose: (language) => this.dispatchEvent(new CustomEvent<string>("language", { detail: language })),
-          })
-        : nothing}
-      <div class="words">${repeat(written, (language) => language, (language) => this.in_language(language, language === first))}</div>
+      ${
+        others.length > 1
+          ? radio_group<string>({
+              label: words.translation,
+              class: "segments",
+              choices: others.map((language) => ({
+                value: language,
+                content: html`${language_in_words(language)}${mark(language)}`,
+              })),
+              chosen: written[1] ?? null,
+              choose: (language) =>
+                this.dispatchEvent(new CustomEvent<string>("language", { detail: language })),
+            })
+          : nothing
+      }
+      <div class="words">${repeat(
+        written,
+        (language) => language,
+        (language) => this.in_language(language, language === first),
+      )}</div>
       ${this.refusal("title", "text")}
     </div>`;
   }
@@ -257,7 +292,9 @@ export class StrataTourStopFields extends LitElement {
     const name = language_in_words(language);
     const alone = this.languages.length === 1;
     const lacks = !is_first && untranslated(stop, this.languages).includes(language);
-    const refused = language_of_field(this.wrong) === language || (is_first && (this.wrong === "title" || this.wrong === "text"));
+    const refused =
+      language_of_field(this.wrong) === language ||
+      (is_first && (this.wrong === "title" || this.wrong === "text"));
     return html`<div class="language" role="group" aria-label=${name}>
       <label class="field">
         <span>${alone ? words.stop_title : words.stop_title_in(name)}</span>
@@ -284,7 +321,8 @@ export class StrataTourStopFields extends LitElement {
     </div>`;
   }
 
-  // ── how long, and how one comes there ─────────────────────────────────────────────────────────────────────────────
+  // ── how long, and how one comes there
+  // ─────────────────────────────────────────────────────────────────────────────
 
   private times(): TemplateResult {
     const { stop } = this;
@@ -315,6 +353,8 @@ export class StrataTourStopFields extends LitElement {
   }
 
   private change(change: Partial<StopDraft>): void {
-    this.dispatchEvent(new CustomEvent<StopDraft>("changed", { detail: { ...this.stop, ...change } }));
+    this.dispatchEvent(
+      new CustomEvent<StopDraft>("changed", { detail: { ...this.stop, ...change } }),
+    );
   }
 }

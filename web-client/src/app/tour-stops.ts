@@ -1,4 +1,5 @@
-// <strata-tour-stops>: the stops of a tour in their order, one of which is looked at; adds, moves and removes them.
+// <strata-tour-stops>: the stops of a tour in their order, one of which is looked at; adds, moves
+// and removes them.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -38,7 +39,11 @@ export class StrataTourStops extends LitElement {
   private readonly drag_ = new DragOrder<number>(
     this,
     () => this.stops.map(({ id }) => id),
-    (id, to) => this.move(this.stops.findIndex((stop) => stop.id === id), to),
+    (id, to) =>
+      this.move(
+        this.stops.findIndex((stop) => stop.id === id),
+        to,
+      ),
   );
 
   constructor() {
@@ -133,25 +138,30 @@ export class StrataTourStops extends LitElement {
   ];
 
   override willUpdate(changed: PropertyValues<this>): void {
-    if (changed.has("languages") && changed.get("languages") !== undefined) this.removed_ = []; // words in a language that is gone would come back with them
+    // words in a language that is gone would come back with them
+    if (changed.has("languages") && changed.get("languages") !== undefined) this.removed_ = [];
   }
 
   override render(): TemplateResult {
     const { stops } = this;
     const removed = this.removed_.at(-1);
     return html`<span class="caption" id="caption">${words.stops}</span>
-      ${stops.length === 0
-        ? html`<p class="hint" ?hidden=${this.lacks_views}>${words.none_stops}</p>`
-        : html`<ol aria-labelledby="caption" @dragover=${this.drag_.over_list} @drop=${this.drag_.drop}>
+      ${
+        stops.length === 0
+          ? html`<p class="hint" ?hidden=${this.lacks_views}>${words.none_stops}</p>`
+          : html`<ol aria-labelledby="caption" @dragover=${this.drag_.over_list} @drop=${this.drag_.drop}>
             ${repeat(
               stops,
               ({ id }) => id,
               (stop, index) => this.row(stop, index),
             )}
-          </ol>`}
-      ${removed
-        ? html`<p class="removed" role="status">${words.removed(this.title_of(removed.stop))} <button type="button" class="link" @click=${this.put_back}>${words.undo}</button></p>`
-        : nothing}
+          </ol>`
+      }
+      ${
+        removed
+          ? html`<p class="removed" role="status">${words.removed(this.title_of(removed.stop))} <button type="button" class="link" @click=${this.put_back}>${words.undo}</button></p>`
+          : nothing
+      }
       ${this.problem ? html`<p class="error" role="alert">${this.problem}</p>` : nothing}
       ${stops.length < kMostStops ? this.adding() : nothing}`;
   }
@@ -179,13 +189,17 @@ export class StrataTourStops extends LitElement {
       class="${chosen ? "chosen" : ""} ${this.wrong === index ? "wrong" : ""} ${this.drag_.classes(stop.id, index)}"
       @dragover=${(event: DragEvent) => this.drag_.over_row(event, index)}
     >
-      ${stops.length > 1
-        ? html`<span class="grip" draggable="true" title=${texts.layers.drag(title)} @dragstart=${(event: DragEvent) => this.drag_.start(event, stop.id, title)} @dragend=${this.drag_.end}>${icon("grip")}</span>`
-        : html`<span></span>`}
+      ${
+        stops.length > 1
+          ? html`<span class="grip" draggable="true" title=${texts.layers.drag(title)} @dragstart=${(event: DragEvent) => this.drag_.start(event, stop.id, title)} @dragend=${this.drag_.end}>${icon("grip")}</span>`
+          : html`<span></span>`
+      }
       <button type="button" class="quiet stop" aria-current=${chosen} @click=${() => this.put(stops, stop.id)}>
-        ${view && session.model
-          ? html`<strata-thumbnail .api=${session.api} .model=${session.model} .view=${view}></strata-thumbnail>`
-          : html`<span class="no-view">${icon("warning")}</span>`}
+        ${
+          view && session.model
+            ? html`<strata-thumbnail .api=${session.api} .model=${session.model} .view=${view}></strata-thumbnail>`
+            : html`<span class="no-view">${icon("warning")}</span>`
+        }
         <b>${index + 1}. ${title}</b>
         ${view || !session.views.loaded ? nothing : html`<span class="gone">${words.view_gone_short}</span>`}
         ${lacks.length > 0 ? html`<span class="lacks">${words.missing(format_list(lacks))}</span>` : nothing}
@@ -209,7 +223,8 @@ export class StrataTourStops extends LitElement {
         ${repeat(
           all,
           ({ id }) => id,
-          (view) => html`<option value=${view.slug} ?selected=${view === next}>${view.name}</option>`,
+          (view) =>
+            html`<option value=${view.slug} ?selected=${view === next}>${view.name}</option>`,
         )}
       </select>
       <button type="button" @click=${() => void this.add()}>${icon("plus")}${words.add}</button>

@@ -1,4 +1,5 @@
-// <strata-tour-trial>: a stop of a tour that is being written, tried on the model: what visitors read of it, the stops beside it, and the way back to the editor.
+// <strata-tour-trial>: a stop of a tour that is being written, tried on the model: what visitors
+// read of it, the stops beside it, and the way back to the editor.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";

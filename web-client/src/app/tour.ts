@@ -1,5 +1,6 @@
-// <strata-tour>: the first time somebody opens a model at this browser, a card beside one thing after the other says what it is for. It takes
-// nothing away: all that is there can be used meanwhile, and the keyboard stays where it is until somebody goes to the card.
+// <strata-tour>: the first time somebody opens a model at this browser, a card beside one thing
+// after the other says what it is for. It takes nothing away: all that is there can be used
+// meanwhile, and the keyboard stays where it is until somebody goes to the card.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -12,7 +13,15 @@ import { has_fingers_only } from "./pointers";
 import { keep_tour_over, tour_is_over } from "./preferences";
 import { shared_styles } from "./styles";
 import { texts } from "./texts";
-import { kSteps, nearest_step, seen_box, steps_for, thing_of, type StepName, type TourThing } from "./tour-steps";
+import {
+  kSteps,
+  nearest_step,
+  seen_box,
+  steps_for,
+  thing_of,
+  type StepName,
+  type TourThing,
+} from "./tour-steps";
 
 const words = texts.tour;
 const kGap_px = 12;
@@ -105,7 +114,8 @@ export class StrataTour extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     addEventListener("resize", this.moved_);
-    addEventListener("scroll", this.moved_, { capture: true, passive: true }); // of whatever scrolls
+    // of whatever scrolls
+    addEventListener("scroll", this.moved_, { capture: true, passive: true });
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
@@ -148,7 +158,14 @@ export class StrataTour extends LitElement {
 
   private may_begin(): boolean {
     const { session } = this;
-    return session.view.frames_drawn > 0 && session.comments.card === null && !this.held && !modal_is_open() && !docked_is_open() && !tour_is_over();
+    return (
+      session.view.frames_drawn > 0 &&
+      session.comments.card === null &&
+      !this.held &&
+      !modal_is_open() &&
+      !docked_is_open() &&
+      !tour_is_over()
+    );
   }
 
   private thing(name: StepName): TourThing | null {
@@ -181,7 +198,12 @@ export class StrataTour extends LitElement {
       ${step === null || !thing ? nothing : this.card(step, text, there, thing)}`;
   }
 
-  private card(step: StepName, text: string, there: readonly StepName[], thing: TourThing): TemplateResult {
+  private card(
+    step: StepName,
+    text: string,
+    there: readonly StepName[],
+    thing: TourThing,
+  ): TemplateResult {
     const at = there.indexOf(step);
     const last = at === there.length - 1;
     return html`${thing.is_room ? nothing : html`<div class="ring" aria-hidden="true"></div>`}
@@ -232,11 +254,16 @@ export class StrataTour extends LitElement {
     const { card_: card, ring_: ring, step_: step } = this;
     const thing = step === null ? null : this.thing(step);
     if (!card || !thing) return;
-    if (this.has_keyboard_ && !this.is_at_keyboard) this.next_?.focus({ preventScroll: true }); // the button that had it is gone
+    // the button that had it is gone
+    if (this.has_keyboard_ && !this.is_at_keyboard) this.next_?.focus({ preventScroll: true });
     const box = seen_box(thing);
     card.style.maxHeight = ""; // as high as it would like to be
     const place = place_of(thing, box, { width: card.offsetWidth, height: card.offsetHeight });
-    Object.assign(card.style, { left: `${place.left}px`, top: `${place.top}px`, maxHeight: `${place.most_height}px` });
+    Object.assign(card.style, {
+      left: `${place.left}px`,
+      top: `${place.top}px`,
+      maxHeight: `${place.most_height}px`,
+    });
     if (ring) {
       const around = box.width > kLarge_px ? 9 : 4;
       const [x, y] = [Math.max(0, box.left - around), Math.max(0, box.top - around)];
@@ -253,15 +280,33 @@ export class StrataTour extends LitElement {
 /** What was scrolled out of it, or is hardly seen at its end. */
 function bring_into_bar(thing: TourThing): void {
   const enough = Math.min(thing.element.clientHeight, 0.8 * thing.bar.clientHeight);
-  thing.element.scrollIntoView({ block: seen_box(thing).height >= enough ? "nearest" : "start", inline: "nearest" });
+  thing.element.scrollIntoView({
+    block: seen_box(thing).height >= enough ? "nearest" : "start",
+    inline: "nearest",
+  });
 }
 
-/** Beside the bar of the thing; of the model at the upper edge of its stage (on phones the lower one, which is nearer to the hand), where that leaves it
- *  the middle. */
-function place_of({ bar, is_room }: TourThing, thing: Box, card: Size): ReturnType<typeof beside_bar> {
+/**
+ * Beside the bar of the thing; of the model at the upper edge of its stage (on phones the lower
+ * one, which is nearer to the hand), where that leaves it the middle.
+ */
+function place_of(
+  { bar, is_room }: TourThing,
+  thing: Box,
+  card: Size,
+): ReturnType<typeof beside_bar> {
   const outer = bar.getBoundingClientRect();
   const free = outer.height - card.height - 2 * kGap_px;
-  if (!is_room || free < outer.height / 2) return beside_bar(thing, is_room ? thing : outer, card, { width: innerWidth, height: innerHeight }, kGap_px);
-  const top = matchMedia(kNarrow).matches ? outer.bottom - kGap_px - card.height : outer.top + kGap_px;
+  if (!is_room || free < outer.height / 2)
+    return beside_bar(
+      thing,
+      is_room ? thing : outer,
+      card,
+      { width: innerWidth, height: innerHeight },
+      kGap_px,
+    );
+  const top = matchMedia(kNarrow).matches
+    ? outer.bottom - kGap_px - card.height
+    : outer.top + kGap_px;
   return { left: outer.left + (outer.width - card.width) / 2, top, most_height: card.height };
 }

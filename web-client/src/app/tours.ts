@@ -1,4 +1,5 @@
-// The tours of the open model, for those who make them. Nobody tells this page what others do to them, so they are read again where that matters.
+// The tours of the open model, for those who make them. Nobody tells this page what others do to
+// them, so they are read again where that matters.
 
 import { ApiError, type Api } from "../core/api";
 import type { Tour, TourCreate, TourEntry } from "../core/protocol.gen";
@@ -44,7 +45,10 @@ export class Tours {
     return this.put(await this.api_.create_tour(this.model_id_, tour, key));
   }
   /** Of what was read: another's change in between is an ApiError of status 412. */
-  async change({ id, version }: { id: number; version: number }, change: TourCreate): Promise<Tour> {
+  async change(
+    { id, version }: { id: number; version: number },
+    change: TourCreate,
+  ): Promise<Tour> {
     return this.put(await this.api_.change_tour(this.model_id_, id, change, version));
   }
   /** The same about changes in between. */

@@ -104,11 +104,13 @@ export class StrataTransferDialog extends LitElement {
   override render(): TemplateResult {
     return html`<strata-dialog heading=${words.title} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
       <p class="hint">${words.lead}</p>
-      ${this.models_ === null
-        ? html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`
-        : this.models_.length === 0
-          ? html`<p>${words.no_models}</p>`
-          : this.form(this.models_)}
+      ${
+        this.models_ === null
+          ? html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`
+          : this.models_.length === 0
+            ? html`<p>${words.no_models}</p>`
+            : this.form(this.models_)
+      }
       <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
       <button
         slot="actions"

@@ -1,4 +1,5 @@
-// <strata-value-picker>: which value is painted in the selected layer: a class, a term, a number, or the only one there is.
+// <strata-value-picker>: which value is painted in the selected layer: a class, a term, a number,
+// or the only one there is.
 
 import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -118,20 +119,21 @@ export class StrataValuePicker extends LitElement {
           <span>${layer.unit}</span>
         </span>
       </label>
-      ${layer.table === undefined
-        ? nothing
-        : html`<strata-record-chooser
+      ${
+        layer.table === undefined
+          ? nothing
+          : html`<strata-record-chooser
             .session=${this.session}
             .table=${layer.table}
             .chosen=${[value]}
             label=${texts.brush.find_record}
             @chosen=${(event: CustomEvent<number[]>) => this.set_record(layer, event.detail[0] ?? value)}
-          ></strata-record-chooser>`}
-      ${layer.table === undefined
-        ? nothing
-        : this.record_buttons(layer, layer.table)}
-      ${purpose === "measurement"
-        ? html`<input
+          ></strata-record-chooser>`
+      }
+      ${layer.table === undefined ? nothing : this.record_buttons(layer, layer.table)}
+      ${
+        purpose === "measurement"
+          ? html`<input
             type="range"
             min=${layer.palette.min}
             max=${layer.palette.max}
@@ -140,18 +142,28 @@ export class StrataValuePicker extends LitElement {
             aria-label=${texts.brush.value}
             @input=${(event: Event) => this.on_value(layer, (event.target as HTMLInputElement).valueAsNumber)}
           />`
-        : nothing}
+          : nothing
+      }
       ${this.wrong_value_ ? html`<p class="error" role="alert">${this.wrong_value_}</p>` : nothing}
     </div>`;
   }
 
   private record_buttons(layer: Layer, table: number): TemplateResult {
     const missing = this.missing_;
-    const add = (key?: number) => () => void this.ask(async () => this.set_record(layer, (await this.session.api.create_record(table, { ...(key === undefined ? {} : { key }) })).key));
-    return html`${missing === null
+    const add = (key?: number) => () =>
+      void this.ask(async () =>
+        this.set_record(
+          layer,
+          (await this.session.api.create_record(table, { ...(key === undefined ? {} : { key }) }))
+            .key,
+        ),
+      );
+    return html`${
+      missing === null
         ? nothing
         : html`<p class="hint" role="status">${texts.brush.no_record(missing)}</p>
-            <button ?disabled=${this.asking_} @click=${add(missing)}>${texts.brush.make_record(missing)}</button>`}
+            <button ?disabled=${this.asking_} @click=${add(missing)}>${texts.brush.make_record(missing)}</button>`
+    }
       <button title=${texts.brush.new_record_hint} ?disabled=${this.asking_} @click=${add()}>${texts.brush.new_record}</button>`;
   }
 

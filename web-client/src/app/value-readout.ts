@@ -71,7 +71,9 @@ export class StrataValueReadout extends LitElement {
     const { picked } = session.pointer;
     if (!picked?.hit || !picked.position || !model) return html``;
     const { layers } = session;
-    const shown = [...layers.all].reverse().filter((layer) => layers.visible(layer) || layer === layers.selected);
+    const shown = [...layers.all]
+      .reverse()
+      .filter((layer) => layers.visible(layer) || layer === layers.selected);
     const decimals = model.unit === "mm" ? 2 : model.unit === "cm" ? 3 : 4;
     const coordinates = format_place(picked.position.map((each) => format_fixed(each, decimals)));
     return html`<div class="card">

@@ -1,6 +1,15 @@
-// The camera of this page's view: it moves while nothing is painted, and the server hears of every move.
+// The camera of this page's view: it moves while nothing is painted, and the server hears of every
+// move.
 
-import { between, OrbitCamera, place_of, type Bounds, type CameraMessage, type Place, type StandardView } from "../core/camera";
+import {
+  between,
+  OrbitCamera,
+  place_of,
+  type Bounds,
+  type CameraMessage,
+  type Place,
+  type StandardView,
+} from "../core/camera";
 import { has_arrived, place_like } from "../core/look-along";
 import type { Plane } from "../core/protocol.gen";
 import type { Model } from "../core/types";
@@ -8,11 +17,15 @@ import type { Vec3 } from "../core/vector";
 
 const kStillAfter_ms = 120; // without input the camera counts as still
 const kFlight_ms = 600;
-const kEase_ms = { least: 70, most: 250 }; // in which a followed camera comes nearer by a factor of e
+// in which a followed camera comes nearer by a factor of e
+const kEase_ms = { least: 70, most: 250 };
 
 export interface ViewHost {
   send(moving: boolean): void;
-  /** Runs the action now, or as soon as no stroke is under way: a stroke's pixels are of the camera that it began with. */
+  /**
+   * Runs the action now, or as soon as no stroke is under way: a stroke's pixels are of the camera
+   * that it began with.
+   */
   when_free(action: () => void): void;
   is_painting(): boolean;
   came_to_rest(): void;
@@ -32,7 +45,13 @@ export class ViewControl {
   private still_timer_: ReturnType<typeof setTimeout> | null = null;
   private flight_ = 0; // of requestAnimationFrame; 0: none
   private flight_to_: Place | null = null;
-  private beside_: { camera: CameraMessage; heard_ms: number; ease_ms: number; glided_ms: number } | null = null; // whom it looks along with
+  // whom it looks along with
+  private beside_: {
+    camera: CameraMessage;
+    heard_ms: number;
+    ease_ms: number;
+    glided_ms: number;
+  } | null = null;
   private glide_ = 0; // of requestAnimationFrame; 0: none
 
   constructor(private readonly host_: ViewHost) {}
@@ -93,7 +112,10 @@ export class ViewControl {
     Object.assign(this.camera, from);
     this.fly(to);
   }
-  /** To where a camera stands, in so long; at once for people who want less motion. Any other move ends the flight. */
+  /**
+   * To where a camera stands, in so long; at once for people who want less motion. Any other move
+   * ends the flight.
+   */
   fly(to: Place, flight_ms = kFlight_ms): void {
     if (this.host_.is_painting()) return;
     this.go_own_way();
@@ -108,7 +130,10 @@ export class ViewControl {
     const start = performance.now();
     const step = (): void => {
       const share = Math.min(1, (performance.now() - start) / flight_ms);
-      Object.assign(this.camera, share < 1 ? between(from, to, share * share * (3 - 2 * share)) : to);
+      Object.assign(
+        this.camera,
+        share < 1 ? between(from, to, share * share * (3 - 2 * share)) : to,
+      );
       if (share < 1 && !this.host_.is_painting()) this.flight_ = requestAnimationFrame(step);
       else this.end_flight();
       this.moved(this.flight_ !== 0);
@@ -126,12 +151,18 @@ export class ViewControl {
     return this.flight_to_ ?? place_of(this.camera);
   }
 
-  /** To where somebody's newest camera is, and along with it until `look_alone`. Strokes are waited for. */
+  /**
+   * To where somebody's newest camera is, and along with it until `look_alone`. Strokes are waited
+   * for.
+   */
   look_along(camera: CameraMessage): void {
     const now = performance.now();
     if (this.beside_) {
       // As smooth as what comes is frequent.
-      const ease_ms = Math.min(kEase_ms.most, Math.max(kEase_ms.least, now - this.beside_.heard_ms));
+      const ease_ms = Math.min(
+        kEase_ms.most,
+        Math.max(kEase_ms.least, now - this.beside_.heard_ms),
+      );
       this.beside_ = { ...this.beside_, camera, heard_ms: now, ease_ms };
     } else {
       this.end_flight();
@@ -176,7 +207,9 @@ export class ViewControl {
       return;
     }
     const to = place_like(beside.camera, camera);
-    if (camera.perspective === to.perspective) camera.turn_around(to.perspective ? to.distance : camera.depth_of(to.target)); // so that the eye goes straight
+    // so that the eye goes straight
+    if (camera.perspective === to.perspective)
+      camera.turn_around(to.perspective ? to.distance : camera.depth_of(to.target));
     const now = performance.now();
     const share = wants_less_motion() ? 1 : 1 - Math.exp((beside.glided_ms - now) / beside.ease_ms);
     beside.glided_ms = now;
@@ -260,4 +293,5 @@ export class ViewControl {
   }
 }
 
-export const wants_less_motion = (): boolean => matchMedia("(prefers-reduced-motion: reduce)").matches;
+export const wants_less_motion = (): boolean =>
+  matchMedia("(prefers-reduced-motion: reduce)").matches;

@@ -1,4 +1,5 @@
-// <strata-view-dialog>: keeps what this person sees under a name, or with `view` names and describes one anew.
+// <strata-view-dialog>: keeps what this person sees under a name, or with `view` names and
+// describes one anew.
 
 import { html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
@@ -46,7 +47,10 @@ export class StrataViewDialog extends LitElement {
       if (this.base_) await views.describe(this.base_, called);
       else if (this.content_) await views.keep(called, this.content_, key);
     } catch (error) {
-      const newest = error instanceof ApiError && error.status === 412 && this.base_ ? views.find(this.base_.id) : null;
+      const newest =
+        error instanceof ApiError && error.status === 412 && this.base_
+          ? views.find(this.base_.id)
+          : null;
       if (!newest) throw error;
       this.base_ = newest;
       return words.changed(newest.name);

@@ -1,4 +1,5 @@
-// <strata-view-list>: the named views of the model, each a button that leads there; part of the panel of the view.
+// <strata-view-list>: the named views of the model, each a button that leads there; part of the
+// panel of the view.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
@@ -16,7 +17,10 @@ import { shared_styles } from "./styles";
 import { texts } from "./texts";
 import "./thumbnail";
 
-/** The dialog that names a view; without `view` what is seen is kept as a new one. Or the one that draws it to scale; without `view` what is seen. */
+/**
+ * The dialog that names a view; without `view` what is seen is kept as a new one. Or the one that
+ * draws it to scale; without `view` what is seen.
+ */
 export interface ViewRequest {
   dialog: "view" | "figure";
   view: View | null;
@@ -106,7 +110,8 @@ export class StrataViewList extends LitElement {
     const { views, can_paint } = this.session;
     const { all, current } = views;
     if (!views.loaded) return html`<p class="hint">${texts.loading}</p>`;
-    if (all.length === 0) return html`<p class="hint">${can_paint ? words.none : words.none_viewer}</p>`;
+    if (all.length === 0)
+      return html`<p class="hint">${can_paint ? words.none : words.none_viewer}</p>`;
     return html`<ul>
         ${repeat(
           all.slice(0, this.most_),
@@ -131,12 +136,14 @@ export class StrataViewList extends LitElement {
       <strata-menu label=${texts.layers.options(view.name)}>
         <button class="quiet" role="menuitem" @click=${() => void this.copy_link(view)}>${icon("link")}${words.copy_link}</button>
         <button class="quiet" role="menuitem" @click=${() => this.request(view, "figure")}>${icon("measure")}${texts.figures.of_view}</button>
-        ${may_change
-          ? html`<button class="quiet" role="menuitem" @click=${() => this.request(view)}>${icon("edit")}${words.describe}</button>
+        ${
+          may_change
+            ? html`<button class="quiet" role="menuitem" @click=${() => this.request(view)}>${icon("edit")}${words.describe}</button>
               <button class="quiet" role="menuitem" @click=${() => this.change(views.replace(view))}>${icon("eye")}${words.replace}</button>
               <hr />
               <button class="quiet" role="menuitem" @click=${() => void this.delete_view(view)}>${icon("trash")}${texts.layers.delete}</button>`
-          : nothing}
+            : nothing
+        }
       </strata-menu>
     </li>`;
   }
@@ -147,12 +154,18 @@ export class StrataViewList extends LitElement {
 
   private async copy_link(view: View): Promise<void> {
     const link = this.session.views.link_to(view);
-    if (await copy_text(link, () => select_hidden(link))) notices.show("success", words.copied, link);
+    if (await copy_text(link, () => select_hidden(link)))
+      notices.show("success", words.copied, link);
     else notices.show("info", words.copy_by_hand, link);
   }
 
   private async delete_view(view: View): Promise<void> {
-    const question = { heading: words.delete_title(view.name), lead: words.delete_lead, yes: texts.delete, danger: true };
+    const question = {
+      heading: words.delete_title(view.name),
+      lead: words.delete_lead,
+      yes: texts.delete,
+      danger: true,
+    };
     if (await ask(question)) this.change(this.session.views.remove(view));
   }
 
@@ -161,7 +174,10 @@ export class StrataViewList extends LitElement {
   }
 }
 
-/** Selects a text that stands nowhere in the page, and leaves the keyboard where it is. Returns what lets go of it. */
+/**
+ * Selects a text that stands nowhere in the page, and leaves the keyboard where it is. Returns what
+ * lets go of it.
+ */
 function select_hidden(text: string): () => void {
   const span = document.createElement("span");
   span.textContent = text;

@@ -1,4 +1,5 @@
-// <strata-view-panel>: how this person sees the model: the views that were kept, looks, light, section.
+// <strata-view-panel>: how this person sees the model: the views that were kept, looks, light,
+// section.
 
 import { css, html, nothing, type TemplateResult } from "lit";
 import { customElement } from "lit/decorators.js";
@@ -79,16 +80,27 @@ export class StrataViewPanel extends FoldingPanel {
 
   protected override beside_heading(): unknown {
     const { changed } = texts.view;
-    return this.session.appearance.is_default || this.is_open ? nothing : html`<span class="dot" role="img" aria-label=${changed} title=${changed}></span>`;
+    return this.session.appearance.is_default || this.is_open
+      ? nothing
+      : html`<span class="dot" role="img" aria-label=${changed} title=${changed}></span>`;
   }
 
   protected override tools(): unknown {
     const { appearance } = this.session;
-    return this.is_open && !appearance.is_default ? html`<button class="link" @click=${() => appearance.reset()}>${texts.view.reset}</button>` : nothing;
+    return this.is_open && !appearance.is_default
+      ? html`<button class="link" @click=${() => appearance.reset()}>${texts.view.reset}</button>`
+      : nothing;
   }
 
   protected content(): TemplateResult[] {
-    return [this.views(), ...(this.session.can_curate ? [this.tours()] : []), this.looks(), this.light(), this.section(), this.figure()];
+    return [
+      this.views(),
+      ...(this.session.can_curate ? [this.tours()] : []),
+      this.looks(),
+      this.light(),
+      this.section(),
+      this.figure(),
+    ];
   }
 
   private views(): TemplateResult {
@@ -112,7 +124,8 @@ export class StrataViewPanel extends FoldingPanel {
     ></strata-look-list>`;
   }
 
-  // ── light and section ─────────────────────────────────────────────────────────────────────────────────────────────
+  // ── light and section
+  // ─────────────────────────────────────────────────────────────────────────────────────────────
 
   private light(): TemplateResult {
     const { appearance } = this.session;
@@ -122,16 +135,22 @@ export class StrataViewPanel extends FoldingPanel {
       ${radio_group({
         label: { id: "light" },
         class: "segments",
-        choices: kLights.map((mode) => ({ value: mode, content: words.lights[mode], title: words.light_hints[mode] })),
+        choices: kLights.map((mode) => ({
+          value: mode,
+          content: words.lights[mode],
+          title: words.light_hints[mode],
+        })),
         chosen: appearance.light.mode,
         choose: (mode) => appearance.set_light({ mode }),
       })}
-      ${appearance.light.mode === "raking"
-        ? html`<strata-light-pad
+      ${
+        appearance.light.mode === "raking"
+          ? html`<strata-light-pad
             .direction=${appearance.light.direction}
             @direction=${(event: CustomEvent<Point3>) => appearance.set_light({ direction: event.detail })}
           ></strata-light-pad>`
-        : nothing}
+          : nothing
+      }
     </div>`;
   }
 
@@ -144,7 +163,11 @@ export class StrataViewPanel extends FoldingPanel {
       ${radio_group({
         label: { id: "section" },
         class: "segments",
-        choices: kSections.map((value) => ({ value, content: words.sections[value], title: words.section_hints[value] })),
+        choices: kSections.map((value) => ({
+          value,
+          content: words.sections[value],
+          title: words.section_hints[value],
+        })),
         chosen: mode,
         choose: (value) => appearance.set_section({ mode: value }),
       })}
@@ -153,7 +176,10 @@ export class StrataViewPanel extends FoldingPanel {
   }
 
   private figure(): TemplateResult {
-    const open = (): boolean => this.dispatchEvent(new CustomEvent<ViewRequest>("request", { detail: { dialog: "figure", view: null } }));
+    const open = (): boolean =>
+      this.dispatchEvent(
+        new CustomEvent<ViewRequest>("request", { detail: { dialog: "figure", view: null } }),
+      );
     return html`<div class="part">
       <h3>${texts.figures.title}</h3>
       <div><button title="F" @click=${open}>${icon("measure")}${texts.figures.open}</button></div>
@@ -177,12 +203,12 @@ export class StrataViewPanel extends FoldingPanel {
     const words = texts.view;
     const { position, flipped } = appearance.section;
     return html`${this.slider({
-        name: kAxes[axis]!.toUpperCase(),
-        label: words.cut_position,
-        axis,
-        share: position,
-        choose: (share, moving) => appearance.set_section({ position: share }, moving),
-      })}
+      name: kAxes[axis]!.toUpperCase(),
+      label: words.cut_position,
+      axis,
+      share: position,
+      choose: (share, moving) => appearance.set_section({ position: share }, moving),
+    })}
       <div>
         <button class="quiet" aria-pressed=${flipped} @click=${() => appearance.set_section({ flipped: !flipped })}>
           ${icon("flip")}${words.flip}
@@ -195,11 +221,16 @@ export class StrataViewPanel extends FoldingPanel {
     const words = texts.view;
     const side = (axis: number, which: "min" | "max"): TemplateResult =>
       this.slider({
-        name: which === "min" ? `${kAxes[axis]!.toUpperCase()} ≥` : `${kAxes[axis]!.toUpperCase()} ≤`,
-        label: which === "min" ? words.box_from(kAxes[axis]!.toUpperCase()) : words.box_to(kAxes[axis]!.toUpperCase()),
+        name:
+          which === "min" ? `${kAxes[axis]!.toUpperCase()} ≥` : `${kAxes[axis]!.toUpperCase()} ≤`,
+        label:
+          which === "min"
+            ? words.box_from(kAxes[axis]!.toUpperCase())
+            : words.box_to(kAxes[axis]!.toUpperCase()),
         axis,
         share: appearance.section.box[which][axis]!,
-        choose: (share, moving) => appearance.set_section(with_box_side(appearance.section, which, axis, share), moving),
+        choose: (share, moving) =>
+          appearance.set_section(with_box_side(appearance.section, which, axis, share), moving),
       });
     return html`<div class="box">${[0, 1, 2].map((axis) => [side(axis, "min"), side(axis, "max")])}</div>`;
   }

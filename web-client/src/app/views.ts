@@ -1,4 +1,5 @@
-// The named views of the open model: which there are, how this person comes to see it as one of them has it, and how they come back.
+// The named views of the open model: which there are, how this person comes to see it as one of
+// them has it, and how they come back.
 
 import { ApiError, type Api } from "../core/api";
 import { place_like } from "../core/look-along";
@@ -30,7 +31,8 @@ export interface ViewsHost {
 export class Views {
   private me_ = "";
   private readonly known_ = new KnownItems<View>();
-  private shown_: { id: number; place: string; settings: string } | null = null; // the newest that was gone to, and what was seen then
+  // the newest that was gone to, and what was seen then
+  private shown_: { id: number; place: string; settings: string } | null = null;
   private back_: (() => void) | null = null;
   private notice_ = 0;
 
@@ -40,7 +42,8 @@ export class Views {
     private readonly host_: ViewsHost,
   ) {}
 
-  // ── what there is ─────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what there is
+  // ─────────────────────────────────────────────────────────────────────────────────────────────────
 
   get loaded(): boolean {
     return this.known_.loaded;
@@ -87,7 +90,8 @@ export class Views {
       this.put(await this.api_.view(this.model_id_, id));
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      if (error.status === 404) this.drop(id); // otherwise it is as it was, until they are all read again
+      // otherwise it is as it was, until they are all read again
+      if (error.status === 404) this.drop(id);
     }
   }
 
@@ -100,15 +104,21 @@ export class Views {
     this.host_.changed();
   }
 
-  // ── there and back ────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── there and back
+  // ────────────────────────────────────────────────────────────────────────────────────────────────
 
-  /** This person sees the model as the view has it, fitted to their window. `tells`: by a notice, for who does not have the list before them. */
+  /**
+   * This person sees the model as the view has it, fitted to their window. `tells`: by a notice,
+   * for who does not have the list before them.
+   */
   go_to(view: View, tells = false): void {
     this.host_.when_free(() => {
       this.show(view);
       notices.dismiss(this.notice_);
       const back = { label: words.back, act: () => this.go_back() };
-      this.notice_ = tells ? notices.show("info", words.shown(view.name), view.text.slice(0, kMostSaid), back) : 0;
+      this.notice_ = tells
+        ? notices.show("info", words.shown(view.name), view.text.slice(0, kMostSaid), back)
+        : 0;
     });
   }
 
@@ -163,7 +173,11 @@ export class Views {
   }
   private get is_at_view(): boolean {
     const { shown_ } = this;
-    return shown_ !== null && shown_.place === this.place_text() && shown_.settings === this.settings_text();
+    return (
+      shown_ !== null &&
+      shown_.place === this.place_text() &&
+      shown_.settings === this.settings_text()
+    );
   }
   private place_text(): string {
     return JSON.stringify(this.host_.view.place);
@@ -173,7 +187,8 @@ export class Views {
     return JSON.stringify([layers.to_keep(), appearance.to_keep(), appearance.section]);
   }
 
-  // ── what is kept ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is kept
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
   /** What this person sees now. */
   content(): ViewContent {
@@ -182,16 +197,25 @@ export class Views {
   }
 
   /** `key`: the same for each attempt at one view. */
-  async keep(called: { name: string; text: string }, content: ViewContent, key: string): Promise<void> {
+  async keep(
+    called: { name: string; text: string },
+    content: ViewContent,
+    key: string,
+  ): Promise<void> {
     const made = await this.api_.create_view(this.model_id_, { ...called, ...content }, key);
     this.put(made);
     this.back_ = null; // what was seen before has a name now
     this.remember(made);
   }
 
-  /** Of what was read: another's change in between is an ApiError of status 412, and the view is then as it is now. */
+  /**
+   * Of what was read: another's change in between is an ApiError of status 412, and the view is
+   * then as it is now.
+   */
   async describe(view: View, called: { name: string; text: string }): Promise<void> {
-    await this.newest_after(view, async () => this.put(await this.api_.change_view(this.model_id_, view.id, called, view.version)));
+    await this.newest_after(view, async () =>
+      this.put(await this.api_.change_view(this.model_id_, view.id, called, view.version)),
+    );
   }
   /** Under the view's name what this person sees now; the same about changes in between. */
   async replace(view: View): Promise<void> {
@@ -199,16 +223,22 @@ export class Views {
     this.remember(changed);
     const { camera, layers, looks, light } = view;
     const before = { camera, layers, ...(looks ? { looks } : {}), light };
-    const undo = (): void => void this.put_content(changed, before).catch((error: unknown) => notices.error(error));
+    const undo = (): void =>
+      void this.put_content(changed, before).catch((error: unknown) => notices.error(error));
     notices.show("success", words.replaced(view.name), "", { label: words.undo, act: undo });
   }
   /** The same about changes in between. */
   async remove(view: View): Promise<void> {
-    await this.newest_after(view, () => this.api_.delete_view(this.model_id_, view.id, view.version));
+    await this.newest_after(view, () =>
+      this.api_.delete_view(this.model_id_, view.id, view.version),
+    );
     this.drop(view.id);
   }
 
-  private async put_content(view: View, content: Pick<View, "camera" | "layers" | "looks" | "light">): Promise<View> {
+  private async put_content(
+    view: View,
+    content: Pick<View, "camera" | "layers" | "looks" | "light">,
+  ): Promise<View> {
     let changed = view;
     await this.newest_after(view, async () => {
       changed = await this.api_.change_view(this.model_id_, view.id, content, view.version);

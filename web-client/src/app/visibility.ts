@@ -1,4 +1,5 @@
-// Who sees a layer, a column or a file: the choice in dialogs, and the badge where not everybody does.
+// Who sees a layer, a column or a file: the choice in dialogs, and the badge where not everybody
+// does.
 
 import { html, nothing, type TemplateResult } from "lit";
 import type { Visibility } from "../core/protocol.gen";
@@ -10,14 +11,20 @@ export const kVisibilities: readonly Visibility[] = ["public", "team", "private"
 const kIcons: Record<Visibility, IconName> = { public: "eye", team: "people", private: "shield" };
 
 /** With what is chosen said in plain words below. */
-export function visibility_choice(chosen: Visibility, choose: (visibility: Visibility) => void): TemplateResult {
+export function visibility_choice(
+  chosen: Visibility,
+  choose: (visibility: Visibility) => void,
+): TemplateResult {
   const words = texts.visibility;
   return html`<div class="visibility">
     <p class="caption" id="visibility">${words.question}</p>
     ${radio_group<Visibility>({
       label: { id: "visibility" },
       class: "segments",
-      choices: kVisibilities.map((value) => ({ value, content: html`${icon(kIcons[value])}${words.names[value]}` })),
+      choices: kVisibilities.map((value) => ({
+        value,
+        content: html`${icon(kIcons[value])}${words.names[value]}`,
+      })),
       chosen,
       choose,
     })}

@@ -75,13 +75,15 @@ export class StrataWhereDialog extends LitElement {
           chosen: this.erases_,
           choose: (chosen) => (this.erases_ = chosen),
         })}
-        ${this.erases_
-          ? nothing
-          : html`<strata-value-picker
+        ${
+          this.erases_
+            ? nothing
+            : html`<strata-value-picker
               .session=${session}
               .layer=${layer}
               .value=${session.painting.brush.value_of(layer)}
-            ></strata-value-picker>`}
+            ></strata-value-picker>`
+        }
       </form>
       <button slot="actions" class="primary" form="where" ?disabled=${this.working_} @click=${() => void this.apply()}>
         ${this.erases_ ? words.apply_erase : words.apply}
@@ -101,10 +103,17 @@ export class StrataWhereDialog extends LitElement {
       return;
     }
     const { session, layer } = this;
-    const paint = this.erases_ ? { erase: true } : { value: session.painting.brush.value_of(layer) };
+    const paint = this.erases_
+      ? { erase: true }
+      : { value: session.painting.brush.value_of(layer) };
     this.working_ = true;
     try {
-      const { texels_changed, area_m2 } = await session.api.edit(session.model_id, layer.id, { op: "fill", ...paint, mode: "where", where });
+      const { texels_changed, area_m2 } = await session.api.edit(session.model_id, layer.id, {
+        op: "fill",
+        ...paint,
+        mode: "where",
+        where,
+      });
       if (texels_changed === 0) notices.show("info", texts.areas.nothing_changed);
       else notices.show("success", texts.areas.changed(format_area(area_m2)));
       this.dispatchEvent(new CustomEvent("closed"));

@@ -1,5 +1,5 @@
-// The HTTP interface with typed results. Every failure, also a lost network, becomes an ApiError that carries a
-// problem a person can read.
+// The HTTP interface with typed results. Every failure, also a lost network, becomes an ApiError
+// that carries a problem a person can read.
 
 import type { CameraMessage } from "./camera";
 import { page_locale, person_languages } from "./locale";
@@ -53,7 +53,10 @@ export interface Upload<T> {
 
 type Progress = (share: number) => void;
 
-/** A line over a surface: under a path of a camera's pixels, or through places, where each step is the nearest of the surface. `layers`: absent for all. */
+/**
+ * A line over a surface: under a path of a camera's pixels, or through places, where each step is
+ * the nearest of the surface. `layers`: absent for all.
+ */
 export type ProfileLine = (
   | { camera: CameraMessage; path: readonly (readonly [number, number])[] }
   | { places: readonly (readonly [number, number, number])[]; step_mm: number }
@@ -117,7 +120,14 @@ export class Api {
   async keep_personal_view(model: Id, view: wire.PersonalView): Promise<void> {
     const body = JSON.stringify(view);
     const path = `/me/models/${encodeURIComponent(model)}/view`;
-    await this.request_raw("PUT", path, body, { "Content-Type": "application/json" }, undefined, body.length < kMostKeptAlive);
+    await this.request_raw(
+      "PUT",
+      path,
+      body,
+      { "Content-Type": "application/json" },
+      undefined,
+      body.length < kMostKeptAlive,
+    );
   }
   /** Ends all other sessions. */
   async change_password(change: wire.PasswordChange): Promise<void> {
@@ -177,10 +187,19 @@ export class Api {
     return this.versioned("GET", project_path(project));
   }
   /** `key`: the same for each attempt at one project. */
-  async create_project(project: { name: string; description: string }, key: string): Promise<wire.Project> {
-    return this.parsed(await this.request("POST", "/projects", project, { "Idempotency-Key": key }));
+  async create_project(
+    project: { name: string; description: string },
+    key: string,
+  ): Promise<wire.Project> {
+    return this.parsed(
+      await this.request("POST", "/projects", project, { "Idempotency-Key": key }),
+    );
   }
-  async change_project(project: Id, change: wire.ProjectPatch, etag: string): Promise<wire.Project> {
+  async change_project(
+    project: Id,
+    change: wire.ProjectPatch,
+    etag: string,
+  ): Promise<wire.Project> {
     return (await this.versioned<wire.Project>("PATCH", project_path(project), change, etag)).value;
   }
   /** Refused while it has models or tables. */
@@ -198,7 +217,11 @@ export class Api {
   async remove_member(project: string, user: string): Promise<void> {
     await this.request("DELETE", member_path(project, user));
   }
-  async put_project_group(project: string, group: number, role: wire.ProjectRole): Promise<wire.MemberGroup> {
+  async put_project_group(
+    project: string,
+    group: number,
+    role: wire.ProjectRole,
+  ): Promise<wire.MemberGroup> {
     return this.json("PUT", project_group_path(project, group), { role });
   }
   async remove_project_group(project: string, group: number): Promise<void> {
@@ -234,14 +257,33 @@ export class Api {
   }
   async delete_model(id: Id): Promise<void> {
     const { etag } = await this.model(id);
-    await this.request("DELETE", `/models/${encodeURIComponent(id)}`, undefined, { "If-Match": etag });
+    await this.request("DELETE", `/models/${encodeURIComponent(id)}`, undefined, {
+      "If-Match": etag,
+    });
   }
 
-  /** A mesh as the raw body, or with its companions as a form; with progress (0…1 of the bytes sent). `project`: id or slug. */
-  /** What the file does not say of its unit and up direction is taken as the server proposes it, until somebody confirms it. */
-  upload_model(files: readonly UploadFile[], name: string, project: string, progress: (share: number) => void): Upload<Job> {
+  /**
+   * A mesh as the raw body, or with its companions as a form; with progress (0…1 of the bytes
+   * sent). `project`: id or slug.
+   */
+  /**
+   * What the file does not say of its unit and up direction is taken as the server proposes it,
+   * until somebody confirms it.
+   */
+  upload_model(
+    files: readonly UploadFile[],
+    name: string,
+    project: string,
+    progress: (share: number) => void,
+  ): Upload<Job> {
     const { file } = files[0]!;
-    const query = new URLSearchParams({ name, filename: file.name, project, unit: "proposed", up: "proposed" });
+    const query = new URLSearchParams({
+      name,
+      filename: file.name,
+      project,
+      unit: "proposed",
+      up: "proposed",
+    });
     return this.upload("POST", `/models?${query}`, files, progress);
   }
 
@@ -253,18 +295,28 @@ export class Api {
   }
 
   async layers(model: Id): Promise<Layer[]> {
-    return (await this.all<wire.Layer>(`/models/${encodeURIComponent(model)}/layers`, "layers")).map(complete_layer);
+    return (
+      await this.all<wire.Layer>(`/models/${encodeURIComponent(model)}/layers`, "layers")
+    ).map(complete_layer);
   }
   async create_layer(model: Id, layer: LayerCreate): Promise<Layer> {
-    return complete_layer(await this.json<wire.Layer>("POST", `/models/${encodeURIComponent(model)}/layers`, layer));
+    return complete_layer(
+      await this.json<wire.Layer>("POST", `/models/${encodeURIComponent(model)}/layers`, layer),
+    );
   }
   /** With `compute`: the layer is there once the job is done. */
   async compute_layer(model: Id, layer: LayerCreate): Promise<Job> {
     return this.json("POST", `/models/${encodeURIComponent(model)}/layers`, layer);
   }
-  /** With `expression`: the layer, or a job where the surface's shape has to be worked out first. */
+  /**
+   * With `expression`: the layer, or a job where the surface's shape has to be worked out first.
+   */
   async create_computed(model: Id, layer: LayerCreate): Promise<{ layer: Layer } | { job: Job }> {
-    const answer = await this.json<wire.Layer | Job>("POST", `/models/${encodeURIComponent(model)}/layers`, layer);
+    const answer = await this.json<wire.Layer | Job>(
+      "POST",
+      `/models/${encodeURIComponent(model)}/layers`,
+      layer,
+    );
     return "slug" in answer ? { layer: complete_layer(answer) } : { job: answer };
   }
   async transfer(model: Id, wish: Transfer): Promise<Job> {
@@ -278,15 +330,25 @@ export class Api {
     const { value, etag } = await this.versioned<wire.Layer>("GET", layer_path(model, layer));
     return { value: complete_layer(value), etag };
   }
-  /** With the version that the change was thought out for: another's change in between is an ApiError of status 412.
-   *  Without, the change stands on its own, and goes onto whatever the layer is now. */
+  /**
+   * With the version that the change was thought out for: another's change in between is an
+   * ApiError of status 412. Without, the change stands on its own, and goes onto whatever the layer
+   * is now.
+   */
   async change_layer(model: Id, layer: Id, change: LayerPatch, etag?: string): Promise<Layer> {
     const version = etag ?? (await this.layer(model, layer)).etag;
-    return complete_layer((await this.versioned<wire.Layer>("PATCH", layer_path(model, layer), change, version)).value);
+    return complete_layer(
+      (await this.versioned<wire.Layer>("PATCH", layer_path(model, layer), change, version)).value,
+    );
   }
   /** The layer of an expression, from what it reads as it is now. */
   async recompute_layer(model: Id, layer: Id, overwrite = false): Promise<Layer> {
-    return complete_layer(await this.json<wire.Layer>("POST", `${layer_path(model, layer)}/compute${overwrite ? "?overwrite=true" : ""}`));
+    return complete_layer(
+      await this.json<wire.Layer>(
+        "POST",
+        `${layer_path(model, layer)}/compute${overwrite ? "?overwrite=true" : ""}`,
+      ),
+    );
   }
   /** How much of the surface a condition holds for. */
   async select(model: Id, where: string): Promise<wire.SelectResponse> {
@@ -302,9 +364,14 @@ export class Api {
   /** A picture on the model's texture coordinates, named as its file. */
   async create_look(model: Id, file: File): Promise<wire.Look> {
     const query = new URLSearchParams({ name: name_of_file(file.name) });
-    const response = await this.request_raw("POST", `/models/${encodeURIComponent(model)}/looks?${query}`, file, {
-      "Content-Type": file.type || "application/octet-stream",
-    });
+    const response = await this.request_raw(
+      "POST",
+      `/models/${encodeURIComponent(model)}/looks?${query}`,
+      file,
+      {
+        "Content-Type": file.type || "application/octet-stream",
+      },
+    );
     return this.parsed<wire.Look>(response);
   }
   async change_look(model: Id, look: Id, change: wire.LookPatch): Promise<wire.Look> {
@@ -316,14 +383,20 @@ export class Api {
     await this.delete_as_is(look_path(model, look));
   }
   /** What was done in a project, newest first; `before`: `next` of the page before. */
-  async activity(project: Id, { model, before, limit }: { model: Id | undefined; before: string | undefined; limit: number }): Promise<wire.ActivityList> {
+  async activity(
+    project: Id,
+    { model, before, limit }: { model: Id | undefined; before: string | undefined; limit: number },
+  ): Promise<wire.ActivityList> {
     const query = new URLSearchParams({ limit: `${limit}` });
     if (model !== undefined) query.set("model", `${model}`);
     if (before !== undefined) query.set("before", before);
     return this.json("GET", `${project_path(project)}/activity?${query}`);
   }
   /** What was deleted in a project and can be restored, newest first. */
-  async bin(project: Id, { limit, offset }: { limit: number; offset: number }): Promise<wire.BinList> {
+  async bin(
+    project: Id,
+    { limit, offset }: { limit: number; offset: number },
+  ): Promise<wire.BinList> {
     return this.json("GET", `${project_path(project)}/bin?limit=${limit}&offset=${offset}`);
   }
   async restore_from_bin(project: Id, entry: string): Promise<wire.BinRestored> {
@@ -345,14 +418,30 @@ export class Api {
   }
   /** Sent again with the same key it is not written twice. */
   async create_comment(model: Id, comment: wire.CommentCreate, key: string): Promise<wire.Comment> {
-    return this.parsed(await this.request("POST", `/models/${encodeURIComponent(model)}/comments`, comment, { "Idempotency-Key": key }));
+    return this.parsed(
+      await this.request("POST", `/models/${encodeURIComponent(model)}/comments`, comment, {
+        "Idempotency-Key": key,
+      }),
+    );
   }
   async create_reply(thread: number, text: string, key: string): Promise<wire.Comment> {
-    return this.parsed(await this.request("POST", `${comment_path(thread)}/replies`, { text }, { "Idempotency-Key": key }));
+    return this.parsed(
+      await this.request(
+        "POST",
+        `${comment_path(thread)}/replies`,
+        { text },
+        { "Idempotency-Key": key },
+      ),
+    );
   }
   /** With the version that was read: another's change in between is an ApiError of status 412. */
-  async change_comment(id: number, change: wire.CommentPatch, version: number): Promise<wire.Comment> {
-    return (await this.versioned<wire.Comment>("PATCH", comment_path(id), change, etag_of(version))).value;
+  async change_comment(
+    id: number,
+    change: wire.CommentPatch,
+    version: number,
+  ): Promise<wire.Comment> {
+    return (await this.versioned<wire.Comment>("PATCH", comment_path(id), change, etag_of(version)))
+      .value;
   }
   async delete_comment(id: number, version: number): Promise<void> {
     await this.request("DELETE", comment_path(id), undefined, { "If-Match": etag_of(version) });
@@ -360,7 +449,12 @@ export class Api {
 
   /** All named views of a model. */
   /** What of the layer waits for review, of one person or (null) of all, the oldest first. */
-  async review_queue(model: Id, layer: Id, limit: number, user: string | null): Promise<wire.ReviewQueue> {
+  async review_queue(
+    model: Id,
+    layer: Id,
+    limit: number,
+    user: string | null,
+  ): Promise<wire.ReviewQueue> {
     const of = user === null ? "" : `&user=${encodeURIComponent(user)}`;
     return this.json("GET", `${layer_path(model, layer)}/review?limit=${limit}${of}`);
   }
@@ -375,18 +469,34 @@ export class Api {
   }
   /** What it shows now; no side of the picture is longer than `side` pixels. */
   async view_picture(model: Id, view: Id, side: number, signal: AbortSignal): Promise<Blob> {
-    return this.blob("GET", `${view_path(model, view)}/picture?thumbnail=${side}`, undefined, signal);
+    return this.blob(
+      "GET",
+      `${view_path(model, view)}/picture?thumbnail=${side}`,
+      undefined,
+      signal,
+    );
   }
   /** `key`: the same for each attempt at one view. */
   async create_view(model: Id, view: wire.ViewCreate, key: string): Promise<wire.View> {
-    return this.parsed(await this.request("POST", views_path(model), view, { "Idempotency-Key": key }));
+    return this.parsed(
+      await this.request("POST", views_path(model), view, { "Idempotency-Key": key }),
+    );
   }
   /** Where nobody changed it since `version`. */
-  async change_view(model: Id, view: Id, change: wire.ViewPatch, version: number): Promise<wire.View> {
-    return (await this.versioned<wire.View>("PATCH", view_path(model, view), change, etag_of(version))).value;
+  async change_view(
+    model: Id,
+    view: Id,
+    change: wire.ViewPatch,
+    version: number,
+  ): Promise<wire.View> {
+    return (
+      await this.versioned<wire.View>("PATCH", view_path(model, view), change, etag_of(version))
+    ).value;
   }
   async delete_view(model: Id, view: Id, version: number): Promise<void> {
-    await this.request("DELETE", view_path(model, view), undefined, { "If-Match": etag_of(version) });
+    await this.request("DELETE", view_path(model, view), undefined, {
+      "If-Match": etag_of(version),
+    });
   }
   /** Of a screen that shows a tour; sets its cookie. */
   async sign_in_kiosk(link: string): Promise<wire.KioskSelf> {
@@ -405,15 +515,26 @@ export class Api {
   }
   /** `key`: the same for each attempt at one tour. */
   async create_tour(model: Id, tour: wire.TourCreate, key: string): Promise<wire.Tour> {
-    return this.parsed(await this.request("POST", tours_path(model), tour, { "Idempotency-Key": key }));
+    return this.parsed(
+      await this.request("POST", tours_path(model), tour, { "Idempotency-Key": key }),
+    );
   }
   /** Where nobody changed it since `version`. */
-  async change_tour(model: Id, tour: Id, change: wire.TourPatch, version: number): Promise<wire.Tour> {
-    return (await this.versioned<wire.Tour>("PATCH", tour_path(model, tour), change, etag_of(version))).value;
+  async change_tour(
+    model: Id,
+    tour: Id,
+    change: wire.TourPatch,
+    version: number,
+  ): Promise<wire.Tour> {
+    return (
+      await this.versioned<wire.Tour>("PATCH", tour_path(model, tour), change, etag_of(version))
+    ).value;
   }
   /** With its links for kiosks. */
   async delete_tour(model: Id, tour: Id, version: number): Promise<void> {
-    await this.request("DELETE", tour_path(model, tour), undefined, { "If-Match": etag_of(version) });
+    await this.request("DELETE", tour_path(model, tour), undefined, {
+      "If-Match": etag_of(version),
+    });
   }
   /** Those that this person may see to: administrators all, curators those of their projects. */
   async kiosks(): Promise<wire.Kiosk[]> {
@@ -436,19 +557,28 @@ export class Api {
   async table(table: Id): Promise<wire.Table> {
     return this.json("GET", table_path(table));
   }
-  /** With its records and their history. Refused while a layer, or a column of another table, names it. */
+  /**
+   * With its records and their history. Refused while a layer, or a column of another table, names
+   * it.
+   */
   async delete_table(table: Id): Promise<void> {
     const { etag } = await this.versioned<wire.Table>("GET", table_path(table));
     await this.request("DELETE", table_path(table), undefined, { "If-Match": etag });
   }
   /** The column that says what a record is called, by its id; null: the best one by rule. */
   async set_title_column(table: Id, column: number | null): Promise<wire.Table> {
-    return this.change_as_is(table_path(table), { title_column: column === null ? "" : `${column}` });
+    return this.change_as_is(table_path(table), {
+      title_column: column === null ? "" : `${column}`,
+    });
   }
   async create_column(table: Id, column: wire.ColumnCreate): Promise<wire.ColumnChanged> {
     return this.json("POST", `${table_path(table)}/columns`, column);
   }
-  async change_column(table: Id, column: Id, change: wire.ColumnPatch): Promise<wire.ColumnChanged> {
+  async change_column(
+    table: Id,
+    column: Id,
+    change: wire.ColumnPatch,
+  ): Promise<wire.ColumnChanged> {
     return this.change_as_is(column_path(table, column), change);
   }
   async drop_column(table: Id, column: Id): Promise<void> {
@@ -463,17 +593,32 @@ export class Api {
   }
   /** Newest first. */
   async table_edits(table: Id, limit: number): Promise<wire.TableEdit[]> {
-    return (await this.json<wire.TableEditList>("GET", `${table_path(table)}/edits?${new URLSearchParams({ limit: `${limit}` })}`)).edits;
+    return (
+      await this.json<wire.TableEditList>(
+        "GET",
+        `${table_path(table)}/edits?${new URLSearchParams({ limit: `${limit}` })}`,
+      )
+    ).edits;
   }
   /** Of one record, newest first. */
   async record_edits(table: Id, key: number, limit: number): Promise<wire.TableEdit[]> {
-    return (await this.json<wire.TableEditList>("GET", `${table_path(table)}/edits?${new URLSearchParams({ key: `${key}`, limit: `${limit}` })}`)).edits;
+    return (
+      await this.json<wire.TableEditList>(
+        "GET",
+        `${table_path(table)}/edits?${new URLSearchParams({ key: `${key}`, limit: `${limit}` })}`,
+      )
+    ).edits;
   }
   /** A page of a table's records; of a layer's, with their areas there. */
-  async records(place: RecordPlace, { sortby = "", filter = "", limit, offset }: RecordQuery): Promise<wire.RecordList> {
+  async records(
+    place: RecordPlace,
+    { sortby = "", filter = "", limit, offset }: RecordQuery,
+  ): Promise<wire.RecordList> {
     const query = new URLSearchParams({ limit: `${limit}`, offset: `${offset}` });
     if (sortby !== "") query.set("sortby", sortby);
-    if (sortby !== "" && sortby !== "key" && sortby !== "-key") query.set("lang", person_languages()[0]!); // in whose alphabet
+    // in whose alphabet
+    if (sortby !== "" && sortby !== "key" && sortby !== "-key")
+      query.set("lang", person_languages()[0]!);
     if (filter !== "") query.set("filter", filter);
     return this.json("GET", `${records_path(place)}?${query}`);
   }
@@ -488,17 +633,23 @@ export class Api {
   async change_record(table: Id, key: number, change: wire.RecordPatch): Promise<wire.TableRecord> {
     const path = `${records_path({ table })}/${key}`;
     if (change.version === undefined) return this.change_as_is(path, change);
-    return (await this.versioned<wire.TableRecord>("PATCH", path, change, etag_of(change.version))).value;
+    return (await this.versioned<wire.TableRecord>("PATCH", path, change, etag_of(change.version)))
+      .value;
   }
   /** `texels`: what becomes of the surface that has the record's key. */
   async delete_record(table: Id, key: number, texels: TexelsOfDeleted): Promise<void> {
-    const query = new URLSearchParams({ texels: texels.what, ...(texels.what === "reassign" ? { to: `${texels.to}` } : {}) });
+    const query = new URLSearchParams({
+      texels: texels.what,
+      ...(texels.what === "reassign" ? { to: `${texels.to}` } : {}),
+    });
     const path = `${records_path({ table })}/${key}`;
     await this.delete_as_is(`${path}?${query}`);
   }
   /** Files of a record. */
   async attachments(table: Id, key: number): Promise<wire.Attachment[]> {
-    return (await this.json<wire.AttachmentList>("GET", `${records_path({ table })}/${key}/attachments`)).attachments;
+    return (
+      await this.json<wire.AttachmentList>("GET", `${records_path({ table })}/${key}/attachments`)
+    ).attachments;
   }
   /** Where a file is had, or a small JPEG of a picture, of at most so many pixels a side. */
   attachment_url(id: number, thumbnail?: 64 | 128 | 256 | 512 | 1024): string {
@@ -506,7 +657,9 @@ export class Api {
   }
   async attach(table: Id, key: number, column: string, file: File): Promise<void> {
     const query = new URLSearchParams({ name: file.name, column });
-    await this.request_raw("POST", `${records_path({ table })}/${key}/attachments?${query}`, file, { "Content-Type": "application/octet-stream" });
+    await this.request_raw("POST", `${records_path({ table })}/${key}/attachments?${query}`, file, {
+      "Content-Type": "application/octet-stream",
+    });
   }
   async show_attachment(id: number, visibility: wire.Visibility): Promise<wire.Attachment> {
     return this.json("PATCH", `/attachments/${id}`, { visibility });
@@ -524,27 +677,52 @@ export class Api {
     const path = `${records_path({ table })}${dry_run ? "?dry_run=true" : ""}`;
     return this.parsed(await this.request_raw("POST", path, csv, { "Content-Type": "text/csv" }));
   }
-  /** Terms of a list as a tree that is written down; with `q` those that have its words, and those above them. */
+  /**
+   * Terms of a list as a tree that is written down; with `q` those that have its words, and those
+   * above them.
+   */
   async terms(table: Id, { q = "", lang, limit, offset }: TermQuery): Promise<wire.TermTree> {
-    const query = new URLSearchParams({ lang, limit: `${limit}`, offset: `${offset}`, ...(q === "" ? {} : { q }) });
+    const query = new URLSearchParams({
+      lang,
+      limit: `${limit}`,
+      offset: `${offset}`,
+      ...(q === "" ? {} : { q }),
+    });
     return this.json("GET", `${table_path(table)}/terms?${query}`);
   }
   /** Where a list of terms is had as a file that may be imported elsewhere. */
   terms_url(table: Id, format: "csv" | "turtle"): string {
     return `${kBase}${table_path(table)}/terms?f=${format}`;
   }
-  /** A new list of the project, or more terms for one. `dry_run` only reports. Where terms are wrong nothing is written. */
-  async import_terms(into: { project: Id; name: string } | { table: Id }, file: Blob, type: TermsType, dry_run: boolean): Promise<wire.RecordsReport> {
-    const query = new URLSearchParams({ ...("name" in into ? { name: into.name } : {}), ...(dry_run ? { dry_run: "true" } : {}) });
+  /**
+   * A new list of the project, or more terms for one. `dry_run` only reports. Where terms are wrong
+   * nothing is written.
+   */
+  async import_terms(
+    into: { project: Id; name: string } | { table: Id },
+    file: Blob,
+    type: TermsType,
+    dry_run: boolean,
+  ): Promise<wire.RecordsReport> {
+    const query = new URLSearchParams({
+      ...("name" in into ? { name: into.name } : {}),
+      ...(dry_run ? { dry_run: "true" } : {}),
+    });
     const place = "table" in into ? table_path(into.table) : project_path(into.project);
-    return this.parsed(await this.request_raw("POST", `${place}/terms?${query}`, file, { "Content-Type": type }));
+    return this.parsed(
+      await this.request_raw("POST", `${place}/terms?${query}`, file, { "Content-Type": type }),
+    );
   }
   async templates(): Promise<wire.Template[]> {
     return this.all("/templates", "templates");
   }
   /** Makes its tables, and its layers on the model. */
   async use_template(project: Id, template: Id, use: wire.TemplateUse): Promise<TemplateMade> {
-    const made = await this.json<wire.TemplateMade>("POST", `${project_path(project)}/templates/${encodeURIComponent(template)}`, use);
+    const made = await this.json<wire.TemplateMade>(
+      "POST",
+      `${project_path(project)}/templates/${encodeURIComponent(template)}`,
+      use,
+    );
     return { tables: made.tables, layers: made.layers.map(complete_layer) };
   }
   async has_record(table: Id, key: number): Promise<boolean> {
@@ -561,7 +739,9 @@ export class Api {
   }
   async create_tool(picture: Blob, name: string, part: string): Promise<wire.Tool> {
     const query = new URLSearchParams({ name, part });
-    const response = await this.request_raw("POST", `/tools?${query}`, picture, { "Content-Type": picture.type });
+    const response = await this.request_raw("POST", `/tools?${query}`, picture, {
+      "Content-Type": picture.type,
+    });
     return this.parsed<wire.Tool>(response);
   }
   async rename_tool(tool: Id, name: string): Promise<wire.Tool> {
@@ -575,16 +755,35 @@ export class Api {
     return this.json("POST", `${layer_path(model, layer)}/extent`, highlight);
   }
   /** What a column holds, in classes; without a count the server's own. */
-  async classes(table: Id, column: Id, method: "equal" | "quantile" | "unique", count?: number): Promise<wire.ColumnClasses> {
-    const query = new URLSearchParams({ method, ...(count === undefined ? {} : { count: `${count}` }) });
-    return this.json("GET", `${table_path(table)}/columns/${encodeURIComponent(column)}/classes?${query}`);
+  async classes(
+    table: Id,
+    column: Id,
+    method: "equal" | "quantile" | "unique",
+    count?: number,
+  ): Promise<wire.ColumnClasses> {
+    const query = new URLSearchParams({
+      method,
+      ...(count === undefined ? {} : { count: `${count}` }),
+    });
+    return this.json(
+      "GET",
+      `${table_path(table)}/columns/${encodeURIComponent(column)}/classes?${query}`,
+    );
   }
   /** What a camera sees at a pixel of its window. */
-  async pick(model: Id, camera: CameraMessage, [x, y]: readonly [number, number]): Promise<wire.SurfacePoint> {
+  async pick(
+    model: Id,
+    camera: CameraMessage,
+    [x, y]: readonly [number, number],
+  ): Promise<wire.SurfacePoint> {
     return this.json("POST", `/models/${encodeURIComponent(model)}/pick`, { camera, x, y });
   }
   /** What it sees along a path of its window's pixels, at each of them. */
-  async profile(model: Id, camera: CameraMessage, path: readonly (readonly [number, number])[]): Promise<wire.Profile> {
+  async profile(
+    model: Id,
+    camera: CameraMessage,
+    path: readonly (readonly [number, number])[],
+  ): Promise<wire.Profile> {
     return this.profile_of(model, { camera, path, layers: [] });
   }
   /** The same, or through places; also as the CSV file that the server makes of it. */
@@ -592,7 +791,11 @@ export class Api {
     return this.json("POST", `/models/${encodeURIComponent(model)}/profile`, line);
   }
   async profile_csv(model: Id, line: ProfileLine): Promise<Blob> {
-    return (await this.request("POST", `/models/${encodeURIComponent(model)}/profile`, line, { Accept: "text/csv" })).blob();
+    return (
+      await this.request("POST", `/models/${encodeURIComponent(model)}/profile`, line, {
+        Accept: "text/csv",
+      })
+    ).blob();
   }
   async statistics(model: Id, layer: Id): Promise<Statistics> {
     return this.json("GET", `${layer_path(model, layer)}/statistics`);
@@ -601,7 +804,10 @@ export class Api {
   quantities_url(model: Id, layer: Id, query: SheetQuery): string {
     return `${kBase}${layer_path(model, layer)}/quantities?${new URLSearchParams({ ...query })}`;
   }
-  /** Where outlines of a layer's classes, and lines and points of its records, are had for maps; `along`: the way that the map is looked at. */
+  /**
+   * Where outlines of a layer's classes, and lines and points of its records, are had for maps;
+   * `along`: the way that the map is looked at.
+   */
   features_url(model: Id, layer: Id, query: { f: string; along: string; lang: string }): string {
     return `${kBase}${layer_path(model, layer)}/features?${new URLSearchParams({ ...query })}`;
   }
@@ -626,7 +832,10 @@ export class Api {
   /** The layer then holds what the file does. Answered once it is durable. */
   async put_texels(model: Id, layer: Id, format: string, file: Blob): Promise<wire.EditResult> {
     const path = `${layer_path(model, layer)}/texels.${format}`;
-    const response = await this.request_raw("PUT", path, file, { ...kFile, "Idempotency-Key": new_id() });
+    const response = await this.request_raw("PUT", path, file, {
+      ...kFile,
+      "Idempotency-Key": new_id(),
+    });
     return (await response.json()) as wire.EditResult;
   }
 
@@ -640,31 +849,58 @@ export class Api {
     progress: Progress,
   ): Upload<wire.EditResult> {
     const path = `${layer_path(model, layer)}/${kind}?${new URLSearchParams(query)}`;
-    return this.upload("POST", path, files, progress, kind !== "readings"); // the names of maps tell what they are
+    // the names of maps tell what they are
+    return this.upload("POST", path, files, progress, kind !== "readings");
   }
-  /** One number a line for each vertex of a scan; `source` where the model has several. Answered once it is durable. */
-  put_vertex_values(model: Id, layer: Id, source: string | null, file: UploadFile, progress: Progress): Upload<wire.EditResult> {
+  /**
+   * One number a line for each vertex of a scan; `source` where the model has several. Answered
+   * once it is durable.
+   */
+  put_vertex_values(
+    model: Id,
+    layer: Id,
+    source: string | null,
+    file: UploadFile,
+    progress: Progress,
+  ): Upload<wire.EditResult> {
     const query = source === null ? "" : `?${new URLSearchParams({ source })}`;
     return this.upload("PUT", `${layer_path(model, layer)}/vertices.csv${query}`, [file], progress);
   }
   /** What a map's files hold. */
-  map_contents(model: Id, query: Record<string, string>, files: readonly UploadFile[], progress: Progress): Upload<wire.MapContents> {
+  map_contents(
+    model: Id,
+    query: Record<string, string>,
+    files: readonly UploadFile[],
+    progress: Progress,
+  ): Upload<wire.MapContents> {
     const path = `/models/${encodeURIComponent(model)}/map-contents?${new URLSearchParams(query)}`;
     return this.upload("POST", path, files, progress, true);
   }
   /** Makes a look of an orthophoto. */
-  add_orthophoto(model: Id, query: Record<string, string>, files: readonly UploadFile[], progress: Progress): Upload<Job> {
+  add_orthophoto(
+    model: Id,
+    query: Record<string, string>,
+    files: readonly UploadFile[],
+    progress: Progress,
+  ): Upload<Job> {
     const path = `/models/${encodeURIComponent(model)}/orthophotos?${new URLSearchParams(query)}`;
     return this.upload("POST", path, files, progress, true);
   }
 
   async frame(model: Id, camera: CameraMessage, signal: AbortSignal): Promise<Blob> {
-    return this.blob("POST", `/models/${encodeURIComponent(model)}/frame`, { camera, format: "jpeg" }, signal);
+    return this.blob(
+      "POST",
+      `/models/${encodeURIComponent(model)}/frame`,
+      { camera, format: "jpeg" },
+      signal,
+    );
   }
 
   /** A job whose file it is. */
   async make_figure(model: Id, figure: wire.FigureRequest): Promise<Job> {
-    return this.parsed(await this.request("POST", figures_path(model), figure, { Prefer: "respond-async" }));
+    return this.parsed(
+      await this.request("POST", figures_path(model), figure, { Prefer: "respond-async" }),
+    );
   }
   /** The file itself, for small ones. */
   async figure(model: Id, figure: wire.FigureRequest, signal: AbortSignal): Promise<Blob> {
@@ -672,11 +908,19 @@ export class Api {
   }
   /** What a job of this person made. */
   async job_file(id: Id): Promise<Blob> {
-    return (await this.request("GET", `/jobs/${encodeURIComponent(id)}/file`, undefined, kAnyFile)).blob();
+    return (
+      await this.request("GET", `/jobs/${encodeURIComponent(id)}/file`, undefined, kAnyFile)
+    ).blob();
   }
 
   /** As a form, or the only file as the body; `fetch` does not tell how much is sent. */
-  private upload<T>(method: string, path: string, files: readonly UploadFile[], progress: Progress, as_form = files.length > 1): Upload<T> {
+  private upload<T>(
+    method: string,
+    path: string,
+    files: readonly UploadFile[],
+    progress: Progress,
+    as_form = files.length > 1,
+  ): Upload<T> {
     const form = new FormData();
     if (as_form) for (const each of files) form.append("files", each.file, each.path);
     const request = this.make_request_();
@@ -705,10 +949,13 @@ export class Api {
     return { done, cancel: () => request.abort() };
   }
 
-  /** Every entry of a list, page by page: each begins where the one before ended, whatever others write meanwhile. */
+  /**
+   * Every entry of a list, page by page: each begins where the one before ended, whatever others
+   * write meanwhile.
+   */
   private async all<T>(path: string, list: string): Promise<T[]> {
     const found: T[] = [];
-    for (let next: string | null = `${path}?limit=1000`; next !== null; ) {
+    for (let next: string | null = `${path}?limit=1000`; next !== null;) {
       const response: Response = await this.request("GET", next);
       found.push(...(await this.parsed<Record<string, T[]>>(response))[list]!);
       next = next_page(response.headers.get("Link"));
@@ -728,7 +975,12 @@ export class Api {
     return (await this.versioned<T>(method, path, body)).value;
   }
 
-  private async versioned<T>(method: string, path: string, body?: unknown, etag?: string): Promise<Versioned<T>> {
+  private async versioned<T>(
+    method: string,
+    path: string,
+    body?: unknown,
+    etag?: string,
+  ): Promise<Versioned<T>> {
     const response = await this.request(method, path, body, etag ? { "If-Match": etag } : {});
     return { value: await this.parsed<T>(response), etag: response.headers.get("ETag") ?? "" };
   }
@@ -742,7 +994,12 @@ export class Api {
   }
 
   /** A file whose request may be given up, also while it comes. */
-  private async blob(method: string, path: string, body: unknown, signal: AbortSignal): Promise<Blob> {
+  private async blob(
+    method: string,
+    path: string,
+    body: unknown,
+    signal: AbortSignal,
+  ): Promise<Blob> {
     const response = await this.request(method, path, body, kAnyFile, signal);
     try {
       return await response.blob();
@@ -759,7 +1016,13 @@ export class Api {
     signal?: AbortSignal,
   ): Promise<Response> {
     if (body === undefined) return this.request_raw(method, path, null, headers, signal);
-    return this.request_raw(method, path, JSON.stringify(body), { "Content-Type": "application/json", ...headers }, signal);
+    return this.request_raw(
+      method,
+      path,
+      JSON.stringify(body),
+      { "Content-Type": "application/json", ...headers },
+      signal,
+    );
   }
 
   private async request_raw(
@@ -785,15 +1048,20 @@ export class Api {
     } catch {
       throw signal?.aborted ? cancelled() : unreachable();
     }
-    if (!response.ok) throw new ApiError(problem_of_text(response.status, await response.text().catch(() => "")));
+    if (!response.ok)
+      throw new ApiError(problem_of_text(response.status, await response.text().catch(() => "")));
     return response;
   }
 }
 
 const kMostKeptAlive = 60_000; // characters of a body that browsers send after its page
 
-/** What is sent or answered there is not for the server to keep, as it does for an `Idempotency-Key`. */
-const kWithSecrets = /^\/(login|auth\/.+|invitations\/.+|me\/.+|users|users\/.+|models\/[^/]+\/tours\/[^/]+\/kiosks)$/;
+/**
+ * What is sent or answered there is not for the server to keep, as it does for an
+ * `Idempotency-Key`.
+ */
+const kWithSecrets =
+  /^\/(login|auth\/.+|invitations\/.+|me\/.+|users|users\/.+|models\/[^/]+\/tours\/[^/]+\/kiosks)$/;
 
 const kFile = { "Content-Type": "application/octet-stream" };
 /** A read that takes JSON alone is refused where a file of another kind would answer it. */
@@ -803,27 +1071,33 @@ const layer_path = (model: Id, layer: Id): string =>
   `/models/${encodeURIComponent(model)}/layers/${encodeURIComponent(layer)}`;
 
 const person_path = (user: string): string => `/users/${encodeURIComponent(user)}`;
-const project_group_path = (project: string, group: number): string => `/projects/${encodeURIComponent(project)}/groups/${group}`;
-const member_path = (project: string, user: string): string => `/projects/${encodeURIComponent(project)}/members/${encodeURIComponent(user)}`;
+const project_group_path = (project: string, group: number): string =>
+  `/projects/${encodeURIComponent(project)}/groups/${group}`;
+const member_path = (project: string, user: string): string =>
+  `/projects/${encodeURIComponent(project)}/members/${encodeURIComponent(user)}`;
 
 const project_path = (project: Id): string => `/projects/${encodeURIComponent(project)}`;
 
 const table_path = (table: Id): string => `/tables/${encodeURIComponent(table)}`;
 
-const column_path = (table: Id, column: Id): string => `${table_path(table)}/columns/${encodeURIComponent(column)}`;
+const column_path = (table: Id, column: Id): string =>
+  `${table_path(table)}/columns/${encodeURIComponent(column)}`;
 
 const records_path = (place: RecordPlace): string =>
   `${"table" in place ? table_path(place.table) : layer_path(place.model, place.layer)}/records`;
 
 const comment_path = (id: number): string => `/comments/${id}`;
 
-const figures_path = (model: Id): string => `/models/${encodeURIComponent(model)}/figures?${new URLSearchParams({ lang: page_locale() })}`;
+const figures_path = (model: Id): string =>
+  `/models/${encodeURIComponent(model)}/figures?${new URLSearchParams({ lang: page_locale() })}`;
 
 const views_path = (model: Id): string => `/models/${encodeURIComponent(model)}/views`;
-const view_path = (model: Id, view: Id): string => `${views_path(model)}/${encodeURIComponent(view)}`;
+const view_path = (model: Id, view: Id): string =>
+  `${views_path(model)}/${encodeURIComponent(view)}`;
 
 const tours_path = (model: Id): string => `/models/${encodeURIComponent(model)}/tours`;
-const tour_path = (model: Id, tour: Id): string => `${tours_path(model)}/${encodeURIComponent(tour)}`;
+const tour_path = (model: Id, tour: Id): string =>
+  `${tours_path(model)}/${encodeURIComponent(tour)}`;
 const kiosk_path = (kiosk: number): string => `/kiosks/${kiosk}`;
 
 const etag_of = (version: number): string => `"v${version}"`;
@@ -838,13 +1112,18 @@ function unreachable(): ApiError {
   return new ApiError({ status: 0, title, detail });
 }
 
-/** Where the next page of a list is, below `kBase`, by the `Link` of this one (RFC 8288); null: it is the last. */
+/**
+ * Where the next page of a list is, below `kBase`, by the `Link` of this one (RFC 8288); null: it
+ * is the last.
+ */
 export function next_page(link: string | null): string | null {
   const target = /<([^>]*)>\s*;\s*rel="?next"?/.exec(link ?? "")?.[1];
   return target?.startsWith(kBase) ? target.slice(kBase.length) : null;
 }
 
-/** The problem in an answer's text; where the text is not one, what the status means in plain words. */
+/**
+ * The problem in an answer's text; where the text is not one, what the status means in plain words.
+ */
 export function problem_of_text(status: number, text: string): ProblemBody {
   try {
     const body = JSON.parse(text) as Partial<ProblemBody> | null;
@@ -862,13 +1141,19 @@ export function problem_of_text(status: number, text: string): ProblemBody {
     // Not JSON: a proxy's page, or nothing. The status says enough.
   }
   const words = own_problems();
-  const [title, detail] = words.statuses[status] ?? [words.other_status(status), words.other_status_detail];
+  const [title, detail] = words.statuses[status] ?? [
+    words.other_status(status),
+    words.other_status_detail,
+  ];
   return { status, title, detail };
 }
 
 /** A model's name from its file's: "statue_nefertiti_70k.ply" → "statue nefertiti 70k". */
 export function name_of_file(filename: string): string {
-  const stem = filename.replace(/\.[a-z0-9]{1,5}$/i, "").replace(/_+/g, " ").trim();
+  const stem = filename
+    .replace(/\.[a-z0-9]{1,5}$/i, "")
+    .replace(/_+/g, " ")
+    .trim();
   return stem || filename;
 }
 

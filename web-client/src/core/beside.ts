@@ -1,14 +1,24 @@
-// Where something that tells of the place under the pointer goes, so that it lies beside that place and not over it.
+// Where something that tells of the place under the pointer goes, so that it lies beside that place
+// and not over it.
 
 export interface Size {
   width: number;
   height: number;
 }
 
-/** Top left of a box within a frame: to the right of the place or else to its left, or else below or above it. Null: nowhere without covering it. */
-export function beside([x, y]: readonly [number, number], box: Size, frame: Size, gap: number): { left: number; top: number } | null {
+/**
+ * Top left of a box within a frame: to the right of the place or else to its left, or else below or
+ * above it. Null: nowhere without covering it.
+ */
+export function beside(
+  [x, y]: readonly [number, number],
+  box: Size,
+  frame: Size,
+  gap: number,
+): { left: number; top: number } | null {
   if (box.width > frame.width || box.height > frame.height) return null;
-  const within = (at: number, size: number, most: number): number => Math.min(Math.max(0, at), most - size);
+  const within = (at: number, size: number, most: number): number =>
+    Math.min(Math.max(0, at), most - size);
   const past = (at: number, size: number, most: number): number | null =>
     at + gap + size <= most ? at + gap : at - gap - size >= 0 ? at - gap - size : null;
   const left = past(x, box.width, frame.width);
@@ -22,19 +32,32 @@ export interface Box extends Size {
   top: number;
 }
 
-/** Top left of a box beside a bar, at the height (or width) of a thing in that bar: to its right, left, below or above it, wherever it fits first.
- *  Where it fits nowhere it gets the larger room below or above, and is `most_height` high at most. */
-export function beside_bar(thing: Box, bar: Box, box: Size, frame: Size, gap: number): { left: number; top: number; most_height: number } {
-  const within = (at: number, size: number, most: number): number => Math.max(gap, Math.min(at, most - size - gap));
+/**
+ * Top left of a box beside a bar, at the height (or width) of a thing in that bar: to its right,
+ * left, below or above it, wherever it fits first. Where it fits nowhere it gets the larger room
+ * below or above, and is `most_height` high at most.
+ */
+export function beside_bar(
+  thing: Box,
+  bar: Box,
+  box: Size,
+  frame: Size,
+  gap: number,
+): { left: number; top: number; most_height: number } {
+  const within = (at: number, size: number, most: number): number =>
+    Math.max(gap, Math.min(at, most - size - gap));
   const top = within(thing.top + (thing.height - box.height) / 2, box.height, frame.height);
   const left = within(thing.left + (thing.width - box.width) / 2, box.width, frame.width);
   const most_height = frame.height - 2 * gap;
   const [right_end, bottom_end] = [bar.left + bar.width, bar.top + bar.height];
   if (box.height <= most_height) {
-    if (right_end + box.width + 2 * gap <= frame.width) return { left: right_end + gap, top, most_height };
-    if (bar.left - box.width - 2 * gap >= 0) return { left: bar.left - box.width - gap, top, most_height };
+    if (right_end + box.width + 2 * gap <= frame.width)
+      return { left: right_end + gap, top, most_height };
+    if (bar.left - box.width - 2 * gap >= 0)
+      return { left: bar.left - box.width - gap, top, most_height };
   }
   const [above, below] = [bar.top - 2 * gap, frame.height - bottom_end - 2 * gap];
-  if (below >= box.height || (below >= above && above < box.height)) return { left, top: bottom_end + gap, most_height: below };
+  if (below >= box.height || (below >= above && above < box.height))
+    return { left, top: bottom_end + gap, most_height: below };
   return { left, top: Math.max(gap, bar.top - gap - box.height), most_height: above };
 }

@@ -1,8 +1,19 @@
-// The viewer's camera: a turntable around the model's up axis. All in world coordinates and double; the server
-// subtracts the model's origin. Pixels are of the window (width × height), origin top left, y down.
+// The viewer's camera: a turntable around the model's up axis. All in world coordinates and double;
+// the server subtracts the model's origin. Pixels are of the window (width × height), origin top
+// left, y down.
 
 import type { Plane } from "./protocol.gen";
-import { add, cross, dot, length, scale, subtract, transform, type Mat4, type Vec3 } from "./vector";
+import {
+  add,
+  cross,
+  dot,
+  length,
+  scale,
+  subtract,
+  transform,
+  type Mat4,
+  type Vec3,
+} from "./vector";
 
 export type UpAxis = "x" | "y" | "z" | "-x" | "-y" | "-z";
 export type StandardView = "front" | "back" | "left" | "right" | "top" | "bottom";
@@ -33,8 +44,9 @@ interface Frame {
   up: Vec3;
 }
 
-// Right-handed frames of the front view: `right` of the picture, `into` the picture, `up`. That of an axis' opposite is turned about `right`
-// by half a turn, as the server has it (server/core/up.h).
+// Right-handed frames of the front view: `right` of the picture, `into` the picture, `up`. That of
+// an axis' opposite is turned about `right` by half a turn, as the server has it
+// (server/core/up.h).
 export const kFrames: Record<UpAxis, Frame> = {
   z: { right: [1, 0, 0], into: [0, 1, 0], up: [0, 0, 1] },
   y: { right: [1, 0, 0], into: [0, 0, -1], up: [0, 1, 0] },
@@ -48,10 +60,12 @@ export const kUpAxes: readonly UpAxis[] = ["x", "y", "z", "-x", "-y", "-z"];
 /** "z", "−y". */
 export const axis_name = (up: UpAxis): string => up.replace("-", "−");
 /** "+Z", "−Y". */
-export const up_name = (up: UpAxis): string => (up.startsWith("-") ? `−${up.slice(1)}` : `+${up}`).toUpperCase();
+export const up_name = (up: UpAxis): string =>
+  (up.startsWith("-") ? `−${up.slice(1)}` : `+${up}`).toUpperCase();
 
 export const centre = (bounds: Bounds): Vec3 => scale(add(bounds.min, bounds.max), 0.5);
-export const bounding_radius = (bounds: Bounds): number => Math.max(length(subtract(bounds.max, bounds.min)) / 2, 1e-9);
+export const bounding_radius = (bounds: Bounds): number =>
+  Math.max(length(subtract(bounds.max, bounds.min)) / 2, 1e-9);
 
 export class OrbitCamera {
   target: Vec3 = [0, 0, 0];
@@ -59,8 +73,10 @@ export class OrbitCamera {
   azimuth = 0; // radians around up; 0 looks at the front
   elevation = 0; // radians above the horizon, −π/2…π/2
   perspective = true;
-  /** Tangent of half the vertical field of view; another than the usual one while this camera sees what somebody else sees, or what was kept in
-   *  another window. */
+  /**
+   * Tangent of half the vertical field of view; another than the usual one while this camera sees
+   * what somebody else sees, or what was kept in another window.
+   */
   half_field = kHalfFieldTangent;
   width = 1; // window pixels
   height = 1;
@@ -95,7 +111,11 @@ export class OrbitCamera {
     this.target = centre(this.bounds_);
     let distance = 0;
     for (let corner = 0; corner < 8; ++corner) {
-      const at: Vec3 = [corner & 1 ? max[0] : min[0], corner & 2 ? max[1] : min[1], corner & 4 ? max[2] : min[2]];
+      const at: Vec3 = [
+        corner & 1 ? max[0] : min[0],
+        corner & 2 ? max[1] : min[1],
+        corner & 4 ? max[2] : min[2],
+      ];
       const offset = subtract(at, this.target);
       const towards = this.perspective ? dot(offset, back) : 0;
       const across = Math.abs(dot(offset, right)) / half_width;
@@ -105,13 +125,16 @@ export class OrbitCamera {
     this.distance = Math.max(distance * kFitMargin, bounding_radius(this.bounds_) * kMinZoom);
   }
 
-  /** A box that is a part of the model, seen from where its surface faces; where that is not said, from its own side of the model, of which
-   *  the model's middle has none. */
+  /**
+   * A box that is a part of the model, seen from where its surface faces; where that is not said,
+   * from its own side of the model, of which the model's middle has none.
+   */
   look_at(box: Bounds, normal?: Vec3): void {
     const middle = centre(box);
     const outwards = normal ?? subtract(middle, centre(this.bounds_));
     const { back } = this.axes();
-    const has_side = normal !== undefined || length(outwards) > 0.15 * bounding_radius(this.bounds_);
+    const has_side =
+      normal !== undefined || length(outwards) > 0.15 * bounding_radius(this.bounds_);
     // What faces away is turned to; what is seen already is left as it is.
     if (has_side && dot(outwards, back) < 0.3 * length(outwards)) this.face(outwards);
     this.target = middle;
@@ -124,7 +147,11 @@ export class OrbitCamera {
   /** Turns so that `outwards` points to the viewer. */
   private face(outwards: Vec3): void {
     const frame = kFrames[this.up_];
-    const [x, y, z] = [dot(outwards, frame.right), dot(outwards, frame.into), dot(outwards, frame.up)];
+    const [x, y, z] = [
+      dot(outwards, frame.right),
+      dot(outwards, frame.into),
+      dot(outwards, frame.up),
+    ];
     const level = Math.hypot(x, y);
     if (level > 1e-3 * Math.abs(z)) this.azimuth = Math.atan2(x, -y);
     this.elevation = Math.min(1.2, Math.max(-1.2, Math.atan2(z, level)));
@@ -184,7 +211,9 @@ export class OrbitCamera {
     this.half_field = kHalfFieldTangent;
   }
 
-  /** From now on it turns around what is in the middle of the window at a depth. The picture stays. */
+  /**
+   * From now on it turns around what is in the middle of the window at a depth. The picture stays.
+   */
   turn_around(depth: number): void {
     this.target = subtract(this.eye(), scale(this.axes().back, depth));
     if (this.perspective) this.distance = depth;
@@ -196,7 +225,10 @@ export class OrbitCamera {
 
   orbit(azimuth_delta: number, elevation_delta: number): void {
     this.azimuth = wrap(this.azimuth + azimuth_delta);
-    this.elevation = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.elevation + elevation_delta));
+    this.elevation = Math.min(
+      Math.PI / 2,
+      Math.max(-Math.PI / 2, this.elevation + elevation_delta),
+    );
   }
 
   /** Drag of one pixel turns the model by the same share of the window in both directions. */
@@ -214,7 +246,10 @@ export class OrbitCamera {
   /** factor < 1 comes nearer. What is under the window pixel (x, y) stays there. */
   zoom_at(factor: number, x: number, y: number): void {
     const radius = bounding_radius(this.bounds_);
-    const distance = Math.min(kMaxZoom * radius, Math.max(kMinZoom * radius, this.distance * factor));
+    const distance = Math.min(
+      kMaxZoom * radius,
+      Math.max(kMinZoom * radius, this.distance * factor),
+    );
     const kept = distance / this.distance;
     const anchor = this.point_on_focus_plane(x, y);
     this.target = add(anchor, scale(subtract(this.target, anchor), kept));
@@ -233,12 +268,23 @@ export class OrbitCamera {
   view_matrix(): number[] {
     const { right, up, back } = this.axes();
     const eye = this.eye();
-    // prettier-ignore
     return [
-      right[0], up[0], back[0], 0,
-      right[1], up[1], back[1], 0,
-      right[2], up[2], back[2], 0,
-      -dot(right, eye), -dot(up, eye), -dot(back, eye), 1,
+      right[0],
+      up[0],
+      back[0],
+      0,
+      right[1],
+      up[1],
+      back[1],
+      0,
+      right[2],
+      up[2],
+      back[2],
+      0,
+      -dot(right, eye),
+      -dot(up, eye),
+      -dot(back, eye),
+      1,
     ];
   }
 
@@ -247,21 +293,43 @@ export class OrbitCamera {
     const aspect = this.width / this.height;
     if (this.perspective) {
       const f = 1 / this.half_field;
-      // prettier-ignore
       return [
-        f / aspect, 0, 0, 0,
-        0, f, 0, 0,
-        0, 0, (far + near) / (near - far), -1,
-        0, 0, (2 * far * near) / (near - far), 0,
+        f / aspect,
+        0,
+        0,
+        0,
+        0,
+        f,
+        0,
+        0,
+        0,
+        0,
+        (far + near) / (near - far),
+        -1,
+        0,
+        0,
+        (2 * far * near) / (near - far),
+        0,
       ];
     }
     const half_height = this.half_field * this.distance;
-    // prettier-ignore
     return [
-      1 / (half_height * aspect), 0, 0, 0,
-      0, 1 / half_height, 0, 0,
-      0, 0, -2 / (far - near), 0,
-      0, 0, -(far + near) / (far - near), 1,
+      1 / (half_height * aspect),
+      0,
+      0,
+      0,
+      0,
+      1 / half_height,
+      0,
+      0,
+      0,
+      0,
+      -2 / (far - near),
+      0,
+      0,
+      0,
+      -(far + near) / (far - near),
+      1,
     ];
   }
 
@@ -302,13 +370,17 @@ export class OrbitCamera {
     const radius = bounding_radius(this.bounds_) * 1.02;
     const middle = this.depth_of(centre(this.bounds_));
     const far = Math.max(middle + radius, radius * 1e-3);
-    if (!this.perspective) return { near: middle - radius, far: Math.max(far, middle - radius + 1e-9) };
+    if (!this.perspective)
+      return { near: middle - radius, far: Math.max(far, middle - radius + 1e-9) };
     return { near: Math.max(middle - radius, far * 2e-4), far };
   }
 }
 
 /** Where a camera stands; `between` two of them, at a share of the way. */
-export type Place = Pick<OrbitCamera, "target" | "distance" | "azimuth" | "elevation" | "perspective" | "half_field">;
+export type Place = Pick<
+  OrbitCamera,
+  "target" | "distance" | "azimuth" | "elevation" | "perspective" | "half_field"
+>;
 export const place_of = (camera: OrbitCamera): Place => {
   const { target, distance, azimuth, elevation, perspective, half_field } = camera;
   return { target, distance, azimuth, elevation, perspective, half_field };

@@ -1,4 +1,5 @@
-// Values of records as people read and write them. The server judges what a value may be; here is only what a field needs.
+// Values of records as people read and write them. The server judges what a value may be; here is
+// only what a field needs.
 
 import { person_languages, read_number, typed_number } from "./locale";
 import { is_list_of_marks } from "./marks";
@@ -7,13 +8,26 @@ import type { CellValue, Column, Labels, Table, TableRecord } from "./protocol.g
 /** The language and those that it is a kind of, in lower case: "es-mx", "es". */
 function kinds_of_language(language: string): string[] {
   const tags: string[] = [];
-  for (let tag = language.toLowerCase(); tag !== ""; tag = tag.slice(0, Math.max(0, tag.lastIndexOf("-")))) tags.push(tag);
+  for (
+    let tag = language.toLowerCase();
+    tag !== "";
+    tag = tag.slice(0, Math.max(0, tag.lastIndexOf("-")))
+  )
+    tags.push(tag);
   return tags;
 }
 
-/** What it is called in the first of the person's languages that it has a name in: of "es-MX" also the name in "es". */
-export function label_of(thing: { name: string; labels: Labels }, languages: readonly string[] = person_languages()): string {
-  const labels = new Map(Object.entries(thing.labels).map(([tag, label]) => [tag.toLowerCase(), label]));
+/**
+ * What it is called in the first of the person's languages that it has a name in: of "es-MX" also
+ * the name in "es".
+ */
+export function label_of(
+  thing: { name: string; labels: Labels },
+  languages: readonly string[] = person_languages(),
+): string {
+  const labels = new Map(
+    Object.entries(thing.labels).map(([tag, label]) => [tag.toLowerCase(), label]),
+  );
   for (const tag of languages.flatMap(kinds_of_language)) {
     const label = labels.get(tag);
     if (label) return label;
@@ -22,12 +36,17 @@ export function label_of(thing: { name: string; labels: Labels }, languages: rea
 }
 
 /** The same of what is said of it. */
-export const description_in = (thing: { description: string; descriptions: Labels }, languages?: readonly string[]): string =>
-  label_of({ name: thing.description, labels: thing.descriptions }, languages);
+export const description_in = (
+  thing: { description: string; descriptions: Labels },
+  languages?: readonly string[],
+): string => label_of({ name: thing.description, labels: thing.descriptions }, languages);
 
-export const is_number = (column: Column): boolean => column.kind === "integer" || column.kind === "numeric";
-export const holds_files = (column: Column): boolean => column.kind === "picture" || column.kind === "document";
-export const names_records = (column: Column): boolean => column.kind === "term" || column.kind === "relation";
+export const is_number = (column: Column): boolean =>
+  column.kind === "integer" || column.kind === "numeric";
+export const holds_files = (column: Column): boolean =>
+  column.kind === "picture" || column.kind === "document";
+export const names_records = (column: Column): boolean =>
+  column.kind === "term" || column.kind === "relation";
 
 /** Keys of the records that a term or a relation names. */
 export function named_keys(value: CellValue | undefined): number[] {
@@ -36,7 +55,10 @@ export function named_keys(value: CellValue | undefined): number[] {
   return typeof value === "number" ? [value] : [];
 }
 
-/** As it is typed and shown; what names records is shown by their labels instead, and of lines and points how many there are. */
+/**
+ * As it is typed and shown; what names records is shown by their labels instead, and of lines and
+ * points how many there are.
+ */
 export function cell_text(value: CellValue | undefined): string {
   if (value === null || value === undefined) return "";
   if (typeof value === "number") return typed_number(value);
@@ -58,7 +80,9 @@ export function parse_cell(column: Pick<Column, "kind">, text: string): Parsed {
     case "numeric": {
       const number = read_number(typed);
       if (!Number.isFinite(number)) return { wrong: "number" };
-      return column.kind === "integer" && !Number.isInteger(number) ? { wrong: "whole" } : { value: number };
+      return column.kind === "integer" && !Number.isInteger(number)
+        ? { wrong: "whole" }
+        : { value: number };
     }
     case "boolean":
       return { value: typed === "true" };
@@ -79,9 +103,17 @@ export type NameOfKey = (table: number, key: number) => string | null;
 
 /** Whether what a record has in the column can be what it is called. */
 export const can_be_title = ({ kind }: Pick<Column, "kind">): boolean =>
-  kind !== "relation" && kind !== "picture" && kind !== "document" && kind !== "line" && kind !== "point" && kind !== "boolean";
+  kind !== "relation" &&
+  kind !== "picture" &&
+  kind !== "document" &&
+  kind !== "line" &&
+  kind !== "point" &&
+  kind !== "boolean";
 
-/** The column that tells records apart for people: the one that they chose, or the best one; null where no column does. */
+/**
+ * The column that tells records apart for people: the one that they chose, or the best one; null
+ * where no column does.
+ */
 export function label_column(table: Pick<Table, "columns" | "title_column">): Column | null {
   const chosen = table.columns.find(({ id }) => id === table.title_column);
   return chosen && can_be_title(chosen) ? chosen : best_label_column(table);
@@ -92,39 +124,70 @@ function best_label_column(table: Pick<Table, "columns">): Column | null {
   return (
     texts.find((column) => column.required && column.unique) ??
     texts.find((column) => column.unique || column.required) ??
-    table.columns.slice(0, 1).find(({ kind }) => kind === "term") ?? // what an observation is of, and not who made it
+    // what an observation is of, and not who made it
+    table.columns.slice(0, 1).find(({ kind }) => kind === "term") ??
     texts[0] ??
     table.columns.find((column) => column.unique && !names_records(column)) ??
     null
   );
 }
 
-/** The columns that may name a record, the best first: of terms their labels in the person's languages, the label of none, and the code. */
+/**
+ * The columns that may name a record, the best first: of terms their labels in the person's
+ * languages, the label of none, and the code.
+ */
 export function naming_columns(table: Naming, languages?: readonly string[]): Column[] {
   const last = [label_column(table) ?? [], best_label_column(table) ?? []].flat();
   if (table.kind !== "terms") return [...new Set(last)];
-  const slugs = (languages ?? person_languages()).flatMap(kinds_of_language).map((tag) => `label-${tag}`);
-  const labels = [...slugs, "label"].map((slug) => table.columns.find((column) => column.kind === "text" && column.slug === slug) ?? []);
+  const slugs = (languages ?? person_languages())
+    .flatMap(kinds_of_language)
+    .map((tag) => `label-${tag}`);
+  const labels = [...slugs, "label"].map(
+    (slug) => table.columns.find((column) => column.kind === "text" && column.slug === slug) ?? [],
+  );
   return [...new Set([...labels, last].flat())];
 }
 
-/** What the record is called; empty where it has no name. `name_of`: of what a term names; without it another column says the name. */
-export function label_of_record(table: Naming, record: Pick<TableRecord, "values">, languages?: readonly string[], name_of: NameOfKey = () => null): string {
+/**
+ * What the record is called; empty where it has no name. `name_of`: of what a term names; without
+ * it another column says the name.
+ */
+export function label_of_record(
+  table: Naming,
+  record: Pick<TableRecord, "values">,
+  languages?: readonly string[],
+  name_of: NameOfKey = () => null,
+): string {
   for (const column of naming_columns(table, languages)) {
     const value = record.values[column.slug];
-    const name = column.kind === "term" ? named_keys(value).map((key) => name_of(column.target ?? 0, key) ?? "").join("") : cell_text(value);
+    const name =
+      column.kind === "term"
+        ? named_keys(value)
+            .map((key) => name_of(column.target ?? 0, key) ?? "")
+            .join("")
+        : cell_text(value);
     if (name !== "") return name;
   }
   return "";
 }
 
 /** The first one that the record has: the number of its file. */
-export function first_picture(table: Pick<Table, "columns">, { values }: Pick<TableRecord, "values">): number | null {
-  return table.columns.filter(({ kind }) => kind === "picture").flatMap(({ slug }) => named_keys(values[slug]))[0] ?? null;
+export function first_picture(
+  table: Pick<Table, "columns">,
+  { values }: Pick<TableRecord, "values">,
+): number | null {
+  return (
+    table.columns
+      .filter(({ kind }) => kind === "picture")
+      .flatMap(({ slug }) => named_keys(values[slug]))[0] ?? null
+  );
 }
 
 /** Those that say something of the record in words: not the one that names it, nor pictures. */
 export function telling_columns(table: Naming, { values }: Pick<TableRecord, "values">): Column[] {
   const [name] = naming_columns(table);
-  return table.columns.filter((column) => column !== name && column.kind !== "picture" && cell_text(values[column.slug]) !== "");
+  return table.columns.filter(
+    (column) =>
+      column !== name && column.kind !== "picture" && cell_text(values[column.slug]) !== "",
+  );
 }

@@ -1,5 +1,6 @@
-// What is chosen in the filter of one column, as a condition of the language that filters records (CQL2 text) and back. The text is all that there is: a
-// condition that was built here is found in it again, and what somebody typed beside it stays.
+// What is chosen in the filter of one column, as a condition of the language that filters records
+// (CQL2 text) and back. The text is all that there is: a condition that was built here is found in
+// it again, and what somebody typed beside it stays.
 
 import { name_in_text } from "./completion";
 import type { Column } from "./protocol.gen";
@@ -8,7 +9,10 @@ export type FilterValue = string | number | boolean;
 
 export type ColumnFilter =
   | { is: "one_of"; values: readonly FilterValue[]; empty: boolean }
-  /** Both ends belong to it; an empty text leaves one open. Numbers as JavaScript writes them, times as in the table. */
+  /**
+   * Both ends belong to it; an empty text leaves one open. Numbers as JavaScript writes them, times
+   * as in the table.
+   */
   | { is: "range"; from: string; to: string }
   | { is: "contains"; text: string }
   | { is: "empty" }
@@ -16,23 +20,28 @@ export type ColumnFilter =
 
 export type FilterKind = ColumnFilter["is"];
 
-const is_number = ({ kind }: Pick<Column, "kind">): boolean => kind === "integer" || kind === "numeric";
-const is_time = ({ kind }: Pick<Column, "kind">): boolean => kind === "date" || kind === "timestamp" || kind === "period";
+const is_number = ({ kind }: Pick<Column, "kind">): boolean =>
+  kind === "integer" || kind === "numeric";
+const is_time = ({ kind }: Pick<Column, "kind">): boolean =>
+  kind === "date" || kind === "timestamp" || kind === "period";
 const is_text = ({ kind }: Pick<Column, "kind">): boolean => kind === "text" || kind === "url";
 
 /** What can be asked of a column, the most usual first. */
 export function filter_kinds(column: Pick<Column, "kind">): FilterKind[] {
   const kinds: FilterKind[] = [];
   if (is_number(column) || is_time(column)) kinds.push("range");
-  if (!["picture", "document", "line", "point", "timestamp"].includes(column.kind)) kinds.push("one_of");
+  if (!["picture", "document", "line", "point", "timestamp"].includes(column.kind))
+    kinds.push("one_of");
   if (is_text(column)) kinds.push("contains");
   return [...kinds, "filled", "empty"];
 }
 
-// ── one condition ───────────────────────────────────────────────────────────────────────────────────────────────────
+// ── one condition
+// ───────────────────────────────────────────────────────────────────────────────────────────────────
 
 const quoted = (text: string): string => `'${text.replaceAll("'", "''")}'`;
-const literal = (value: FilterValue): string => (typeof value === "string" ? quoted(value) : String(value));
+const literal = (value: FilterValue): string =>
+  typeof value === "string" ? quoted(value) : String(value);
 const pattern_of = (text: string): string => quoted(`%${text.replaceAll(/[\\%_]/g, "\\$&")}%`);
 
 /** Empty: nothing is asked, so that all records stay. */
@@ -46,7 +55,9 @@ export function condition_of(column: Pick<Column, "slug" | "kind">, filter: Colu
     case "contains":
       return filter.text === "" ? "" : `casei(${name}) like casei(${pattern_of(filter.text)})`;
     case "range": {
-      const [from, to] = [filter.from, filter.to].map((end) => (end === "" || is_number(column) ? end : quoted(end)));
+      const [from, to] = [filter.from, filter.to].map((end) =>
+        end === "" || is_number(column) ? end : quoted(end),
+      );
       if (from && to) return `${name} between ${from} and ${to}`;
       return from ? `${name} >= ${from}` : to ? `${name} <= ${to}` : "";
     }
@@ -54,7 +65,13 @@ export function condition_of(column: Pick<Column, "slug" | "kind">, filter: Colu
       const { values } = filter;
       const listed = values.map(literal).join(", ");
       const any =
-        values.length === 0 ? "" : column.kind === "relation" ? `a_overlaps(${name}, (${listed}))` : values.length === 1 ? `${name} = ${listed}` : `${name} in (${listed})`;
+        values.length === 0
+          ? ""
+          : column.kind === "relation"
+            ? `a_overlaps(${name}, (${listed}))`
+            : values.length === 1
+              ? `${name} = ${listed}`
+              : `${name} in (${listed})`;
       if (!filter.empty) return any;
       return any === "" ? `${name} is null` : `(${any} or ${name} is null)`;
     }
@@ -68,16 +85,27 @@ const value_of = (text: string): FilterValue => {
   return text === "true" || text === "false" ? text === "true" : Number(text);
 };
 const end_of = (text: string): string => String(value_of(text));
-const values_in = (list: string): FilterValue[] => (list.match(new RegExp(kLiteral, "g")) ?? []).map(value_of);
+const values_in = (list: string): FilterValue[] =>
+  (list.match(new RegExp(kLiteral, "g")) ?? []).map(value_of);
 
-/** What a condition asks of the column, where it is one that condition_of() writes; null for all others. */
-export function filter_of(column: Pick<Column, "slug" | "kind">, condition: string): ColumnFilter | null {
+/**
+ * What a condition asks of the column, where it is one that condition_of() writes; null for all
+ * others.
+ */
+export function filter_of(
+  column: Pick<Column, "slug" | "kind">,
+  condition: string,
+): ColumnFilter | null {
   const name = name_in_text(column.slug).replaceAll(/[.*+?^${}()|[\]\\]/g, "\\$&");
   const match = (form: string): RegExpExecArray | null => new RegExp(`^${form}$`).exec(condition);
   if (match(`${name} is null`)) return { is: "empty" };
   if (match(`${name} is not null`)) return { is: "filled" };
   const contains = match(String.raw`casei\(${name}\) like casei\('%((?:[^']|'')*)%'\)`);
-  if (contains) return { is: "contains", text: contains[1]!.replaceAll("''", "'").replaceAll(/\\([\\%_])/g, "$1") };
+  if (contains)
+    return {
+      is: "contains",
+      text: contains[1]!.replaceAll("''", "'").replaceAll(/\\([\\%_])/g, "$1"),
+    };
   if (is_number(column) || is_time(column)) {
     const between = match(`${name} between (${kLiteral}) and (${kLiteral})`);
     if (between) return { is: "range", from: end_of(between[1]!), to: end_of(between[2]!) };
@@ -89,15 +117,29 @@ export function filter_of(column: Pick<Column, "slug" | "kind">, condition: stri
   const list = `(?:${kLiteral})(?:, (?:${kLiteral}))*`;
   const any = `(?:${name} = (${kLiteral})|${name} in \\((${list})\\)|a_overlaps\\(${name}, \\((${list})\\)\\))`;
   const one_of = match(any);
-  if (one_of) return { is: "one_of", values: values_in(one_of.slice(1).find((part) => part !== undefined)!), empty: false };
+  if (one_of)
+    return {
+      is: "one_of",
+      values: values_in(one_of.slice(1).find((part) => part !== undefined)!),
+      empty: false,
+    };
   const or_empty = match(`\\(${any} or ${name} is null\\)`);
-  if (or_empty) return { is: "one_of", values: values_in(or_empty.slice(1).find((part) => part !== undefined)!), empty: true };
+  if (or_empty)
+    return {
+      is: "one_of",
+      values: values_in(or_empty.slice(1).find((part) => part !== undefined)!),
+      empty: true,
+    };
   return null;
 }
 
-// ── the text ────────────────────────────────────────────────────────────────────────────────────────────────────────
+// ── the text
+// ────────────────────────────────────────────────────────────────────────────────────────────────────────
 
-/** The conditions that a filter joins by "and"; one that joins by "or" is a single one, in parentheses. */
+/**
+ * The conditions that a filter joins by "and"; one that joins by "or" is a single one, in
+ * parentheses.
+ */
 export function conditions_of(filter: string): string[] {
   const text = filter.trim();
   if (text === "") return [];
@@ -105,7 +147,9 @@ export function conditions_of(filter: string): string[] {
   let depth = 0;
   let begun = 0;
   let between = false; // whose "and" joins nothing
-  for (const { 0: token, index } of text.matchAll(/'(?:[^']|'')*'|"[^"]*"|[()]|[\p{L}_][\p{L}\p{N}_.-]*/gu)) {
+  for (const { 0: token, index } of text.matchAll(
+    /'(?:[^']|'')*'|"[^"]*"|[()]|[\p{L}_][\p{L}\p{N}_.-]*/gu,
+  )) {
     if (token === "(") depth += 1;
     else if (token === ")") depth -= 1;
     if (depth !== 0) continue;
@@ -123,11 +167,20 @@ export function conditions_of(filter: string): string[] {
 }
 
 /** What the filter asks of the column, as far as it was chosen and not typed otherwise. */
-export const chosen_in = (filter: string, column: Pick<Column, "slug" | "kind">): ColumnFilter | null =>
-  conditions_of(filter).map((part) => filter_of(column, part)).find((found) => found !== null) ?? null;
+export const chosen_in = (
+  filter: string,
+  column: Pick<Column, "slug" | "kind">,
+): ColumnFilter | null =>
+  conditions_of(filter)
+    .map((part) => filter_of(column, part))
+    .find((found) => found !== null) ?? null;
 
 /** The filter with another choice for the column, or none. */
-export function with_choice(filter: string, column: Pick<Column, "slug" | "kind">, choice: ColumnFilter | null): string {
+export function with_choice(
+  filter: string,
+  column: Pick<Column, "slug" | "kind">,
+  choice: ColumnFilter | null,
+): string {
   const others = conditions_of(filter).filter((part) => filter_of(column, part) === null);
   const own = choice ? condition_of(column, choice) : "";
   if (own === "" && others.length === 1) return without_parentheses(others[0]!);

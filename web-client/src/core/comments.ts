@@ -20,13 +20,16 @@ export interface ThreadFilter {
   words: string;
 }
 
-const is_first = (comment: Comment): comment is FirstComment => comment.thread === undefined && comment.position !== undefined && comment.normal !== undefined;
+const is_first = (comment: Comment): comment is FirstComment =>
+  comment.thread === undefined && comment.position !== undefined && comment.normal !== undefined;
 
 /** Those that somebody wrote in last come first. */
 export function threads_of(comments: Iterable<Comment>): Thread[] {
   const threads = new Map<number, Thread>();
   const all = [...comments].sort((a, b) => a.id - b.id);
-  for (const comment of all) if (is_first(comment)) threads.set(comment.id, { first: comment, replies: [], newest: comment.id });
+  for (const comment of all)
+    if (is_first(comment))
+      threads.set(comment.id, { first: comment, replies: [], newest: comment.id });
   for (const comment of all) {
     const thread = comment.thread === undefined ? undefined : threads.get(comment.thread);
     if (!thread) continue;
@@ -39,18 +42,30 @@ export function threads_of(comments: Iterable<Comment>): Thread[] {
 export const comments_in = ({ first, replies }: Thread): Comment[] => [first, ...replies];
 
 /** Every word must begin one of somebody's text or name in the thread, in any case. */
-export function find_threads(threads: readonly Thread[], { state, of, words }: ThreadFilter): Thread[] {
-  const wanted = words.toLowerCase().split(/\s+/).filter((word) => word !== "");
+export function find_threads(
+  threads: readonly Thread[],
+  { state, of, words }: ThreadFilter,
+): Thread[] {
+  const wanted = words
+    .toLowerCase()
+    .split(/\s+/)
+    .filter((word) => word !== "");
   return threads.filter((thread) => {
     if (state !== "all" && thread.first.state !== state) return false;
     const comments = comments_in(thread);
-    if (of !== null && !comments.some(({ user, text }) => user === of || mentions(text, of))) return false;
-    const said = comments.map(({ user, full_name, text }) => `${user} ${full_name ?? ""} ${text}`.toLowerCase()).join(" ");
+    if (of !== null && !comments.some(({ user, text }) => user === of || mentions(text, of)))
+      return false;
+    const said = comments
+      .map(({ user, full_name, text }) => `${user} ${full_name ?? ""} ${text}`.toLowerCase())
+      .join(" ");
     return wanted.every((word) => said.includes(word));
   });
 }
 
-export type TextPart = { kind: "text"; text: string } | { kind: "link"; text: string; href: string } | { kind: "mention"; text: string };
+export type TextPart =
+  | { kind: "text"; text: string }
+  | { kind: "link"; text: string; href: string }
+  | { kind: "mention"; text: string };
 
 const kParts = /\bhttps?:\/\/[^\s<>"]+|(?<![A-Za-z0-9._@-])@[A-Za-z0-9][A-Za-z0-9._@-]*/giu;
 
@@ -77,9 +92,12 @@ export function text_parts(text: string, people: ReadonlySet<string>): TextPart[
   return parts;
 }
 
-export const mentions = (text: string, name: string): boolean => text_parts(text, new Set([name])).some(({ kind }) => kind === "mention");
+export const mentions = (text: string, name: string): boolean =>
+  text_parts(text, new Set([name])).some(({ kind }) => kind === "mention");
 
-/** Names may end in what ends a sentence; the longest that somebody has is meant. Empty: nobody's. */
+/**
+ * Names may end in what ends a sentence; the longest that somebody has is meant. Empty: nobody's.
+ */
 function mention_in(found: string, known: ReadonlySet<string>): string {
   for (let whole = found; whole.length > 1; whole = whole.slice(0, -1)) {
     if (known.has(whole.slice(1).toLowerCase())) return whole;

@@ -1,5 +1,6 @@
-// The WebSocket of one open model: says hello, keeps the newest camera, resends what is not saved, and comes back by
-// itself after a lost connection. The socket can be replaced by a fake; nothing here touches the page.
+// The WebSocket of one open model: says hello, keeps the newest camera, resends what is not saved,
+// and comes back by itself after a lost connection. The socket can be replaced by a fake; nothing
+// here touches the page.
 
 import { new_id } from "./api";
 import type { CameraMessage } from "./camera";
@@ -93,7 +94,9 @@ export interface ConnectionOptions {
   client: string;
   device_pixel_ratio: number;
   make_socket?: (url: string, protocol: string) => SocketLike;
-  /** Of the person who paints here; without it what is not saved lives as long as the connection. */
+  /**
+   * Of the person who paints here; without it what is not saved lives as long as the connection.
+   */
   make_shelf?: (user: string, model: number) => Shelf;
   /** Calls back before the next picture is drawn. */
   next_frame?: (callback: () => void) => void;
@@ -117,7 +120,8 @@ const kFirstRetry_ms = 250;
 const kLastRetry_ms = 8000;
 const kQuiet_ms = 10_000; // an answer is due but nothing came: ask for a sign of life
 const kSilence_ms = 10_000; // nor came one: the connection is dead
-const kOpening_ms = 30_000; // for the handshake and the welcome; the server may be reading the model
+// for the handshake and the welcome; the server may be reading the model
+const kOpening_ms = 30_000;
 const kBusySocket_bytes = 256 * 1024; // cameras wait while so much is unsent
 const kAdvice = "advice"; // of messages that may fail: what is wrong is told by what they are about
 const kMostWaiting = 5000; // changes; new strokes are refused above
@@ -139,7 +143,8 @@ export class Connection {
 
   private shelf_: Shelf | null = null;
   private readonly outbox_ = new Outbox((ids) => this.shelf_?.remove(ids));
-  private readonly silenced_ = new Set<string>(); // ids whose answers say nothing new: given up, or signs of life
+  // ids whose answers say nothing new: given up, or signs of life
+  private readonly silenced_ = new Set<string>();
 
   private camera_: { camera: CameraMessage; moving: boolean } | null = null;
   private camera_seq_ = 0;
@@ -172,7 +177,8 @@ export class Connection {
   open(): void {
     this.set_state("connecting");
     const make =
-      this.options_.make_socket ?? ((url, protocol) => new WebSocket(url, protocol) as unknown as SocketLike);
+      this.options_.make_socket ??
+      ((url, protocol) => new WebSocket(url, protocol) as unknown as SocketLike);
     const socket = make(this.options_.url, SUBPROTOCOL);
     socket.binaryType = "arraybuffer";
     this.socket_ = socket;
@@ -204,8 +210,10 @@ export class Connection {
     socket?.close(1000, "left");
   }
 
-  /** The network changed, the page came back, or a person asked: reconnects without waiting, and finds out whether a
-   *  connection that looks open still is. */
+  /**
+   * The network changed, the page came back, or a person asked: reconnects without waiting, and
+   * finds out whether a connection that looks open still is.
+   */
   check(): void {
     if (this.state_ === "open") this.ask_for_life();
     if (this.state_ !== "lost") return;
@@ -214,7 +222,10 @@ export class Connection {
     this.open();
   }
 
-  /** Nobody looks any more: no camera goes out again after a reconnect. What is not saved still does. */
+  /**
+   * Nobody looks any more: no camera goes out again after a reconnect. What is not saved still
+   * does.
+   */
   stop_viewing(): void {
     this.camera_ = null;
     this.overrides_ = [];
@@ -233,7 +244,13 @@ export class Connection {
   }
 
   set_appearance(looks: LookShown[] | null, light: Light): void {
-    if (!looks && !this.looks_ && light.mode === "museum" && (this.light_?.mode ?? "museum") === "museum") return;
+    if (
+      !looks &&
+      !this.looks_ &&
+      light.mode === "museum" &&
+      (this.light_?.mode ?? "museum") === "museum"
+    )
+      return;
     this.looks_ = looks;
     this.light_ = light;
     this.send_settings();
@@ -285,7 +302,9 @@ export class Connection {
       layer: options.layer,
       ...(options.erase ? { erase: true } : { value: options.value }),
       camera: options.camera,
-      ...("px" in options.radius ? { radius_px: options.radius.px } : { radius_mm: options.radius.mm }),
+      ...("px" in options.radius
+        ? { radius_px: options.radius.px }
+        : { radius_mm: options.radius.mm }),
       shape: options.shape,
       ...(options.through ? { through: true } : {}),
       ...(options.max_angle_deg === undefined ? {} : { max_angle_deg: options.max_angle_deg }),
@@ -313,7 +332,8 @@ export class Connection {
   }
 
   private send(message: ClientMessage): void {
-    // The other side may have begun to close it. What must not be lost is sent again over the next one.
+    // The other side may have begun to close it. What must not be lost is sent again over the next
+    // one.
     if ((this.socket_?.readyState ?? kOpenSocket) > kOpenSocket) return;
     this.socket_?.send(JSON.stringify(message));
   }
@@ -321,7 +341,8 @@ export class Connection {
   private schedule_camera(): void {
     if (this.camera_scheduled_ || !this.camera_) return;
     this.camera_scheduled_ = true;
-    const next_frame = this.options_.next_frame ?? ((callback) => void requestAnimationFrame(callback));
+    const next_frame =
+      this.options_.next_frame ?? ((callback) => void requestAnimationFrame(callback));
     next_frame(() => {
       this.camera_scheduled_ = false;
       if (this.state_ !== "open" || !this.camera_) return;
@@ -416,12 +437,17 @@ export class Connection {
     this.set_state("open");
     this.heard();
     const layers = new Set<number | string>(message.layers.map((layer) => layer.id));
-    this.overrides_ = this.overrides_.filter(({ layer }) => layers.has(layer)); // one unknown layer refuses them all
+    // one unknown layer refuses them all
+    this.overrides_ = this.overrides_.filter(({ layer }) => layers.has(layer));
     const looks = new Set<number | string>(message.looks.map((look) => look.id));
     this.looks_ = this.looks_?.filter(({ look }) => looks.has(look)) ?? null;
     for (const { stroke, n } of message.strokes) this.outbox_.saved_through(stroke, n);
     this.callbacks_.welcome(message);
-    const has_settings = this.overrides_.length > 0 || this.looks_ || (this.light_ && this.light_.mode !== "museum") || this.background_;
+    const has_settings =
+      this.overrides_.length > 0 ||
+      this.looks_ ||
+      (this.light_ && this.light_.mode !== "museum") ||
+      this.background_;
     if (has_settings) this.send_settings();
     if (this.camera_) this.send_camera();
     this.resend();
@@ -446,7 +472,11 @@ export class Connection {
 
   private on_problem(message: ProblemMessage): void {
     const { op: _, ...problem } = message;
-    if (message.ref !== undefined && (message.ref === kAdvice || this.silenced_.delete(message.ref))) return;
+    if (
+      message.ref !== undefined &&
+      (message.ref === kAdvice || this.silenced_.delete(message.ref))
+    )
+      return;
     if (message.ref === undefined || !this.outbox_.has(message.ref)) {
       this.callbacks_.problem(problem);
       return;
@@ -461,7 +491,8 @@ export class Connection {
       if (first) this.callbacks_.problem(problem);
       return;
     }
-    for (const id of this.outbox_.give_up(message.ref)) if (id !== message.ref) this.silenced_.add(id);
+    for (const id of this.outbox_.give_up(message.ref))
+      if (id !== message.ref) this.silenced_.add(id);
     this.report_saving();
     this.callbacks_.problem(problem);
   }
@@ -501,9 +532,11 @@ export class Connection {
     this.socket_ = null;
     this.set_state("lost");
     this.report_saving();
-    if (this.retry_timer_ || this.state_ !== "lost") return; // a listener closed it or asked for another attempt
+    // a listener closed it or asked for another attempt
+    if (this.retry_timer_ || this.state_ !== "lost") return;
     const random = (this.options_.random ?? Math.random)();
-    const delay_ms = Math.min(kLastRetry_ms, kFirstRetry_ms * 2 ** this.attempts_) * (0.75 + random / 2);
+    const delay_ms =
+      Math.min(kLastRetry_ms, kFirstRetry_ms * 2 ** this.attempts_) * (0.75 + random / 2);
     this.attempts_ += 1;
     this.retry_timer_ = setTimeout(() => {
       this.retry_timer_ = null;
@@ -511,8 +544,11 @@ export class Connection {
     }, delay_ms);
   }
 
-  /** A dead network does not say so: the server's silence must. Before the socket is given up, the server is asked
-   *  something that it always answers, because not everything that is sent brings an answer of its own. */
+  /**
+   * A dead network does not say so: the server's silence must. Before the socket is given up, the
+   * server is asked something that it always answers, because not everything that is sent brings an
+   * answer of its own.
+   */
   private expect_answer(): void {
     if (this.state_ !== "open" || this.answer_due_) return;
     this.answer_due_ = true;
@@ -580,7 +616,14 @@ export class StrokeHandle {
     if (this.ended_ || points.length === 0) return;
     for (let start = 0; start < points.length; start += this.path_points_) {
       const path = points.slice(start, start + this.path_points_);
-      this.change_({ op: "stroke.extend", id: new_id(), stroke: this.stroke, n: this.n_++, path, ...(widths ? { widths: widths.slice(start, start + this.path_points_) } : {}) });
+      this.change_({
+        op: "stroke.extend",
+        id: new_id(),
+        stroke: this.stroke,
+        n: this.n_++,
+        path,
+        ...(widths ? { widths: widths.slice(start, start + this.path_points_) } : {}),
+      });
     }
   }
 

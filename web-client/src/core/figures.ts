@@ -1,10 +1,24 @@
-// Measured figures: what there is to choose of one, and what the server is asked for. What is shown on the model is a view's matter, or the person's own.
+// Measured figures: what there is to choose of one, and what the server is asked for. What is shown
+// on the model is a view's matter, or the person's own.
 
 import { read_number, typed_number } from "./locale";
-import type { FigureDirection, FigureFormat, FigureLabels, FigureRequest, Point3 } from "./protocol.gen";
+import type {
+  FigureDirection,
+  FigureFormat,
+  FigureLabels,
+  FigureRequest,
+  Point3,
+} from "./protocol.gen";
 import type { ViewContent } from "./views";
 
-export const kDirections: readonly FigureDirection[] = ["top", "bottom", "front", "back", "left", "right"];
+export const kDirections: readonly FigureDirection[] = [
+  "top",
+  "bottom",
+  "front",
+  "back",
+  "left",
+  "right",
+];
 export const kFormats: readonly FigureFormat[] = ["pdf", "svg", "png", "tiff"];
 export const kPapers = ["a5", "a4", "a3"] as const;
 export const kOrientations = ["portrait", "landscape"] as const;
@@ -48,16 +62,32 @@ export interface Face {
 /** Camera, layers, looks and light, or a named view that has them. */
 export type FigureShown = ViewContent | { view: string };
 
-export const usual_figure = (): FigureChoices => ({ from: "camera", scale: null, paper: "a4", orientation: null, dpi: 300, format: "pdf", legend: true });
+export const usual_figure = (): FigureChoices => ({
+  from: "camera",
+  scale: null,
+  paper: "a4",
+  orientation: null,
+  dpi: 300,
+  format: "pdf",
+  legend: true,
+});
 
-export const is_scale = (value: unknown): value is number => typeof value === "number" && value >= kScaleRange.least && value <= kScaleRange.most;
-export const is_dpi = (value: unknown): value is number => Number.isInteger(value) && (value as number) >= kDpiRange.least && (value as number) <= kDpiRange.most;
+export const is_scale = (value: unknown): value is number =>
+  typeof value === "number" && value >= kScaleRange.least && value <= kScaleRange.most;
+export const is_dpi = (value: unknown): value is number =>
+  Number.isInteger(value) &&
+  (value as number) >= kDpiRange.least &&
+  (value as number) <= kDpiRange.most;
 
-/** What a browser kept, which may be of another version of the page, or anybody's: what is no choice is the usual one. */
+/**
+ * What a browser kept, which may be of another version of the page, or anybody's: what is no choice
+ * is the usual one.
+ */
 export function figure_choices(kept: unknown): FigureChoices {
   const usual = usual_figure();
   const known = (typeof kept === "object" && kept !== null ? kept : {}) as Record<string, unknown>;
-  const one_of = <T>(value: unknown, choices: readonly T[], otherwise: T): T => (choices.includes(value as T) ? (value as T) : otherwise);
+  const one_of = <T>(value: unknown, choices: readonly T[], otherwise: T): T =>
+    choices.includes(value as T) ? (value as T) : otherwise;
   return {
     from: one_of<FigureFrom>(known["from"], ["camera", ...kDirections, "face"], usual.from),
     scale: is_scale(known["scale"]) ? known["scale"] : usual.scale,
@@ -79,7 +109,9 @@ export function figure_request(
 ): FigureRequest | null {
   if (from === "face" && !face) return null;
   const direction = from === "face" ? face! : from === "camera" ? {} : { direction: from };
-  const written = Object.entries(words).flatMap(([name, text]) => (text.trim() === "" ? [] : [[name, text.trim()]]));
+  const written = Object.entries(words).flatMap(([name, text]) =>
+    text.trim() === "" ? [] : [[name, text.trim()]],
+  );
   return {
     ...shown,
     ...direction,
@@ -92,13 +124,18 @@ export function figure_request(
 }
 
 /** The same sheet as a small picture. */
-export const preview_request = (request: FigureRequest): FigureRequest => ({ ...request, format: "png", dpi: kPreviewDpi[request.paper ?? "a4"] });
+export const preview_request = (request: FigureRequest): FigureRequest => ({
+  ...request,
+  format: "png",
+  dpi: kPreviewDpi[request.paper ?? "a4"],
+});
 
 /** A scale as people write it, "1 : 40", "2:1" or the 40 alone; NaN where it is none. */
 export function read_scale(typed: string): number {
   const parts = typed.split(":").map(read_number);
   const [on_paper, in_world] = parts.length === 1 ? [1, parts[0]!] : [parts[0]!, parts[1]!];
-  const scale = parts.length > 2 || !(on_paper > 0 && in_world > 0) ? Number.NaN : in_world / on_paper;
+  const scale =
+    parts.length > 2 || !(on_paper > 0 && in_world > 0) ? Number.NaN : in_world / on_paper;
   return is_scale(scale) ? scale : Number.NaN;
 }
 

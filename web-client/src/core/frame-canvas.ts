@@ -1,12 +1,15 @@
-// Draws the parts of streamed frames into a canvas, in order, and says when a frame is whole. Decoding is the
-// browser's own and does not block the page.
+// Draws the parts of streamed frames into a canvas, in order, and says when a frame is whole.
+// Decoding is the browser's own and does not block the page.
 
 import type { FrameMessage } from "./frame-header";
 
 export interface CanvasLike {
   width: number;
   height: number;
-  getContext(kind: "2d", options?: { alpha: boolean }): { drawImage(image: never, x: number, y: number): void } | null;
+  getContext(
+    kind: "2d",
+    options?: { alpha: boolean },
+  ): { drawImage(image: never, x: number, y: number): void } | null;
 }
 
 export interface BitmapLike {
@@ -34,8 +37,10 @@ export class FrameCanvas {
     private readonly decode_: (part: FrameMessage) => Promise<BitmapLike> = decode_image,
   ) {}
 
-  /** Decoding starts at once; drawing keeps the order of calls. A part that cannot be decoded counts as drawn, so that
-   *  the server's credit never runs dry. */
+  /**
+   * Decoding starts at once; drawing keeps the order of calls. A part that cannot be decoded counts
+   * as drawn, so that the server's credit never runs dry.
+   */
   push(part: FrameMessage): void {
     const generation = this.generation_;
     const decoded = this.decode_(part);

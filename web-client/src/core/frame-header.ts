@@ -1,6 +1,7 @@
 /**
- * Reads the binary messages that carry one rectangle of a picture. The layout and the numbered rules are in
- * protocol/frame.md; the server's twin is protocol/cpp/protocol/frame_header.cpp, and both read the same golden vectors.
+ * Reads the binary messages that carry one rectangle of a picture. The layout and the numbered
+ * rules are in protocol/frame.md; the server's twin is protocol/cpp/protocol/frame_header.cpp, and
+ * both read the same golden vectors.
  */
 
 export const FRAME_HEADER_BYTES = 56;
@@ -105,10 +106,26 @@ function safe_integer(view: DataView, offset: number, field: string): number {
 /** Rules 5 to 10: what must hold between the members. */
 function check(h: FrameHeader): void {
   demand(h.view_id <= 15, "view_id", "a view is 0 to 15");
-  demand(h.full_width >= 1 && h.full_width <= MAX_SIZE, "full_width", "a picture is 1 to 8192 pixels wide");
-  demand(h.full_height >= 1 && h.full_height <= MAX_SIZE, "full_height", "a picture is 1 to 8192 pixels high");
-  demand(h.width >= 1 && h.x + h.width <= h.full_width, "width", "the rectangle lies within the picture");
-  demand(h.height >= 1 && h.y + h.height <= h.full_height, "height", "the rectangle lies within the picture");
+  demand(
+    h.full_width >= 1 && h.full_width <= MAX_SIZE,
+    "full_width",
+    "a picture is 1 to 8192 pixels wide",
+  );
+  demand(
+    h.full_height >= 1 && h.full_height <= MAX_SIZE,
+    "full_height",
+    "a picture is 1 to 8192 pixels high",
+  );
+  demand(
+    h.width >= 1 && h.x + h.width <= h.full_width,
+    "width",
+    "the rectangle lies within the picture",
+  );
+  demand(
+    h.height >= 1 && h.y + h.height <= h.full_height,
+    "height",
+    "the rectangle lies within the picture",
+  );
   const whole = h.width === h.full_width && h.height === h.full_height;
   demand(!h.keyframe || whole, "keyframe", "a keyframe is the whole picture");
   demand(h.payload_bytes >= 1, "payload_bytes", "a rectangle has bytes");

@@ -1,8 +1,11 @@
-// Mouse, touch and pen on the stage → gestures. Positions are window pixels of the camera (CSS pixels × scale), not
-// of the page. Knows nothing of tools: who listens decides what a drag of the tool button means.
+// Mouse, touch and pen on the stage → gestures. Positions are window pixels of the camera (CSS
+// pixels × scale), not of the page. Knows nothing of tools: who listens decides what a drag of the
+// tool button means.
 //
-// A hand that holds a pen rests on the glass. While a pen touches or is in range, and for a moment afterwards, touches are that hand: those that were
-// there are dropped, new ones are not listened to, and none of them counts before it was lifted. Once a pen has been used, fingers turn what the pen paints.
+// A hand that holds a pen rests on the glass. While a pen touches or is in range, and for a moment
+// afterwards, touches are that hand: those that were there are dropped, new ones are not listened
+// to, and none of them counts before it was lifted. Once a pen has been used, fingers turn what the
+// pen paints.
 
 export interface PointerSample {
   x: number;
@@ -33,12 +36,13 @@ export interface GestureHandler {
 
 type Drag = "tool" | "orbit" | "pan";
 
-// A finger's tool starts once it has moved or rested so much: two fingers that land together then paint no dab. A second
-// one that comes later ends the stroke, which stays and can be undone.
+// A finger's tool starts once it has moved or rested so much: two fingers that land together then
+// paint no dab. A second one that comes later ends the stroke, which stays and can be undone.
 const kTouchSlop = 6; // CSS pixels
 const kTouchDelay_ms = 140;
 const kPenLinger_ms = 400; // between two strokes a pen leaves, and the hand that holds it stays
-const kPenSilence_ms = 3000; // a pen in range tells of itself all the time; one that does not has gone without a word
+// a pen in range tells of itself all the time; one that does not has gone without a word
+const kPenSilence_ms = 3000;
 const kWheelStep = 0.0016; // per pixel of scrolling
 
 export class StageInput {
@@ -47,13 +51,18 @@ export class StageInput {
 
   private readonly pointers_ = new Map<number, PointerSample>(); // CSS pixels within the element
   private drag_: { kind: Drag; pointer: number; last: PointerSample } | null = null;
-  private waiting_touch_: { pointer: number; start: PointerSample; timer: ReturnType<typeof setTimeout> } | null = null;
+  private waiting_touch_: {
+    pointer: number;
+    start: PointerSample;
+    timer: ReturnType<typeof setTimeout>;
+  } | null = null;
   private pinch_: { distance: number; angle: number; middle: PointerSample } | null = null;
   private pen_near_ = false; // or was just now
   private pen_timer_: ReturnType<typeof setTimeout> | null = null;
   private pen_used_ = false;
   private readonly fingers_ = new Set<number>(); // of pointers_
-  private readonly palms_ = new Set<number>(); // touches that are not listened to, until they are lifted
+  // touches that are not listened to, until they are lifted
+  private readonly palms_ = new Set<number>();
   private readonly listeners_: [string, (event: never) => void, AddEventListenerOptions?][] = [];
 
   constructor(
@@ -77,7 +86,8 @@ export class StageInput {
   }
 
   detach(): void {
-    for (const [name, listener] of this.listeners_) this.element_.removeEventListener(name, listener as EventListener);
+    for (const [name, listener] of this.listeners_)
+      this.element_.removeEventListener(name, listener as EventListener);
     this.forget_waiting_touch();
     if (this.pen_timer_) clearTimeout(this.pen_timer_);
   }
@@ -108,7 +118,11 @@ export class StageInput {
     this.handler_.hover(null);
   }
 
-  private listen<E extends Event>(name: string, listener: (event: E) => void, options?: AddEventListenerOptions): void {
+  private listen<E extends Event>(
+    name: string,
+    listener: (event: E) => void,
+    options?: AddEventListenerOptions,
+  ): void {
     this.element_.addEventListener(name, listener as EventListener, options);
     this.listeners_.push([name, listener as (event: never) => void, options]);
   }
@@ -185,7 +199,8 @@ export class StageInput {
 
   private on_move(event: PointerEvent): void {
     if (this.palms_.has(event.pointerId)) return;
-    if (event.pointerType === "pen") this.pen_is_near(this.pointers_.has(event.pointerId) ? null : kPenSilence_ms);
+    if (event.pointerType === "pen")
+      this.pen_is_near(this.pointers_.has(event.pointerId) ? null : kPenSilence_ms);
     const at = this.css_position(event);
     if (this.pointers_.has(event.pointerId)) this.pointers_.set(event.pointerId, at);
     if (this.pinch_) {
@@ -193,7 +208,9 @@ export class StageInput {
       return;
     }
     if (event.pointerType !== "touch") this.handler_.hover(this.to_window(at));
-    this.handler_.free_mouse(event.pointerType === "mouse" && event.buttons === 0 ? this.to_window(at) : null);
+    this.handler_.free_mouse(
+      event.pointerType === "mouse" && event.buttons === 0 ? this.to_window(at) : null,
+    );
     const waiting = this.waiting_touch_;
     if (waiting?.pointer === event.pointerId) {
       if (Math.hypot(at.x - waiting.start.x, at.y - waiting.start.y) < kTouchSlop) return;
@@ -253,7 +270,10 @@ export class StageInput {
     if (!before || !now) return;
     this.pinch_ = now;
     const scale = this.scale_();
-    this.handler_.pan((now.middle.x - before.middle.x) * scale, (now.middle.y - before.middle.y) * scale);
+    this.handler_.pan(
+      (now.middle.x - before.middle.x) * scale,
+      (now.middle.y - before.middle.y) * scale,
+    );
     this.handler_.zoom(before.distance / now.distance, now.middle.x * scale, now.middle.y * scale);
     const turn = now.angle - before.angle;
     this.handler_.twist(Math.atan2(Math.sin(turn), Math.cos(turn)));

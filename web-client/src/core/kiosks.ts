@@ -2,12 +2,18 @@
 
 import type { Kiosk } from "./protocol.gen";
 
-/** A kiosk tells of itself every half a minute, and is said to be seen to a minute: one that says nothing for so long shows nothing, or has no network. */
+/**
+ * A kiosk tells of itself every half a minute, and is said to be seen to a minute: one that says
+ * nothing for so long shows nothing, or has no network.
+ */
 export const kSilent_ms = 3 * 60_000;
 
 export type KioskState = "revoked" | "expired" | "unopened" | "running" | "silent";
 
-export function state_of_kiosk({ revoked, expires, last_seen }: Pick<Kiosk, "revoked" | "expires" | "last_seen">, now = new Date()): KioskState {
+export function state_of_kiosk(
+  { revoked, expires, last_seen }: Pick<Kiosk, "revoked" | "expires" | "last_seen">,
+  now = new Date(),
+): KioskState {
   if (revoked) return "revoked";
   if (expires && new Date(expires) <= now) return "expired";
   if (!last_seen) return "unopened";

@@ -5,9 +5,54 @@ import type { Labels } from "./protocol.gen";
 
 /** Those that are offered; any other tag may be written. */
 export const kCommonLanguages: readonly string[] = [
-  "ar", "bg", "ca", "cs", "da", "de", "el", "en", "es", "et", "eu", "fa", "fi", "fr", "gl", "he", "hi", "hr", "hu", "it", "ja", "ka", "ko", "la",
-  "lt", "lv", "mk", "mt", "nb", "nl", "pl", "pt", "pt-BR", "ro", "ru", "sk", "sl", "sq", "sr", "sv", "sw", "tr", "uk", "ur", "vi", "zh-Hans", "zh-Hant",
-]; // prettier-ignore
+  "ar",
+  "bg",
+  "ca",
+  "cs",
+  "da",
+  "de",
+  "el",
+  "en",
+  "es",
+  "et",
+  "eu",
+  "fa",
+  "fi",
+  "fr",
+  "gl",
+  "he",
+  "hi",
+  "hr",
+  "hu",
+  "it",
+  "ja",
+  "ka",
+  "ko",
+  "la",
+  "lt",
+  "lv",
+  "mk",
+  "mt",
+  "nb",
+  "nl",
+  "pl",
+  "pt",
+  "pt-BR",
+  "ro",
+  "ru",
+  "sk",
+  "sl",
+  "sq",
+  "sr",
+  "sv",
+  "sw",
+  "tr",
+  "uk",
+  "ur",
+  "vi",
+  "zh-Hans",
+  "zh-Hant",
+];
 
 /** As tags are usually written, "pt-BR"; null where it is none. */
 export function well_written_tag(tag: string): string | null {
@@ -28,7 +73,9 @@ export function name_of_language(tag: string): string {
 /** What this person's page calls it: "Spanish"; the tag itself where that is not known. */
 export const language_in_words = (tag: string): string => {
   const locale = well_written_tag(tag);
-  return locale ? (new Intl.DisplayNames([page_locale()], { type: "language" }).of(locale) ?? tag) : tag;
+  return locale
+    ? (new Intl.DisplayNames([page_locale()], { type: "language" }).of(locale) ?? tag)
+    : tag;
 };
 
 export interface LabelRow {
@@ -41,11 +88,16 @@ export type ReadLabels = { labels: Labels } | { row: number; wrong: "no_language
 
 /** One row for each language, by tag. */
 export const rows_of = (labels: Labels, descriptions: Labels = {}): LabelRow[] =>
-  [...new Set([...Object.keys(labels), ...Object.keys(descriptions)])]
-    .sort()
-    .map((language) => ({ language, label: labels[language] ?? "", ...(language in descriptions ? { description: descriptions[language]! } : {}) }));
+  [...new Set([...Object.keys(labels), ...Object.keys(descriptions)])].sort().map((language) => ({
+    language,
+    label: labels[language] ?? "",
+    ...(language in descriptions ? { description: descriptions[language]! } : {}),
+  }));
 
-/** What the rows say; those without a label say nothing. Whether a tag is one is for the server to judge. */
+/**
+ * What the rows say; those without a label say nothing. Whether a tag is one is for the server to
+ * judge.
+ */
 export function labels_of(rows: readonly LabelRow[]): ReadLabels {
   const labels = new Map<string, string>();
   const taken = new Set<string>();
@@ -62,4 +114,8 @@ export function labels_of(rows: readonly LabelRow[]): ReadLabels {
 
 /** The descriptions of rows in which labels_of() finds nothing wrong. */
 export const descriptions_of = (rows: readonly LabelRow[]): Labels =>
-  Object.fromEntries(rows.map(({ language, description = "" }) => [language.trim(), description.trim()]).filter(([, text]) => text !== ""));
+  Object.fromEntries(
+    rows
+      .map(({ language, description = "" }) => [language.trim(), description.trim()])
+      .filter(([, text]) => text !== ""),
+  );

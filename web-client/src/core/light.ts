@@ -1,4 +1,5 @@
-// Where raking light comes from, as a point of a round pad: the middle is the viewer's own direction, the rim the side.
+// Where raking light comes from, as a point of a round pad: the middle is the viewer's own
+// direction, the rim the side.
 
 import type { Point3 } from "./protocol.gen";
 

@@ -1,4 +1,5 @@
-// The language of the page, and how numbers, moments and lists are written in it. Set once, before anything is shown.
+// The language of the page, and how numbers, moments and lists are written in it. Set once, before
+// anything is shown.
 
 export const kPageLanguages = ["en", "de", "es"] as const;
 export type PageLanguage = (typeof kPageLanguages)[number];
@@ -8,23 +9,41 @@ let languages: readonly string[] = [locale];
 let decimal = ".";
 
 const language_of = (tag: string): string => tag.toLowerCase().split("-")[0]!;
-const is_page_language = (language: string): language is PageLanguage => (kPageLanguages as readonly string[]).includes(language);
+const is_page_language = (language: string): language is PageLanguage =>
+  (kPageLanguages as readonly string[]).includes(language);
 
-/** What was chosen, else the first of the browser's languages that the page is written in, else English. */
+/**
+ * What was chosen, else the first of the browser's languages that the page is written in, else
+ * English.
+ */
 export function page_language(chosen: string | null, browser: readonly string[]): PageLanguage {
-  return [...(chosen === null ? [] : [chosen]), ...browser].map(language_of).find(is_page_language) ?? "en";
+  return (
+    [...(chosen === null ? [] : [chosen]), ...browser].map(language_of).find(is_page_language) ??
+    "en"
+  );
 }
 
 /**
- * From now on numbers and moments are written as in `language`, in the browser's own variety of it where it names one ("de-CH"), and data with
- * names in several languages are called by the language that was chosen, or else by the browser's.
+ * From now on numbers and moments are written as in `language`, in the browser's own variety of it
+ * where it names one ("de-CH"), and data with names in several languages are called by the language
+ * that was chosen, or else by the browser's.
  */
-export function set_locale(language: PageLanguage, chosen: boolean, browser: readonly string[]): void {
+export function set_locale(
+  language: PageLanguage,
+  chosen: boolean,
+  browser: readonly string[],
+): void {
   const usual = language === "en" ? "en-GB" : language;
-  const known = browser.filter((tag) => Intl.NumberFormat.supportedLocalesOf(tag, { localeMatcher: "lookup" }).length > 0);
+  const known = browser.filter(
+    (tag) => Intl.NumberFormat.supportedLocalesOf(tag, { localeMatcher: "lookup" }).length > 0,
+  );
   locale = known.find((tag) => tag.includes("-") && language_of(tag) === language) ?? usual;
-  languages = chosen || browser.length === 0 ? [locale, ...browser.filter((tag) => tag !== locale)] : browser;
-  decimal = new Intl.NumberFormat(locale, { numberingSystem: "latn" }).formatToParts(0.5).find(({ type }) => type === "decimal")?.value ?? ".";
+  languages =
+    chosen || browser.length === 0 ? [locale, ...browser.filter((tag) => tag !== locale)] : browser;
+  decimal =
+    new Intl.NumberFormat(locale, { numberingSystem: "latn" })
+      .formatToParts(0.5)
+      .find(({ type }) => type === "decimal")?.value ?? ".";
 }
 
 /** The tag whose rules numbers, moments and plurals follow: "en-GB". */
@@ -35,21 +54,33 @@ export const person_languages = (): readonly string[] => languages;
 export const format_count = (n: number): string => n.toLocaleString(locale);
 /** With that many decimals, none grouped: for coordinates. */
 export const format_fixed = (value: number, decimals: number): string =>
-  value.toLocaleString(locale, { minimumFractionDigits: decimals, maximumFractionDigits: decimals, useGrouping: false });
-export const format_list = (items: readonly string[]): string => new Intl.ListFormat(locale, { style: "short", type: "unit" }).format(items);
-/** Numbers that belong together, as the coordinates of a place: parted by what is no decimal sign. */
-export const format_place = (numbers: readonly string[]): string => numbers.join(decimal === "," ? "; " : ", ");
+  value.toLocaleString(locale, {
+    minimumFractionDigits: decimals,
+    maximumFractionDigits: decimals,
+    useGrouping: false,
+  });
+export const format_list = (items: readonly string[]): string =>
+  new Intl.ListFormat(locale, { style: "short", type: "unit" }).format(items);
+/**
+ * Numbers that belong together, as the coordinates of a place: parted by what is no decimal sign.
+ */
+export const format_place = (numbers: readonly string[]): string =>
+  numbers.join(decimal === "," ? "; " : ", ");
 
 /** A number with all of its digits, as it is typed into a field. */
 export const typed_number = (value: number): string => with_decimal_sign(String(value));
-/** Between the cells of CSV files, as spreadsheets of the language's countries take them: a comma stands in their numbers. */
+/**
+ * Between the cells of CSV files, as spreadsheets of the language's countries take them: a comma
+ * stands in their numbers.
+ */
 export const csv_separator = (): "comma" | "semicolon" => (decimal === "," ? "semicolon" : "comma");
 /** What JavaScript wrote with a point. */
 export const with_decimal_sign = (plain: string): string => plain.replace(".", decimal);
 
 /**
- * What was typed into a field: with the decimal sign of the language, or a point. NaN where it is no number, and where it may be either of two:
- * in languages with a decimal comma "1.500" is not told from a grouped 1500. Nothing is guessed.
+ * What was typed into a field: with the decimal sign of the language, or a point. NaN where it is
+ * no number, and where it may be either of two: in languages with a decimal comma "1.500" is not
+ * told from a grouped 1500. Nothing is guessed.
  */
 export function read_number(typed: string): number {
   const text = typed.trim();

@@ -1,24 +1,48 @@
 // Looking with somebody else: where a camera must stand to see what another one sees.
 
-import { bounding_radius, centre, kFrames, kHalfFieldTangent, place_of, type CameraMessage, type OrbitCamera, type Place } from "./camera";
+import {
+  bounding_radius,
+  centre,
+  kFrames,
+  kHalfFieldTangent,
+  place_of,
+  type CameraMessage,
+  type OrbitCamera,
+  type Place,
+} from "./camera";
 import { add, dot, length, scale, subtract, type Vec3 } from "./vector";
 
-const kNearest = 0.02; // the target before the eye, relative to the model's radius, where the model's middle is behind
-const kArrived = 5e-4; // lengths relative to the distance, radians: less than a pixel of most windows
+// the target before the eye, relative to the model's radius, where the model's middle is behind
+const kNearest = 0.02;
+// lengths relative to the distance, radians: less than a pixel of most windows
+const kArrived = 5e-4;
 
-/** For `own`: the eye and the direction of the other camera, and a field that holds all of its window, whatever shape the own one has. A
- *  tilted horizon and a window beside the axis, which this page's cameras never have, are not taken over. */
-export function place_like(theirs: Pick<CameraMessage, "view" | "projection">, own: OrbitCamera): Place {
+/**
+ * For `own`: the eye and the direction of the other camera, and a field that holds all of its
+ * window, whatever shape the own one has. A tilted horizon and a window beside the axis, which this
+ * page's cameras never have, are not taken over.
+ */
+export function place_like(
+  theirs: Pick<CameraMessage, "view" | "projection">,
+  own: OrbitCamera,
+): Place {
   const { view, projection } = theirs;
   const row = (r: number): Vec3 => [view[r]!, view[4 + r]!, view[8 + r]!];
   const enlarged = length(row(2));
-  const [right, up, back] = [row(0), row(1), row(2)].map((axis) => scale(axis, 1 / length(axis))) as [Vec3, Vec3, Vec3];
-  const eye = scale(add(add(scale(right, view[12]!), scale(up, view[13]!)), scale(back, view[14]!)), -1 / enlarged);
+  const [right, up, back] = [row(0), row(1), row(2)].map((axis) =>
+    scale(axis, 1 / length(axis)),
+  ) as [Vec3, Vec3, Vec3];
+  const eye = scale(
+    add(add(scale(right, view[12]!), scale(up, view[13]!)), scale(back, view[14]!)),
+    -1 / enlarged,
+  );
   const perspective = projection[11] !== 0;
   const [across, along] = [1 / Math.abs(projection[0]!), 1 / Math.abs(projection[5]!)];
   const half = Math.max(along, (across * own.height) / own.width);
   const to_middle = dot(subtract(eye, centre(own.bounds)), back);
-  const depth = perspective ? Math.max(to_middle, bounding_radius(own.bounds) * kNearest) : to_middle;
+  const depth = perspective
+    ? Math.max(to_middle, bounding_radius(own.bounds) * kNearest)
+    : to_middle;
   const frame = kFrames[own.up];
   return {
     target: subtract(eye, scale(back, depth)),

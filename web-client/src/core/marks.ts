@@ -8,17 +8,23 @@ import { dot, length, scale, subtract } from "./vector";
 
 export type MarkKind = "line" | "point";
 
-export const holds_marks = (column: Pick<Column, "kind">): boolean => column.kind === "line" || column.kind === "point";
-export const mark_columns = (table: Pick<Table, "columns">, kind: MarkKind): Column[] => table.columns.filter((column) => column.kind === kind);
+export const holds_marks = (column: Pick<Column, "kind">): boolean =>
+  column.kind === "line" || column.kind === "point";
+export const mark_columns = (table: Pick<Table, "columns">, kind: MarkKind): Column[] =>
+  table.columns.filter((column) => column.kind === kind);
 
-export const is_list_of_marks = (value: CellValue | undefined): value is Mark[] => Array.isArray(value) && typeof value[0] === "object";
+export const is_list_of_marks = (value: CellValue | undefined): value is Mark[] =>
+  Array.isArray(value) && typeof value[0] === "object";
 
 /** Those of a cell; none where it holds something else. */
-export const marks_of = (value: CellValue | undefined): Mark[] => (is_list_of_marks(value) ? value : []);
+export const marks_of = (value: CellValue | undefined): Mark[] =>
+  is_list_of_marks(value) ? value : [];
 
 /** From place to place, in the unit of the model that it lies on. */
 export function mark_length({ coordinates }: Pick<Mark, "coordinates">): number {
-  return coordinates.slice(1).reduce((sum, place, index) => sum + length(subtract(place, coordinates[index]!)), 0);
+  return coordinates
+    .slice(1)
+    .reduce((sum, place, index) => sum + length(subtract(place, coordinates[index]!)), 0);
 }
 
 export interface MarkSummary {
@@ -27,11 +33,18 @@ export interface MarkSummary {
   metres: number; // of lines on the model
 }
 
-export function summary_of(value: CellValue | undefined, model: Pick<Model, "id" | "unit">): MarkSummary {
+export function summary_of(
+  value: CellValue | undefined,
+  model: Pick<Model, "id" | "unit">,
+): MarkSummary {
   const marks = marks_of(value);
   const here = marks.filter((mark) => mark.model === model.id);
   const units = here.reduce((sum, mark) => sum + mark_length(mark), 0);
-  return { here: here.length, elsewhere: marks.length - here.length, metres: units * metres_per(model.unit) };
+  return {
+    here: here.length,
+    elsewhere: marks.length - here.length,
+    metres: units * metres_per(model.unit),
+  };
 }
 
 /** Of a line "1.24 m", of a point "12.1, 4.25, 30" in the model's unit. */
@@ -40,14 +53,21 @@ export function describe_mark(mark: Mark, kind: MarkKind, model: Pick<Model, "un
   return `${format_place(mark.coordinates[0]!.map((number) => typed_number(Number(number.toPrecision(5)))))} ${model.unit}`;
 }
 
-const kLongestStep = 40; // times what it is where the surface is seen straight: between the places of two neighbouring pixels, at 1.5° or less
+// times what it is where the surface is seen straight: between the places of two neighbouring
+// pixels, at 1.5° or less
+const kLongestStep = 40;
 
 /**
- * The parts of a line on a surface, of what was found at one step of it after the other. Where nothing was hit, and where the next place lies far
- * before or behind the last, as at the edge of a handle, one part ends and another begins. `step_at`: how far two steps are from each other at a
+ * The parts of a line on a surface, of what was found at one step of it after the other. Where
+ * nothing was hit, and where the next place lies far before or behind the last, as at the edge of a
+ * handle, one part ends and another begins. `step_at`: how far two steps are from each other at a
  * place where the surface is seen straight, the length of a pixel there.
  */
-export function parts_of_line<T>(found: readonly (T | null)[], place_of: (each: T) => MarkPlace, step_at: (place: MarkPlace) => number): T[][] {
+export function parts_of_line<T>(
+  found: readonly (T | null)[],
+  place_of: (each: T) => MarkPlace,
+  step_at: (place: MarkPlace) => number,
+): T[][] {
   const parts: T[][] = [];
   let last: MarkPlace | null = null;
   for (const each of found) {
@@ -61,15 +81,22 @@ export function parts_of_line<T>(found: readonly (T | null)[], place_of: (each: 
   return parts;
 }
 
-/** Leaves out places that are no farther than the tolerance there from the line that remains (Ramer 1972, Douglas and Peucker 1973). */
-export function simplify_line(places: readonly MarkPlace[], tolerance_at: (place: MarkPlace) => number): MarkPlace[] {
+/**
+ * Leaves out places that are no farther than the tolerance there from the line that remains (Ramer
+ * 1972, Douglas and Peucker 1973).
+ */
+export function simplify_line(
+  places: readonly MarkPlace[],
+  tolerance_at: (place: MarkPlace) => number,
+): MarkPlace[] {
   const kept = new Set([0, places.length - 1]);
   const parts: [number, number][] = [[0, places.length - 1]];
   for (let part = parts.pop(); part; part = parts.pop()) {
     const [first, last] = part;
     let [farthest, most] = [-1, 1];
     for (let at = first + 1; at < last; ++at) {
-      const share = distance_to_segment(places[at]!, places[first]!, places[last]!) / tolerance_at(places[at]!);
+      const share =
+        distance_to_segment(places[at]!, places[first]!, places[last]!) / tolerance_at(places[at]!);
       if (share > most) [farthest, most] = [at, share];
     }
     if (farthest < 0) continue;

@@ -38,13 +38,15 @@ function area_text(square_metres: number, digits: number): string {
 }
 
 /** A length in metres with the unit that suits its size: "0.8 mm", "12.4 cm", "3.1 m". */
-export const format_length = (metres: number): string => length_text(metres, Math.abs(metres) < 0.01 ? 2 : 3);
+export const format_length = (metres: number): string =>
+  length_text(metres, Math.abs(metres) < 0.01 ? 2 : 3);
 export const format_area = (square_metres: number): string => area_text(square_metres, 3);
 
 export const kMeasuredDigits = 4;
 /** What was measured: "12.43 cm". */
 export const measured_length = (metres: number): string => length_text(metres, kMeasuredDigits);
-export const measured_area = (square_metres: number): string => area_text(square_metres, kMeasuredDigits);
+export const measured_area = (square_metres: number): string =>
+  area_text(square_metres, kMeasuredDigits);
 
 /** Three sides in one unit, for "105 × 99 × 91 mm". */
 export function format_size(sides_in_metres: readonly number[]): string {
@@ -57,8 +59,13 @@ export function format_size(sides_in_metres: readonly number[]): string {
   return `${sides_in_metres.map(side).join(" × ")} ${unit}`;
 }
 
-/** What is asked about a model first: while nobody has confirmed it, what the server proposes where nobody has said otherwise. */
-export function likely_scale(model: Pick<Model, "unit" | "unit_assumed" | "scale_verified" | "up" | "proposal">): Pick<Model, "unit" | "up"> {
+/**
+ * What is asked about a model first: while nobody has confirmed it, what the server proposes where
+ * nobody has said otherwise.
+ */
+export function likely_scale(
+  model: Pick<Model, "unit" | "unit_assumed" | "scale_verified" | "up" | "proposal">,
+): Pick<Model, "unit" | "up"> {
   const { proposal } = model;
   if (model.scale_verified || !proposal) return { unit: model.unit, up: model.up };
   return {
@@ -66,7 +73,8 @@ export function likely_scale(model: Pick<Model, "unit" | "unit_assumed" | "scale
     up: model.up === kUpWithoutProposal ? proposal.up : model.up,
   };
 }
-const kUpWithoutProposal = "z"; // of models whose importer said nothing and did not ask for the proposal
+// of models whose importer said nothing and did not ask for the proposal
+const kUpWithoutProposal = "z";
 
 export function format_bytes(bytes: number): string {
   if (bytes < 1e6) return `${format_number(bytes / 1e3)} kB`;
@@ -84,7 +92,11 @@ export function detail_choices(
   atlas: Pick<Atlas, "lowest_resolution" | "texel_area_max_m2" | "texel_sizes">,
 ): DetailChoice[] {
   const choices: DetailChoice[] = [];
-  for (let resolution = Math.max(2048, atlas.lowest_resolution); resolution <= 8192; resolution *= 2) {
+  for (
+    let resolution = Math.max(2048, atlas.lowest_resolution);
+    resolution <= 8192;
+    resolution *= 2
+  ) {
     const measured = atlas.texel_sizes?.find((size) => size.resolution === resolution);
     choices.push({
       resolution,
@@ -97,7 +109,10 @@ export function detail_choices(
 }
 
 /** A round length (1, 2 or 5 × 10ⁿ metres) of at most `max_px` pixels. */
-export function scale_bar(metres_per_px: number, max_px: number): { metres: number; px: number; label: string } {
+export function scale_bar(
+  metres_per_px: number,
+  max_px: number,
+): { metres: number; px: number; label: string } {
   const longest = metres_per_px * max_px;
   const power = Math.pow(10, Math.floor(Math.log10(longest)));
   const factor = longest / power >= 5 ? 5 : longest / power >= 2 ? 2 : 1;
@@ -111,7 +126,9 @@ export function ticks(min: number, max: number, most = 5): number[] {
   if (!(span > 0)) return [min];
   const rough = span / Math.max(1, most - 1);
   const power = Math.pow(10, Math.floor(Math.log10(rough)));
-  const step = [1, 2, 2.5, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= rough * 0.999)!;
+  const step = [1, 2, 2.5, 5, 10]
+    .map((factor) => factor * power)
+    .find((candidate) => candidate >= rough * 0.999)!;
   const found: number[] = [];
   for (let index = Math.ceil(min / step - 1e-9); index * step <= max + step * 1e-9; ++index) {
     found.push(Number((index * step).toPrecision(12)));

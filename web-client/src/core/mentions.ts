@@ -17,11 +17,16 @@ export function mention_begun(text: string, caret: number): MentionBegun | null 
   return found ? { at: found.index, word: found[1]! } : null;
 }
 
-/** Those whose name begins so, then those with a part of name or full name that does, in any case and without regard to accents. */
+/**
+ * Those whose name begins so, then those with a part of name or full name that does, in any case
+ * and without regard to accents.
+ */
 export function people_like(people: readonly ProjectPerson[], word: string): ProjectPerson[] {
   const wanted = plain(word);
   const begins = people.filter(({ user }) => plain(user).startsWith(wanted));
-  const within = people.filter(({ user, full_name }) => `${user} ${full_name}`.split(/[\s._@-]+/).some((part) => plain(part).startsWith(wanted)));
+  const within = people.filter(({ user, full_name }) =>
+    `${user} ${full_name}`.split(/[\s._@-]+/).some((part) => plain(part).startsWith(wanted)),
+  );
   return [...new Set([...begins, ...within])].slice(0, kMostPeople);
 }
 

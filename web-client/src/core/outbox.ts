@@ -1,5 +1,5 @@
-// Everything this page asked the server to change and that is not known to be durable yet, in the order it was asked.
-// Ids never change, so sending a message again paints nothing twice.
+// Everything this page asked the server to change and that is not known to be durable yet, in the
+// order it was asked. Ids never change, so sending a message again paints nothing twice.
 
 import { new_id } from "./api";
 import type { EditRequest, Redo, StrokeBegin, StrokeEnd, StrokeExtend, Undo } from "./protocol.gen";
@@ -27,7 +27,10 @@ export class Outbox {
 
   /** Changes that are not durable. */
   get waiting(): number {
-    return this.entries_.reduce((sum, entry) => sum + (entry.kind === "stroke" ? entry.parts.length : 1), 0);
+    return this.entries_.reduce(
+      (sum, entry) => sum + (entry.kind === "stroke" ? entry.parts.length : 1),
+      0,
+    );
   }
 
   add(message: ChangeMessage): void {
@@ -48,7 +51,10 @@ export class Outbox {
     }
   }
 
-  /** What an earlier page left goes before what this one asked for. Strokes that it was drawing end. Returns how many changes are new here. */
+  /**
+   * What an earlier page left goes before what this one asked for. Strokes that it was drawing end.
+   * Returns how many changes are new here.
+   */
   adopt(messages: readonly ChangeMessage[]): number {
     const before = this.waiting;
     const left = messages.filter((message) => !this.has(message.id));
@@ -56,7 +62,8 @@ export class Outbox {
     this.entries_ = [];
     for (const message of left) this.add(message);
     for (const entry of [...this.entries_])
-      if (entry.kind === "stroke" && !entry.end) this.add({ op: "stroke.end", id: new_id(), stroke: entry.begin.stroke });
+      if (entry.kind === "stroke" && !entry.end)
+        this.add({ op: "stroke.end", id: new_id(), stroke: entry.begin.stroke });
     this.entries_.push(...own);
     return this.waiting - before;
   }
@@ -70,24 +77,34 @@ export class Outbox {
     return this.entries_.some((entry) =>
       entry.kind === "single"
         ? entry.message.id === id
-        : entry.begin.id === id || entry.end?.id === id || entry.parts.some((part) => part.id === id),
+        : entry.begin.id === id ||
+          entry.end?.id === id ||
+          entry.parts.some((part) => part.id === id),
     );
   }
 
-  saved(answer: { id?: string | undefined; stroke?: string | undefined; n?: number | undefined }): void {
+  saved(answer: {
+    id?: string | undefined;
+    stroke?: string | undefined;
+    n?: number | undefined;
+  }): void {
     this.shrink(() => {
       if (answer.stroke !== undefined && answer.n !== undefined) {
         const entry = this.stroke(answer.stroke);
         if (entry) entry.parts = entry.parts.filter((part) => part.n !== answer.n);
       } else if (answer.id !== undefined) {
-        this.entries_ = this.entries_.filter((entry) => entry.kind !== "single" || entry.message.id !== answer.id);
+        this.entries_ = this.entries_.filter(
+          (entry) => entry.kind !== "single" || entry.message.id !== answer.id,
+        );
       }
     });
   }
 
   /** Whether the message is a stroke's batch, and one before it waits, too. */
   follows_waiting_batch(id: string): boolean {
-    return this.entries_.some((entry) => entry.kind === "stroke" && entry.parts.findIndex((part) => part.id === id) > 0);
+    return this.entries_.some(
+      (entry) => entry.kind === "stroke" && entry.parts.findIndex((part) => part.id === id) > 0,
+    );
   }
 
   /** The server keeps all batches of the stroke up to n. */
@@ -101,14 +118,18 @@ export class Outbox {
     return this.shrink(() => {
       for (const entry of this.entries_)
         if (entry.kind === "stroke") entry.parts = entry.parts.filter((part) => part.id !== id);
-      this.entries_ = this.entries_.filter((entry) => (entry.kind === "single" ? entry.message.id : entry.begin.id) !== id);
+      this.entries_ = this.entries_.filter(
+        (entry) => (entry.kind === "single" ? entry.message.id : entry.begin.id) !== id,
+      );
     });
   }
 
   /** What to send again, in order. */
   messages(): ChangeMessage[] {
     return this.entries_.flatMap((entry): ChangeMessage[] =>
-      entry.kind === "single" ? [entry.message] : [entry.begin, ...entry.parts, ...(entry.end ? [entry.end] : [])],
+      entry.kind === "single"
+        ? [entry.message]
+        : [entry.begin, ...entry.parts, ...(entry.end ? [entry.end] : [])],
     );
   }
 
@@ -118,11 +139,16 @@ export class Outbox {
     );
   }
 
-  /** Strokes that ended and of which every batch is saved go, too. Returns the ids of what went; `besides`: came meanwhile. */
+  /**
+   * Strokes that ended and of which every batch is saved go, too. Returns the ids of what went;
+   * `besides`: came meanwhile.
+   */
   private shrink(change: () => void, besides: readonly ChangeMessage[] = []): string[] {
     const before = [...this.messages(), ...besides];
     change();
-    this.entries_ = this.entries_.filter((entry) => entry.kind === "single" || entry.end === null || entry.parts.length > 0);
+    this.entries_ = this.entries_.filter(
+      (entry) => entry.kind === "single" || entry.end === null || entry.parts.length > 0,
+    );
     const left = new Set(this.messages());
     const gone = before.filter((message) => !left.has(message)).map((message) => message.id);
     if (gone.length > 0) this.dropped_(gone);

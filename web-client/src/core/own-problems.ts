@@ -1,4 +1,5 @@
-// What the page itself says of a call that failed, where no server said it. The words come with the language; core/ has none of its own.
+// What the page itself says of a call that failed, where no server said it. The words come with the
+// language; core/ has none of its own.
 
 /** What happened, and what to do. */
 type Told = readonly [title: string, detail: string];

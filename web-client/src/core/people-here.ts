@@ -1,4 +1,5 @@
-// Who is at the model: viewers (connections) as people, and the order and colours they are shown in.
+// Who is at the model: viewers (connections) as people, and the order and colours they are shown
+// in.
 
 import type { PresenceUser } from "./protocol.gen";
 import type { Vec3 } from "./vector";
@@ -20,7 +21,8 @@ export interface PersonHere {
 export function people_here(viewers: readonly PresenceUser[], own_session: string): PersonHere[] {
   const own = viewers.find(({ session }) => session === own_session)?.name;
   const by_name = new Map<string, PresenceUser[]>();
-  for (const viewer of viewers) by_name.set(viewer.name, [...(by_name.get(viewer.name) ?? []), viewer]);
+  for (const viewer of viewers)
+    by_name.set(viewer.name, [...(by_name.get(viewer.name) ?? []), viewer]);
   const people = [...by_name].map(([user, windows]): PersonHere => {
     const others = windows.filter(({ session }) => session !== own_session);
     return {
@@ -28,7 +30,11 @@ export function people_here(viewers: readonly PresenceUser[], own_session: strin
       full_name: windows.find(({ full_name }) => full_name)?.full_name ?? "",
       color: windows[0]!.color,
       own: user === own,
-      viewer: others.find(({ leading }) => leading) ?? others.find(({ pointer }) => pointer) ?? others[0] ?? null,
+      viewer:
+        others.find(({ leading }) => leading) ??
+        others.find(({ pointer }) => pointer) ??
+        others[0] ??
+        null,
       leading: windows.some(({ leading }) => leading),
       following: windows.flatMap(({ following }) => following ?? []),
     };
@@ -41,7 +47,11 @@ export const followers_of = (people: readonly PersonHere[], session: string): Pe
   people.filter(({ following }) => following.includes(session));
 
 /** Whether following `session` would lead back to this window: then the server refuses it. */
-export function leads_back(viewers: readonly PresenceUser[], session: string, own_session: string): boolean {
+export function leads_back(
+  viewers: readonly PresenceUser[],
+  session: string,
+  own_session: string,
+): boolean {
   let ahead: string | undefined = session;
   for (let steps = 0; ahead !== undefined && steps <= viewers.length; ++steps) {
     if (ahead === own_session) return true;
@@ -55,7 +65,8 @@ const kDarkInk = "#20292a";
 const kLightInk = "#ffffff";
 
 /** What is read best on a colour (#rrggbb): the ink with the larger contrast ratio of WCAG 2. */
-export const ink_on = (color: string): string => (contrast(color, kLightInk) >= contrast(color, kDarkInk) ? kLightInk : kDarkInk);
+export const ink_on = (color: string): string =>
+  contrast(color, kLightInk) >= contrast(color, kDarkInk) ? kLightInk : kDarkInk;
 
 export function contrast(a: string, b: string): number {
   const [less, more] = [luminance(a), luminance(b)].sort((x, y) => x - y) as [number, number];

@@ -1,4 +1,5 @@
-// Where a curve and its axes lie in a plot: round ticks, units, one scale for both axes where that is asked for. Knows nothing of how it is drawn.
+// Where a curve and its axes lie in a plot: round ticks, units, one scale for both axes where that
+// is asked for. Knows nothing of how it is drawn.
 
 import { format_fixed } from "./locale";
 import { format_number, length_unit, ticks } from "./measure";
@@ -55,7 +56,9 @@ const kTickSpace_px = { x: 48, y: 22 };
 const kTop_px = 24; // room for the name of the y axis
 const kBottom_px = 38; // for ticks and the name of the x axis
 const kRight_px = 14;
-const kLeastSlope = 1e-5; // of the heights' range to the distance: what is flatter is noise, and is not blown up to look like relief
+// of the heights' range to the distance: what is flatter is noise, and is not blown up to look like
+// relief
+const kLeastSlope = 1e-5;
 
 /** Round numbers between the limits with as many decimals as all of them need. */
 export function tick_labels(numbers: readonly number[]): string[] {
@@ -63,15 +66,22 @@ export function tick_labels(numbers: readonly number[]): string[] {
   if (first === undefined) return [];
   const step = second === undefined ? Math.abs(first) : Math.abs(second - first);
   const size = Math.max(...numbers.map(Math.abs));
-  if (size >= 1e9 || (size > 0 && step < 1e-9)) return numbers.map((each) => format_number(each, 6));
-  const decimals = Array.from({ length: 12 }, (_, n) => n).find((n) => Math.abs(step * 10 ** n - Math.round(step * 10 ** n)) < 1e-6 * 10 ** n * step) ?? 11;
+  if (size >= 1e9 || (size > 0 && step < 1e-9))
+    return numbers.map((each) => format_number(each, 6));
+  const decimals =
+    Array.from({ length: 12 }, (_, n) => n).find(
+      (n) => Math.abs(step * 10 ** n - Math.round(step * 10 ** n)) < 1e-6 * 10 ** n * step,
+    ) ?? 11;
   return numbers.map((each) => format_fixed(each === 0 ? 0 : each, decimals));
 }
 
 export function make_plot({ parts, y_unit, equal, width, height }: PlotOf): Plot {
   const known = parts.flat().filter((each): each is { x: number; y: number } => each.y !== null);
   const x_max = Math.max(...parts.flat().map(({ x }) => x), 0) || 1e-9;
-  const [low, high] = range_of(known.map(({ y }) => y), y_unit === null ? x_max * kLeastSlope : null);
+  const [low, high] = range_of(
+    known.map(({ y }) => y),
+    y_unit === null ? x_max * kLeastSlope : null,
+  );
   const of_lengths = y_unit === null;
   const as_high = equal && of_lengths;
 
@@ -81,7 +91,11 @@ export function make_plot({ parts, y_unit, equal, width, height }: PlotOf): Plot
   const x_factor = x_length.per_metre;
   const y_factor = of_lengths ? y_length.per_metre : 1;
 
-  const [top, bottom, right] = [kTop_px, Math.max(kTop_px + 1, height - kBottom_px), width - kRight_px];
+  const [top, bottom, right] = [
+    kTop_px,
+    Math.max(kTop_px + 1, height - kBottom_px),
+    width - kRight_px,
+  ];
   const most_y = Math.max(2, Math.floor((bottom - top) / kTickSpace_px.y) + 1);
   const left_of = (limits: readonly [number, number]): number => {
     const labels = tick_labels(ticks(limits[0] * y_factor, limits[1] * y_factor, most_y));
@@ -103,10 +117,20 @@ export function make_plot({ parts, y_unit, equal, width, height }: PlotOf): Plot
 
   const x_at = (x: number): number => left + (x / limits.x) * (right - left);
   const y_at = (y: number): number => bottom - ((y - y_min) / (y_max - y_min)) * (bottom - top);
-  const axis = (unit: string, factor: number, min: number, max: number, most: number, at: (each: number) => number): PlotAxis => {
+  const axis = (
+    unit: string,
+    factor: number,
+    min: number,
+    max: number,
+    most: number,
+    at: (each: number) => number,
+  ): PlotAxis => {
     const found = ticks(min * factor, max * factor, most);
     const labels = tick_labels(found);
-    return { unit, ticks: found.map((each, index) => ({ at: at(each / factor), label: labels[index]! })) };
+    return {
+      unit,
+      ticks: found.map((each, index) => ({ at: at(each / factor), label: labels[index]! })),
+    };
   };
   return {
     width,
@@ -115,7 +139,14 @@ export function make_plot({ parts, y_unit, equal, width, height }: PlotOf): Plot
     right,
     top,
     bottom,
-    x: axis(x_length.unit, x_factor, 0, x_max, Math.max(2, Math.floor((x_at(x_max) - left) / kTickSpace_px.x) + 1), x_at),
+    x: axis(
+      x_length.unit,
+      x_factor,
+      0,
+      x_max,
+      Math.max(2, Math.floor((x_at(x_max) - left) / kTickSpace_px.x) + 1),
+      x_at,
+    ),
     y: axis(y_unit ?? y_length.unit, y_factor, y_min, y_max, most_y, y_at),
     curves: parts.flatMap((part) => runs_of(part).map((run) => path_of(run, x_at, y_at))),
     breaks: parts.slice(1).flatMap((part) => (part[0] ? [x_at(part[0].x)] : [])),
@@ -125,14 +156,18 @@ export function make_plot({ parts, y_unit, equal, width, height }: PlotOf): Plot
   };
 }
 
-/** A little wider than the numbers. Where they differ by less than `noise`, so wide that they look alike. */
+/**
+ * A little wider than the numbers. Where they differ by less than `noise`, so wide that they look
+ * alike.
+ */
 function range_of(numbers: readonly number[], noise: number | null): [number, number] {
   let [min, max] = [Infinity, -Infinity];
   for (const each of numbers) [min, max] = [Math.min(min, each), Math.max(max, each)];
   if (min > max) return [0, 1];
   const size = Math.max(Math.abs(min), Math.abs(max));
   const flat = noise ?? size * 1e-6;
-  const span = max - min > flat ? max - min : (noise === null ? size / 5 : noise / kLeastSlope / 10) || 1;
+  const span =
+    max - min > flat ? max - min : (noise === null ? size / 5 : noise / kLeastSlope / 10) || 1;
   const middle = (min + max) / 2;
   return [middle - span * 0.54, middle + span * 0.54];
 }
@@ -151,7 +186,11 @@ function runs_of(part: readonly PlotPoint[]): { x: number; y: number }[][] {
 }
 
 /** A single point is seen, too, as the ends of its line are round. */
-function path_of(run: readonly { x: number; y: number }[], x_at: (x: number) => number, y_at: (y: number) => number): string {
+function path_of(
+  run: readonly { x: number; y: number }[],
+  x_at: (x: number) => number,
+  y_at: (y: number) => number,
+): string {
   const points = run.map(({ x, y }) => `${x_at(x).toFixed(2)} ${y_at(y).toFixed(2)}`);
   return `M${points.join("L")}${points.length === 1 ? "h0.01" : ""}`;
 }

@@ -1,5 +1,5 @@
-// The surface along a line, as the server answers it, made ready to be told and drawn: how far each place is along the surface, where the line
-// leaves it, and what a layer holds there.
+// The surface along a line, as the server answers it, made ready to be told and drawn: how far each
+// place is along the surface, where the line leaves it, and what a layer holds there.
 
 import { parts_of_line, simplify_line } from "./marks";
 import type { ProfileSample } from "./protocol.gen";
@@ -18,7 +18,11 @@ export interface ProfilePlace {
 export type ProfileParts = readonly (readonly ProfilePlace[])[];
 
 /** What lies between two parts (see `parts_of_line`) adds nothing to the distances. */
-export function profile_parts(samples: readonly ProfileSample[], step_at: (place: Vec3) => number, layer: string | null): ProfileParts {
+export function profile_parts(
+  samples: readonly ProfileSample[],
+  step_at: (place: Vec3) => number,
+  layer: string | null,
+): ProfileParts {
   const found = samples.map(({ point: { hit, position, normal, values } }): ProfilePlace | null => {
     if (!hit || !position) return null;
     const value = layer === null ? undefined : values?.[layer];
@@ -41,16 +45,35 @@ export function profile_parts(samples: readonly ProfileSample[], step_at: (place
 }
 
 /** Along the surface, without the gaps. */
-export const length_of = (parts: ProfileParts): number => parts[parts.length - 1]?.at(-1)?.along ?? 0;
+export const length_of = (parts: ProfileParts): number =>
+  parts[parts.length - 1]?.at(-1)?.along ?? 0;
 
 /** Whether the line comes as near to each of the places as `reach_at` allows there. */
-export const passes_through = (parts: ProfileParts, places: readonly Vec3[], reach_at: (place: Vec3) => number): boolean =>
-  places.every((place) => parts.some((part) => part.some((each) => length(subtract(each.place, place)) <= reach_at(place))));
+export const passes_through = (
+  parts: ProfileParts,
+  places: readonly Vec3[],
+  reach_at: (place: Vec3) => number,
+): boolean =>
+  places.every((place) =>
+    parts.some((part) =>
+      part.some((each) => length(subtract(each.place, place)) <= reach_at(place)),
+    ),
+  );
 
-/** Only what its course needs to be drawn: no place farther than the tolerance there is left out. */
-export function simplify_profile(parts: ProfileParts, tolerance_at: (place: Vec3) => number): ProfileParts {
+/**
+ * Only what its course needs to be drawn: no place farther than the tolerance there is left out.
+ */
+export function simplify_profile(
+  parts: ProfileParts,
+  tolerance_at: (place: Vec3) => number,
+): ProfileParts {
   return parts.map((part) => {
-    const kept = new Set<Vec3>(simplify_line(part.map(({ place }) => place as [number, number, number]), tolerance_at));
+    const kept = new Set<Vec3>(
+      simplify_line(
+        part.map(({ place }) => place as [number, number, number]),
+        tolerance_at,
+      ),
+    );
     return part.filter(({ place }) => kept.has(place));
   });
 }

@@ -1,4 +1,5 @@
-// When to read anew what is told of before it is saved: soon after the first news, and once more when the last of them has surely been saved.
+// When to read anew what is told of before it is saved: soon after the first news, and once more
+// when the last of them has surely been saved.
 
 const kSoon_ms = 1000; // what happens in one go is read once
 const kSaved_ms = 3000; // after the last of it

@@ -1,6 +1,6 @@
-// Planes that cut a model open, from what a person chooses: a cut across one axis, or a box. Positions are shares of the
-// model's bounds, so that they mean the same for a coin and for a quarry. Planes that are neither come with a named view,
-// and stay as they are.
+// Planes that cut a model open, from what a person chooses: a cut across one axis, or a box.
+// Positions are shares of the model's bounds, so that they mean the same for a coin and for a
+// quarry. Planes that are neither come with a named view, and stay as they are.
 
 import type { Bounds } from "./camera";
 import type { Plane } from "./protocol.gen";
@@ -44,7 +44,8 @@ export function section_planes(choice: SectionChoice, bounds: Bounds): Plane[] {
   };
   if (choice.mode === "off") return [];
   if (choice.mode === "planes") return choice.planes;
-  if (choice.mode !== "box") return [plane(kAxes.indexOf(choice.mode), choice.position, choice.flipped)];
+  if (choice.mode !== "box")
+    return [plane(kAxes.indexOf(choice.mode), choice.position, choice.flipped)];
   const planes: Plane[] = [];
   for (const axis of [0, 1, 2]) {
     if (choice.box.min[axis]! > 0) planes.push(plane(axis, choice.box.min[axis]!, true));
@@ -53,13 +54,22 @@ export function section_planes(choice: SectionChoice, bounds: Bounds): Plane[] {
   return planes;
 }
 
-/** The choice that makes these planes: a cut or a box where they are one within the bounds, else the planes themselves. */
+/**
+ * The choice that makes these planes: a cut or a box where they are one within the bounds, else the
+ * planes themselves.
+ */
 export function section_choice(planes: readonly Plane[], bounds: Bounds): SectionChoice {
   if (planes.length === 0) return no_section();
   const kept: SectionChoice = { ...no_section(), mode: "planes", planes: [...planes] };
   const sides = planes.map((plane) => side_of(plane, bounds));
   const [first] = sides;
-  if (sides.length === 1 && first) return { ...no_section(), mode: kAxes[first.axis]!, position: first.share, flipped: first.keeps_above };
+  if (sides.length === 1 && first)
+    return {
+      ...no_section(),
+      mode: kAxes[first.axis]!,
+      position: first.share,
+      flipped: first.keeps_above,
+    };
   const { box } = no_section();
   const taken = new Set<string>();
   for (const side of sides) {
@@ -73,17 +83,26 @@ export function section_choice(planes: readonly Plane[], bounds: Bounds): Sectio
 }
 
 /** Of a plane across an axis that goes through the bounds; null: it is another. */
-function side_of([a, b, c, d]: Plane, { min, max }: Bounds): { axis: number; share: number; keeps_above: boolean } | null {
+function side_of(
+  [a, b, c, d]: Plane,
+  { min, max }: Bounds,
+): { axis: number; share: number; keeps_above: boolean } | null {
   const normal = [a, b, c];
   const axis = normal.findIndex((part) => part !== 0);
   if (axis < 0 || normal.filter((part) => part !== 0).length > 1) return null;
   const share = (-d / normal[axis]! - min[axis]!) / (max[axis]! - min[axis]!);
-  if (!(share >= -kRounded && share <= 1 + kRounded)) return null; // nor of a flat model, where it is no number
+  // nor of a flat model, where it is no number
+  if (!(share >= -kRounded && share <= 1 + kRounded)) return null;
   return { axis, share: Math.min(1, Math.max(0, share)), keeps_above: normal[axis]! > 0 };
 }
 
 /** A side of the box moved to a share, never past the opposite side. */
-export function with_box_side(choice: SectionChoice, side: "min" | "max", axis: number, share: number): SectionChoice {
+export function with_box_side(
+  choice: SectionChoice,
+  side: "min" | "max",
+  axis: number,
+  share: number,
+): SectionChoice {
   const box = { min: [...choice.box.min], max: [...choice.box.max] } as SectionChoice["box"];
   box[side][axis] =
     side === "min"

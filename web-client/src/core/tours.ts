@@ -1,7 +1,15 @@
-// A tour while somebody writes it: what its fields hold, what is missing in them, and which field a refusal of the server is about.
+// A tour while somebody writes it: what its fields hold, what is missing in them, and which field a
+// refusal of the server is about.
 
 import { read_number, typed_number } from "./locale";
-import type { Tour, TourCreate, TourRecords, TourStop, TourStopCreate, TourTransition } from "./protocol.gen";
+import type {
+  Tour,
+  TourCreate,
+  TourRecords,
+  TourStop,
+  TourStopCreate,
+  TourTransition,
+} from "./protocol.gen";
 
 export const kMostStops = 100;
 export const kMostLanguages = 20;
@@ -38,7 +46,10 @@ export interface TourDraft {
 
 let made = 0;
 
-export const new_stop = (view: { slug: string; name: string; text: string }, language: string): StopDraft => ({
+export const new_stop = (
+  view: { slug: string; name: string; text: string },
+  language: string,
+): StopDraft => ({
   id: ++made,
   view: view.slug,
   title: { [language]: view.name },
@@ -58,7 +69,13 @@ const stop_of = (stop: TourStop): StopDraft => ({
   transition_s: typed_number(stop.transition_s),
 });
 
-export const empty_tour = (language: string): TourDraft => ({ name: "", text: "", languages: [language], idle_s: typed_number(60), stops: [] });
+export const empty_tour = (language: string): TourDraft => ({
+  name: "",
+  text: "",
+  languages: [language],
+  idle_s: typed_number(60),
+  stops: [],
+});
 
 export const draft_of = ({ name, text, languages, idle_s, stops }: Tour): TourDraft => ({
   name,
@@ -75,11 +92,16 @@ export function moved<T>(all: readonly T[], from: number, to: number): T[] {
   return rest;
 }
 
-// ── languages ───────────────────────────────────────────────────────────────────────────────────────────────────────
+// ── languages
+// ───────────────────────────────────────────────────────────────────────────────────────────────────────
 
-const without = (words: Words, language: string): Words => Object.fromEntries(Object.entries(words).filter(([tag]) => tag !== language));
+const without = (words: Words, language: string): Words =>
+  Object.fromEntries(Object.entries(words).filter(([tag]) => tag !== language));
 
-/** What was written in the language is gone with it: the server takes no words in others than the tour's. */
+/**
+ * What was written in the language is gone with it: the server takes no words in others than the
+ * tour's.
+ */
 export function without_language(draft: TourDraft, language: string): TourDraft {
   return {
     ...draft,
@@ -90,7 +112,10 @@ export function without_language(draft: TourDraft, language: string): TourDraft 
       text: without(stop.text, language),
       records: stop.records.map((records) => ({
         ...records,
-        columns: records.columns.map(({ column, labels }) => ({ column, labels: without(labels ?? {}, language) })),
+        columns: records.columns.map(({ column, labels }) => ({
+          column,
+          labels: without(labels ?? {}, language),
+        })),
       })),
     })),
   };
@@ -102,16 +127,28 @@ const says = (words: Words, language: string): boolean => (words[language] ?? ""
 export const writes_in = ({ stops }: TourDraft, language: string): boolean =>
   stops.some(
     ({ title, text, records }) =>
-      says(title, language) || says(text, language) || records.some(({ columns }) => columns.some(({ labels }) => says(labels ?? {}, language))),
+      says(title, language) ||
+      says(text, language) ||
+      records.some(({ columns }) => columns.some(({ labels }) => says(labels ?? {}, language))),
   );
 
 /** Languages in which the stop has no title, or no text though the first one has. */
 export const untranslated = ({ title, text }: StopDraft, languages: readonly string[]): string[] =>
-  languages.filter((language) => !says(title, language) || (says(text, languages[0] ?? "") && !says(text, language)));
+  languages.filter(
+    (language) =>
+      !says(title, language) || (says(text, languages[0] ?? "") && !says(text, language)),
+  );
 
-// ── what is sent, and what is wrong with it ─────────────────────────────────────────────────────────────────────────
+// ── what is sent, and what is wrong with it
+// ─────────────────────────────────────────────────────────────────────────
 
-export type Wrong = "name_missing" | "language_missing" | "stops_missing" | "view_missing" | "title_missing" | "seconds";
+export type Wrong =
+  | "name_missing"
+  | "language_missing"
+  | "stops_missing"
+  | "view_missing"
+  | "title_missing"
+  | "seconds";
 
 export interface DraftProblem {
   /** As the server names it: `stops[2].title.fr`. */
@@ -121,10 +158,18 @@ export interface DraftProblem {
   range?: readonly [number, number];
 }
 
-/** The first thing without which the server would refuse it; what only the server knows is left to it. */
+/**
+ * The first thing without which the server would refuse it; what only the server knows is left to
+ * it.
+ */
 export function problem_of(draft: TourDraft): DraftProblem | null {
   const [first] = draft.languages;
-  const seconds = (field: string, typed: string, range: readonly [number, number], whole = false): DraftProblem | null => {
+  const seconds = (
+    field: string,
+    typed: string,
+    range: readonly [number, number],
+    whole = false,
+  ): DraftProblem | null => {
     const value = read_number(typed);
     const fits = value >= range[0] && value <= range[1] && (!whole || Number.isInteger(value));
     return fits ? null : { field, wrong: "seconds", range };
@@ -138,7 +183,11 @@ export function problem_of(draft: TourDraft): DraftProblem | null {
     const at = `stops[${index}]`;
     if (stop.view === "") return { field: `${at}.view`, wrong: "view_missing" };
     if (!says(stop.title, first)) return { field: `${at}.title.${first}`, wrong: "title_missing" };
-    const wrong = seconds(`${at}.attract_s`, stop.attract_s, kSeconds.attract) ?? (stop.transition === "cut" ? null : seconds(`${at}.transition_s`, stop.transition_s, kSeconds.transition));
+    const wrong =
+      seconds(`${at}.attract_s`, stop.attract_s, kSeconds.attract) ??
+      (stop.transition === "cut"
+        ? null
+        : seconds(`${at}.transition_s`, stop.transition_s, kSeconds.transition));
     if (wrong) return wrong;
   }
   return null;
@@ -154,14 +203,19 @@ const written = (words: Words): Record<string, string> =>
   );
 
 function body_of_stop(stop: StopDraft): TourStopCreate {
-  const held_s = read_number(stop.transition_s); // of a cut it is not looked at, and may be anything
+  // of a cut it is not looked at, and may be anything
+  const held_s = read_number(stop.transition_s);
   return {
     view: stop.view,
     title: written(stop.title),
     text: written(stop.text),
     attract_s: read_number(stop.attract_s),
     transition: stop.transition,
-    ...(Number.isNaN(held_s) ? {} : { transition_s: Math.min(kSeconds.transition[1], Math.max(kSeconds.transition[0], held_s)) }),
+    ...(Number.isNaN(held_s)
+      ? {}
+      : {
+          transition_s: Math.min(kSeconds.transition[1], Math.max(kSeconds.transition[0], held_s)),
+        }),
     layers: [...stop.layers],
     records: stop.records.map(({ table, keys, columns }) => ({
       table,
@@ -175,7 +229,13 @@ function body_of_stop(stop: StopDraft): TourStopCreate {
 }
 
 /** Of a draft of which problem_of() says nothing. */
-export const body_of = ({ name, text, languages, idle_s, stops }: TourDraft): Required<TourCreate> => ({
+export const body_of = ({
+  name,
+  text,
+  languages,
+  idle_s,
+  stops,
+}: TourDraft): Required<TourCreate> => ({
   name: name.trim(),
   text: text.trim(),
   languages: [...languages],
@@ -184,16 +244,24 @@ export const body_of = ({ name, text, languages, idle_s, stops }: TourDraft): Re
 });
 
 /** Whether a draft says something else than another. */
-export const differs = (a: TourDraft, b: TourDraft): boolean => JSON.stringify(body_of(a)) !== JSON.stringify(body_of(b));
+export const differs = (a: TourDraft, b: TourDraft): boolean =>
+  JSON.stringify(body_of(a)) !== JSON.stringify(body_of(b));
 
-/** Where a field of the server stands: of which stop, and what within it. Null: of the tour itself. */
+/**
+ * Where a field of the server stands: of which stop, and what within it. Null: of the tour itself.
+ */
 export function place_of(field: string): { stop: number | null; within: string } {
   const found = /^stops\[(\d+)\]\.?(.*)$/.exec(field);
   return found ? { stop: Number(found[1]), within: found[2]! } : { stop: null, within: field };
 }
 
 /** Whether a refusal of `within` is about `field`: it itself, or a part of it. */
-export const is_about = (within: string, field: string): boolean => within === field || within.startsWith(`${field}.`) || within.startsWith(`${field}[`);
+export const is_about = (within: string, field: string): boolean =>
+  within === field || within.startsWith(`${field}.`) || within.startsWith(`${field}[`);
 
-/** The language that a field is in: that of `title.fr`, `text.fr` and `records[0].columns[1].labels.fr`. */
-export const language_of_field = (within: string): string | null => /^(?:title|text|.*\.labels)\.([A-Za-z0-9-]+)$/.exec(within)?.[1] ?? null;
+/**
+ * The language that a field is in: that of `title.fr`, `text.fr` and
+ * `records[0].columns[1].labels.fr`.
+ */
+export const language_of_field = (within: string): string | null =>
+  /^(?:title|text|.*\.labels)\.([A-Za-z0-9-]+)$/.exec(within)?.[1] ?? null;

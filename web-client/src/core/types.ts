@@ -65,25 +65,46 @@ export function complete_palette(palette: wire.Palette): Palette {
   };
 }
 
-export const complete_layer = (layer: wire.Layer): Layer => ({ ...layer, palette: complete_palette(layer.palette) });
+export const complete_layer = (layer: wire.Layer): Layer => ({
+  ...layer,
+  palette: complete_palette(layer.palette),
+});
 
 /** Each may do what the ones before may. */
-export const kRoles: readonly wire.Role[] = ["guest", "viewer", "annotator", "curator", "administrator", "owner"];
+export const kRoles: readonly wire.Role[] = [
+  "guest",
+  "viewer",
+  "annotator",
+  "curator",
+  "administrator",
+  "owner",
+];
 /** What people may be in one project, ascending. */
 export const kProjectRoles: readonly wire.ProjectRole[] = ["viewer", "annotator", "curator"];
 
 /** Who gets the files of a model's scan, and what is as good as they are. */
-export const may_download = (role: wire.Role, { source_download }: Pick<wire.Model, "source_download">): boolean =>
-  kRoles.indexOf(role) >= kRoles.indexOf(source_download);
+export const may_download = (
+  role: wire.Role,
+  { source_download }: Pick<wire.Model, "source_download">,
+): boolean => kRoles.indexOf(role) >= kRoles.indexOf(source_download);
 /** Who may change what layers hold. */
-export const may_paint = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("annotator");
+export const may_paint = (role: wire.Role): boolean =>
+  kRoles.indexOf(role) >= kRoles.indexOf("annotator");
 /** Who may change what layers and models there are, and what they are called. */
-export const may_curate = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("curator");
-/** Its values are what was computed: nobody changes them until it is unlocked to be edited by hand. */
-export const is_as_computed = ({ computed, locked, edited_by_hand }: Pick<wire.Layer, "computed" | "locked" | "edited_by_hand">): boolean =>
+export const may_curate = (role: wire.Role): boolean =>
+  kRoles.indexOf(role) >= kRoles.indexOf("curator");
+/**
+ * Its values are what was computed: nobody changes them until it is unlocked to be edited by hand.
+ */
+export const is_as_computed = ({
+  computed,
+  locked,
+  edited_by_hand,
+}: Pick<wire.Layer, "computed" | "locked" | "edited_by_hand">): boolean =>
   computed !== undefined && locked && edited_by_hand !== true;
 /** Who may invite people, and say what they may do. */
-export const may_administer = (role: wire.Role): boolean => kRoles.indexOf(role) >= kRoles.indexOf("administrator");
+export const may_administer = (role: wire.Role): boolean =>
+  kRoles.indexOf(role) >= kRoles.indexOf("administrator");
 
 const kRanges: Record<wire.ValueType, [number, number]> = {
   u8: [0, 255],

@@ -1,11 +1,19 @@
-// Changes that are not known to be durable, in the browser's own database, so that they outlive the page: they go out again, under the same
-// ids, when the same person opens the model here the next time. Two pages of one person may send the same change: nothing is painted twice.
+// Changes that are not known to be durable, in the browser's own database, so that they outlive the
+// page: they go out again, under the same ids, when the same person opens the model here the next
+// time. Two pages of one person may send the same change: nothing is painted twice.
 
 import type { ChangeMessage } from "./outbox";
 
 const kDatabase = "strata";
 const kStore = "unsaved"; // messages by [user, model, when made in µs, id]
-const kChanges: readonly string[] = ["stroke.begin", "stroke.extend", "stroke.end", "edit", "undo", "redo"] satisfies ChangeMessage["op"][];
+const kChanges: readonly string[] = [
+  "stroke.begin",
+  "stroke.extend",
+  "stroke.end",
+  "edit",
+  "undo",
+  "redo",
+] satisfies ChangeMessage["op"][];
 
 type Key = [user: string, model: number, made: number, id: string];
 
@@ -22,7 +30,8 @@ function open(): Promise<IDBDatabase> {
   const request = indexedDB.open(kDatabase, 1);
   request.onupgradeneeded = () => void request.result.createObjectStore(kStore);
   database = result_of(request).then((opened) => {
-    opened.onclose = () => (database = null); // by the browser: its data were cleared, or the disk failed
+    // by the browser: its data were cleared, or the disk failed
+    opened.onclose = () => (database = null);
     return opened;
   });
   database.catch(() => (database = null));
@@ -30,9 +39,17 @@ function open(): Promise<IDBDatabase> {
 }
 
 const is_change = (row: unknown): row is ChangeMessage =>
-  typeof row === "object" && row !== null && "id" in row && typeof row.id === "string" && "op" in row && kChanges.includes(row.op as string);
+  typeof row === "object" &&
+  row !== null &&
+  "id" in row &&
+  typeof row.id === "string" &&
+  "op" in row &&
+  kChanges.includes(row.op as string);
 
-/** What one person asked for on one model. `failed` hears when the browser does not keep it; then it lives as long as the page. */
+/**
+ * What one person asked for on one model. `failed` hears when the browser does not keep it; then it
+ * lives as long as the page.
+ */
 export class UnsavedShelf {
   private readonly keys_ = new Map<string, Key>();
   private made_ = 0;
@@ -48,7 +65,10 @@ export class UnsavedShelf {
     try {
       const store = (await open()).transaction(kStore).objectStore(kStore);
       const mine = IDBKeyRange.bound([this.user_, this.model_], [this.user_, this.model_, []]);
-      const [keys, rows] = await Promise.all([result_of(store.getAllKeys(mine)), result_of<unknown[]>(store.getAll(mine))]);
+      const [keys, rows] = await Promise.all([
+        result_of(store.getAllKeys(mine)),
+        result_of<unknown[]>(store.getAll(mine)),
+      ]);
       for (const key of keys as Key[]) this.keys_.set(key[3], key);
       return rows.filter(is_change);
     } catch {
@@ -72,8 +92,11 @@ export class UnsavedShelf {
   private change(...changes: ((store: IDBObjectStore) => IDBRequest)[]): void {
     if (changes.length === 0) return;
     const all = async (): Promise<void> => {
-      // Relaxed: it is to outlive the page, not the machine; a tablet's flash need not hear of each batch of a stroke.
-      const store = (await open()).transaction(kStore, "readwrite", { durability: "relaxed" }).objectStore(kStore);
+      // Relaxed: it is to outlive the page, not the machine; a tablet's flash need not hear of each
+      // batch of a stroke.
+      const store = (await open())
+        .transaction(kStore, "readwrite", { durability: "relaxed" })
+        .objectStore(kStore);
       await Promise.all(changes.map((each) => result_of(each(store))));
     };
     all().catch(this.failed_);

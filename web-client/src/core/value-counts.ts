@@ -21,10 +21,24 @@ export interface ValueCounts {
 
 /** Each record that a cell names is a value of its own. */
 const values_in_cell = (value: CellValue | undefined): FilterValue[] =>
-  value === null || value === undefined ? [] : Array.isArray(value) ? value.filter((each): each is number => typeof each === "number") : [value as FilterValue];
+  value === null || value === undefined
+    ? []
+    : Array.isArray(value)
+      ? value.filter((each): each is number => typeof each === "number")
+      : [value as FilterValue];
 
-export async function count_values(ask: (query: RecordQuery) => Promise<RecordList>, slug: string): Promise<ValueCounts> {
-  const counts: ValueCounts = { of_value: new Map(), empty: 0, least: null, greatest: null, counted: 0, total: 0 };
+export async function count_values(
+  ask: (query: RecordQuery) => Promise<RecordList>,
+  slug: string,
+): Promise<ValueCounts> {
+  const counts: ValueCounts = {
+    of_value: new Map(),
+    empty: 0,
+    least: null,
+    greatest: null,
+    counted: 0,
+    total: 0,
+  };
   do {
     const { records, total } = await ask({ limit: kPage, offset: counts.counted });
     counts.total = total;

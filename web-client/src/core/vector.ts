@@ -17,14 +17,17 @@ export const cross = (a: Vec3, b: Vec3): Vec3 => [
 export const mix = (a: Vec3, b: Vec3, t: number): Vec3 => add(scale(a, 1 - t), scale(b, t));
 
 export function transform(m: Mat4, v: Vec4): Vec4 {
-  const row = (r: number): number => m[r]! * v[0] + m[4 + r]! * v[1] + m[8 + r]! * v[2] + m[12 + r]! * v[3];
+  const row = (r: number): number =>
+    m[r]! * v[0] + m[4 + r]! * v[1] + m[8 + r]! * v[2] + m[12 + r]! * v[3];
   return [row(0), row(1), row(2), row(3)];
 }
 
 export function multiply(a: Mat4, b: Mat4): Mat4 {
   const product: number[] = [];
   for (let column = 0; column < 4; ++column) {
-    product.push(...transform(a, [b[column * 4]!, b[column * 4 + 1]!, b[column * 4 + 2]!, b[column * 4 + 3]!]));
+    product.push(
+      ...transform(a, [b[column * 4]!, b[column * 4 + 1]!, b[column * 4 + 2]!, b[column * 4 + 3]!]),
+    );
   }
   return product;
 }

@@ -32,7 +32,10 @@ export class AttractLoop {
 
   private wait(): void {
     const times = this.host_.times();
-    this.timer_ = setTimeout(() => this.on_time(), Math.max(kLeast_s, times ? times.transition_s + times.attract_s : 0) * 1000);
+    this.timer_ = setTimeout(
+      () => this.on_time(),
+      Math.max(kLeast_s, times ? times.transition_s + times.attract_s : 0) * 1000,
+    );
   }
 
   private on_time(): void {

@@ -1,10 +1,26 @@
-// What is told of a record: the columns that the tour chose, or else what its table tells, in the visitor's language, and its pictures.
+// What is told of a record: the columns that the tour chose, or else what its table tells, in the
+// visitor's language, and its pictures.
 
 import { ApiError, type Api } from "../core/api";
-import { cell_text, holds_files, label_of, label_of_record, named_keys, names_records } from "../core/cells";
+import {
+  cell_text,
+  holds_files,
+  label_of,
+  label_of_record,
+  named_keys,
+  names_records,
+} from "../core/cells";
 import { format_list, with_decimal_sign } from "../core/locale";
 import { holds_marks } from "../core/marks";
-import type { Attachment, CellValue, Column, Table, TableRecord, TourColumn, TourStop } from "../core/protocol.gen";
+import type {
+  Attachment,
+  CellValue,
+  Column,
+  Table,
+  TableRecord,
+  TourColumn,
+  TourStop,
+} from "../core/protocol.gen";
 import { as_kiosk } from "./as-kiosk";
 import { words_in } from "./languages";
 import { texts_in } from "./texts";
@@ -46,23 +62,50 @@ export async function card_of(api: Api, asked: CardAsked): Promise<Card | null> 
 
 async function read_card(api: Api, asked: CardAsked): Promise<Card> {
   const table = await api.table(asked.table);
-  const [record, files] = await Promise.all([api.record({ table: table.id }, asked.key), api.attachments(table.id, asked.key)]);
-  const title = label_of_record(table, record, [asked.language]) || texts_in(asked.language, asked.languages).record(asked.key);
-  const shown = columns_shown(table, asked.stop.records.find((records) => records.table === table.slug)?.columns);
+  const [record, files] = await Promise.all([
+    api.record({ table: table.id }, asked.key),
+    api.attachments(table.id, asked.key),
+  ]);
+  const title =
+    label_of_record(table, record, [asked.language]) ||
+    texts_in(asked.language, asked.languages).record(asked.key);
+  const shown = columns_shown(
+    table,
+    asked.stop.records.find((records) => records.table === table.slug)?.columns,
+  );
   const lines: Card["lines"] = [];
   for (const { column, chosen } of shown) {
     if (holds_files(column)) continue;
     const text = await text_of(api, asked, column, record.values[column.slug] ?? null);
     // What is the card's heading is not said again, unless the tour wants it so.
-    if (text === "" || (!chosen && text === title) || (!chosen && lines.length >= kMostLines)) continue;
+    if (text === "" || (!chosen && text === title) || (!chosen && lines.length >= kMostLines))
+      continue;
     lines.push({ label: label_on_card(column, chosen, asked), text });
   }
-  return { table: table.slug, key: asked.key, title, lines, pictures: pictures_of(shown.map(({ column }) => column), record, files) };
+  return {
+    table: table.slug,
+    key: asked.key,
+    title,
+    lines,
+    pictures: pictures_of(
+      shown.map(({ column }) => column),
+      record,
+      files,
+    ),
+  };
 }
 
-/** As the tour or the table call it in the visitor's language; else as the tour calls it in its first one, or by its name, whatever language that is. */
-function label_on_card(column: Column, chosen: TourColumn | null, { language, languages }: CardAsked): string {
-  const in_language = chosen?.labels?.[language] || label_of({ name: "", labels: column.labels }, [language]);
+/**
+ * As the tour or the table call it in the visitor's language; else as the tour calls it in its
+ * first one, or by its name, whatever language that is.
+ */
+function label_on_card(
+  column: Column,
+  chosen: TourColumn | null,
+  { language, languages }: CardAsked,
+): string {
+  const in_language =
+    chosen?.labels?.[language] || label_of({ name: "", labels: column.labels }, [language]);
   return in_language || words_in(chosen?.labels, language, languages.slice(0, 1)) || column.name;
 }
 
@@ -71,42 +114,74 @@ interface ShownColumn {
   chosen: TourColumn | null;
 }
 
-function columns_shown({ columns }: Table, chosen: readonly TourColumn[] | undefined): ShownColumn[] {
-  if (!chosen || chosen.length === 0) return columns.filter((column) => !holds_marks(column)).map((column) => ({ column, chosen: null }));
+function columns_shown(
+  { columns }: Table,
+  chosen: readonly TourColumn[] | undefined,
+): ShownColumn[] {
+  if (!chosen || chosen.length === 0)
+    return columns
+      .filter((column) => !holds_marks(column))
+      .map((column) => ({ column, chosen: null }));
   return chosen.flatMap((each) => {
     const column = columns.find(({ slug }) => slug === each.column);
     return column ? [{ column, chosen: each }] : [];
   });
 }
 
-async function text_of(api: Api, asked: CardAsked, column: Column, value: CellValue): Promise<string> {
+async function text_of(
+  api: Api,
+  asked: CardAsked,
+  column: Column,
+  value: CellValue,
+): Promise<string> {
   if (value === null) return "";
   const words = texts_in(asked.language, asked.languages);
-  if (names_records(column)) return format_list(await names_of(api, asked, column.target ?? 0, named_keys(value)));
+  if (names_records(column))
+    return format_list(await names_of(api, asked, column.target ?? 0, named_keys(value)));
   if (column.kind === "boolean") return value ? words.yes : words.no;
   const text = typeof value === "number" ? with_decimal_sign(String(value)) : cell_text(value);
   return column.unit ? `${text} ${column.unit}` : text;
 }
 
 /** Those that visitors may know. */
-async function names_of(api: Api, { language }: CardAsked, table: number, keys: readonly number[]): Promise<string[]> {
+async function names_of(
+  api: Api,
+  { language }: CardAsked,
+  table: number,
+  keys: readonly number[],
+): Promise<string[]> {
   if (keys.length === 0) return [];
   try {
     const target = await api.table(table);
     const records = await Promise.all(keys.map((key) => api.record({ table }, key)));
-    return records.map((record) => label_of_record(target, record, [language])).filter((name) => name !== "");
+    return records
+      .map((record) => label_of_record(target, record, [language]))
+      .filter((name) => name !== "");
   } catch (error) {
     if (error instanceof ApiError && (error.status === 403 || error.status === 404)) return [];
     throw error;
   }
 }
 
-/** Of the columns that are shown, in their order; browsers show no others than these two kinds that the server makes small ones of. */
-function pictures_of(columns: readonly Column[], record: Pick<TableRecord, "values">, files: readonly Attachment[]): CardPicture[] {
-  const ids = columns.filter(({ kind }) => kind === "picture").flatMap(({ slug }) => named_keys(record.values[slug]));
+/**
+ * Of the columns that are shown, in their order; browsers show no others than these two kinds that
+ * the server makes small ones of.
+ */
+function pictures_of(
+  columns: readonly Column[],
+  record: Pick<TableRecord, "values">,
+  files: readonly Attachment[],
+): CardPicture[] {
+  const ids = columns
+    .filter(({ kind }) => kind === "picture")
+    .flatMap(({ slug }) => named_keys(record.values[slug]));
   return ids
-    .flatMap((id) => files.find((file) => file.id === id && /^image\/(jpeg|png)$/.test(file.media_type)) ?? [])
+    .flatMap(
+      (id) =>
+        files.find((file) => file.id === id && /^image\/(jpeg|png)$/.test(file.media_type)) ?? [],
+    )
     .slice(0, kMostPictures)
     .map(({ id, name }) => ({ name, small: thumbnail(id, 256), large: thumbnail(id, 1024) }));
 }
-const thumbnail = (id: number, side: number): string => as_kiosk(`/api/v1/attachments/${id}?thumbnail=${side}`);
+const thumbnail = (id: number, side: number): string =>
+  as_kiosk(`/api/v1/attachments/${id}?thumbnail=${side}`);

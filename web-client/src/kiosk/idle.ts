@@ -1,7 +1,11 @@
-// Whether somebody stands before the screen. After the tour's time without a touch they are asked, with a countdown, and when nobody answers the
-// screen is alone: it begins anew and plays by itself until the next touch. One timer at most, whatever is touched how often.
+// Whether somebody stands before the screen. After the tour's time without a touch they are asked,
+// with a countdown, and when nobody answers the screen is alone: it begins anew and plays by itself
+// until the next touch. One timer at most, whatever is touched how often.
 
-/** alone: nobody is there. visited: somebody is. asked: they have not touched for long, and `left_s` seconds to say that they are there. */
+/**
+ * alone: nobody is there. visited: somebody is. asked: they have not touched for long, and `left_s`
+ * seconds to say that they are there.
+ */
 export type Presence = { is: "alone" } | { is: "visited" } | { is: "asked"; left_s: number };
 
 export interface IdleHost {
@@ -41,7 +45,11 @@ export class IdleWatch {
   private enter(presence: Presence, for_s: number): void {
     this.presence = presence;
     this.stop();
-    if (presence.is !== "alone") this.timer_ = setTimeout(() => this.on_time(), Math.max(presence.is === "asked" ? 0 : kLeast_s, for_s) * 1000);
+    if (presence.is !== "alone")
+      this.timer_ = setTimeout(
+        () => this.on_time(),
+        Math.max(presence.is === "asked" ? 0 : kLeast_s, for_s) * 1000,
+      );
     this.host_.changed();
   }
 
@@ -49,7 +57,8 @@ export class IdleWatch {
     this.timer_ = null;
     const { presence } = this;
     if (presence.is === "visited") {
-      const left_s = Math.max(kLeast_s, this.host_.idle_s()) - (performance.now() - this.touched_ms_) / 1000;
+      const left_s =
+        Math.max(kLeast_s, this.host_.idle_s()) - (performance.now() - this.touched_ms_) / 1000;
       if (left_s > 0.05) this.timer_ = setTimeout(() => this.on_time(), left_s * 1000);
       else this.enter({ is: "asked", left_s: kAsked_s }, 1);
     } else if (presence.is === "asked" && presence.left_s > 1) {

@@ -1,4 +1,5 @@
-// <strata-kiosk>: the whole screen: the object, and below or beside it what the stop says and what visitors can do.
+// <strata-kiosk>: the whole screen: the object, and below or beside it what the stop says and what
+// visitors can do.
 
 import { html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
@@ -40,18 +41,24 @@ export class StrataKiosk extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     this.stop_following_ = this.session.subscribe(() => (this.changes_ += 1));
-    for (const name of ["pointerdown", "pointermove", "pointerup", "keydown", "wheel"]) addEventListener(name, this.touched, { capture: true, passive: true });
+    for (const name of ["pointerdown", "pointermove", "pointerup", "keydown", "wheel"])
+      addEventListener(name, this.touched, { capture: true, passive: true });
   }
   override disconnectedCallback(): void {
     super.disconnectedCallback();
     this.stop_following_?.();
     this.stop_swipes_?.();
-    for (const name of ["pointerdown", "pointermove", "pointerup", "keydown", "wheel"]) removeEventListener(name, this.touched, { capture: true });
+    for (const name of ["pointerdown", "pointermove", "pointerup", "keydown", "wheel"])
+      removeEventListener(name, this.touched, { capture: true });
   }
 
-  /** Whoever does anything is there. What begins the tour is its button alone, so that the same touch does nothing else. */
+  /**
+   * Whoever does anything is there. What begins the tour is its button alone, so that the same
+   * touch does nothing else.
+   */
   private readonly touched = (event: Event): void => {
-    const rests_a_mouse = event.type === "pointermove" && (event as PointerEvent).buttons === 0; // on a table that shakes
+    // on a table that shakes
+    const rests_a_mouse = event.type === "pointermove" && (event as PointerEvent).buttons === 0;
     if (!rests_a_mouse && this.session.idle.presence.is === "visited") this.session.touched();
   };
 
@@ -66,19 +73,32 @@ export class StrataKiosk extends LitElement {
     if (panel !== this.swiped_panel_) {
       this.stop_swipes_?.();
       this.swiped_panel_ = panel;
-      this.stop_swipes_ = panel ? follow_swipes(panel, (by) => session.swipe(root.dir === "rtl" ? (-by as 1 | -1) : by)) : null;
+      this.stop_swipes_ = panel
+        ? follow_swipes(panel, (by) => session.swipe(root.dir === "rtl" ? (-by as 1 | -1) : by))
+        : null;
     }
-    this.renderRoot.querySelector('.layers [aria-pressed="true"]')?.scrollIntoView({ inline: "center", block: "nearest" });
+    this.renderRoot
+      .querySelector('.layers [aria-pressed="true"]')
+      ?.scrollIntoView({ inline: "center", block: "nearest" });
     this.hold_focus();
   }
 
   /** Each thing that opens over the others has the focus, once. */
   private hold_focus(): void {
     const { session } = this;
-    const open = session.idle.presence.is === "asked" ? ".asking button" : session.resting ? ".begin" : session.enlarged ? ".enlarged button" : session.card ? ".card h2" : "";
+    const open =
+      session.idle.presence.is === "asked"
+        ? ".asking button"
+        : session.resting
+          ? ".begin"
+          : session.enlarged
+            ? ".enlarged button"
+            : session.card
+              ? ".card h2"
+              : "";
     if (open === this.focused_) return;
     this.focused_ = open;
-    (this.renderRoot.querySelector<HTMLElement>(open || ".panel h1"))?.focus({ preventScroll: true });
+    this.renderRoot.querySelector<HTMLElement>(open || ".panel h1")?.focus({ preventScroll: true });
   }
   private focused_ = "";
 
@@ -91,7 +111,12 @@ export class StrataKiosk extends LitElement {
     const asked = session.idle.presence.is === "asked";
     const covered = asked || session.resting || session.enlarged !== null;
     return html`
-      ${repeat([show], (each) => each, () => html`<strata-kiosk-stage class=${session.resting ? "resting" : ""} .session=${session} .show=${show} .changes=${this.changes_} ?inert=${covered}></strata-kiosk-stage>`)}
+      ${repeat(
+        [show],
+        (each) => each,
+        () =>
+          html`<strata-kiosk-stage class=${session.resting ? "resting" : ""} .session=${session} .show=${show} .changes=${this.changes_} ?inert=${covered}></strata-kiosk-stage>`,
+      )}
       ${show.away ? html`<p class="sign away" role="status">${words.stored}</p>` : nothing}
       ${!session.resting && session.index === 0 && show.untouched && show.drawn ? html`<p class="sign">${words.hint}</p>` : nothing}
       ${session.place && !covered ? this.place(session.place) : nothing} ${this.panel(covered)} ${session.enlarged ? this.enlarged(asked) : nothing} ${session.resting ? this.invitation() : nothing}
@@ -100,7 +125,17 @@ export class StrataKiosk extends LitElement {
   }
 
   /** Beside the finger, above it where there is room. */
-  private place({ title, about, x, y }: { title: string; about: string; x: number; y: number }): TemplateResult {
+  private place({
+    title,
+    about,
+    x,
+    y,
+  }: {
+    title: string;
+    about: string;
+    x: number;
+    y: number;
+  }): TemplateResult {
     return html`<div class="place-of-tap" role="status" ${styled({ "--x": `${x}px`, "--y": `${y}px` })}>
       <p><b>${title}</b>${about ? html`<span>${about}</span>` : nothing}</p>
     </div>`;
@@ -131,22 +166,27 @@ export class StrataKiosk extends LitElement {
     const { session } = this;
     const { words, index, stops } = session;
     const behind = session.card !== null;
-    return html`${session.named.length > 0
+    return html`${
+      session.named.length > 0
         ? html`<div class="row scrolls" role="group" aria-label=${words.records} ?inert=${behind}>
             <span class="label" aria-hidden="true">${words.records}</span>
             ${session.named.map(({ table, key, name }) => html`<button class="record" @click=${() => void session.open_card(table, key)}>${name}</button>`)}
           </div>`
-        : nothing}
-      ${session.choices.length > 1 && session.show && !session.show.away
-        ? html`<div class="row scrolls layers" role="group" aria-label=${words.layers} ?inert=${behind}>
+        : nothing
+    }
+      ${
+        session.choices.length > 1 && session.show && !session.show.away
+          ? html`<div class="row scrolls layers" role="group" aria-label=${words.layers} ?inert=${behind}>
             ${session.choices.map(
               (choice) =>
                 html`<button aria-pressed=${String(choice === session.choice)} @click=${() => session.choose_layer(choice)}>${choice ? name_of_layer(choice, session.language) : words.as_kept}</button>`,
             )}
           </div>`
-        : nothing}
-      ${session.languages.length > 1
-        ? html`<div class="row scrolls languages" role="group" aria-label=${words.languages} ?inert=${behind}>
+          : nothing
+      }
+      ${
+        session.languages.length > 1
+          ? html`<div class="row scrolls languages" role="group" aria-label=${words.languages} ?inert=${behind}>
             ${session.languages.map(
               (tag) =>
                 html`<button lang=${tag} aria-pressed=${String(tag === session.language)} @click=${() => session.choose_language(tag)}>
@@ -154,7 +194,8 @@ export class StrataKiosk extends LitElement {
                 </button>`,
             )}
           </div>`
-        : nothing}
+          : nothing
+      }
       <div class="row steps" ?inert=${behind}>
         <button class="previous" ?disabled=${index === 0} @click=${() => session.step(-1)}>${arrow_back}${words.previous}</button>
         <span class="dots" aria-hidden="true">${stops.length > 1 && stops.length <= kMostDots ? stops.map((_, at) => html`<i class=${at === index ? "here" : ""}></i>`) : nothing}</span>
@@ -177,14 +218,16 @@ export class StrataKiosk extends LitElement {
           )}
         </dl>
       </div>
-      ${card.pictures.length > 0
-        ? html`<div class="row scrolls pictures">
+      ${
+        card.pictures.length > 0
+          ? html`<div class="row scrolls pictures">
             ${card.pictures.map(
               (picture) =>
                 html`<button aria-label=${words.enlarge(picture.name)} @click=${() => session.enlarge(picture)}><img src=${picture.small} alt="" draggable="false" /></button>`,
             )}
           </div>`
-        : nothing}
+          : nothing
+      }
       <div class="row ends"><button class="main close" @click=${() => session.close_card()}>${words.close}</button></div>
     </section>`;
   }
@@ -202,7 +245,9 @@ export class StrataKiosk extends LitElement {
   private invitation(): TemplateResult {
     const { session } = this;
     const { languages } = session;
-    const [first, ...others] = [...new Set(languages.map((tag) => texts_in(tag, languages).begin))].slice(0, kMostInvitations);
+    const [first, ...others] = [
+      ...new Set(languages.map((tag) => texts_in(tag, languages).begin)),
+    ].slice(0, kMostInvitations);
     const begin = (): void => {
       fill_screen();
       session.touched();

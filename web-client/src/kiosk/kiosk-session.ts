@@ -1,5 +1,6 @@
-// What happens on one kiosk: its tour, the stop that is seen, the language, what is told of a record, and whether somebody is there. Elements subscribe and
-// draw themselves from its state; they change it only through its methods.
+// What happens on one kiosk: its tour, the stop that is seen, the language, what is told of a
+// record, and whether somebody is there. Elements subscribe and draw themselves from its state;
+// they change it only through its methods.
 
 import { Api, ApiError } from "../core/api";
 import type { SocketLike } from "../core/connection";
@@ -11,7 +12,16 @@ import { words_in } from "./languages";
 import { KioskLink } from "./link";
 import { layer_there, words_of_place, type TappedPlace } from "./place";
 import { KioskShow } from "./show";
-import { choices_of, first_choice, layers_shown, seen_layers, step_from, stops_of, type LayerChoice, type Stop } from "./stops";
+import {
+  choices_of,
+  first_choice,
+  layers_shown,
+  seen_layers,
+  step_from,
+  stops_of,
+  type LayerChoice,
+  type Stop,
+} from "./stops";
 import type { KioskStore } from "./store";
 import { texts_in, type KioskTexts } from "./texts";
 
@@ -59,7 +69,12 @@ export class KioskSession {
 
   constructor(private readonly options_: SessionOptions) {
     const changed = (): void => this.changed();
-    this.idle = new IdleWatch({ idle_s: () => this.self?.tour.idle_s ?? 60, came: () => this.begin(), left: () => this.rest(), changed });
+    this.idle = new IdleWatch({
+      idle_s: () => this.self?.tour.idle_s ?? 60,
+      came: () => this.begin(),
+      left: () => this.rest(),
+      changed,
+    });
     this.attract_ = new AttractLoop({
       times: () => this.stop?.stop ?? null,
       next: () => this.go_to(step_from(this.index, 1, Math.max(1, this.stops.length))),
@@ -93,7 +108,8 @@ export class KioskSession {
     this.show?.check_connection();
   }
 
-  // ── what is seen ──────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what is seen
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────
 
   get tour(): Tour | null {
     return this.self?.tour ?? null;
@@ -113,18 +129,24 @@ export class KioskSession {
   get text(): string {
     return words_in(this.stop?.stop.text, this.language, this.languages);
   }
-  /** What the place that was tapped is called, and where it is on the stage; null: there is nothing to tell of any. */
+  /**
+   * What the place that was tapped is called, and where it is on the stage; null: there is nothing
+   * to tell of any.
+   */
   get place(): { title: string; about: string; x: number; y: number } | null {
     const { place_: place, show } = this;
     const layer = place && show?.layers.find(({ id }) => id === place.layer);
-    return layer ? { ...words_of_place(layer, place.value, this.language), x: place.x, y: place.y } : null;
+    return layer
+      ? { ...words_of_place(layer, place.value, this.language), x: place.x, y: place.y }
+      : null;
   }
   /** Nobody is there; the tour plays by itself. */
   get resting(): boolean {
     return this.idle.presence.is === "alone";
   }
 
-  // ── what visitors do ──────────────────────────────────────────────────────────────────────────────────────────────
+  // ── what visitors do
+  // ──────────────────────────────────────────────────────────────────────────────────────────────
 
   touched(): void {
     if (!this.worthless && this.ready) this.idle.touched();
@@ -158,12 +180,19 @@ export class KioskSession {
     const asked = ++this.asked_card_;
     if (!stop) return;
     try {
-      const card = await card_of(this.options_.api, { table, key, stop: stop.stop, language: this.language, languages: this.languages });
+      const card = await card_of(this.options_.api, {
+        table,
+        key,
+        stop: stop.stop,
+        language: this.language,
+        languages: this.languages,
+      });
       if (asked !== this.asked_card_ || this.resting) return;
       this.card = card;
       this.changed();
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // the server is away, and the record was never looked at: nothing opens
+      // the server is away, and the record was never looked at: nothing opens
+      if (!(error instanceof ApiError)) throw error;
     }
   }
   close_card(): void {
@@ -182,7 +211,8 @@ export class KioskSession {
     this.changed();
   }
 
-  // ── the tour ──────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── the tour
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private begin(): void {
     this.attract_.stop();
@@ -218,14 +248,21 @@ export class KioskSession {
   private async name_records(): Promise<void> {
     const naming = ++this.naming_;
     const { stop, language, languages } = this;
-    const wanted = stop?.stop.records.flatMap(({ table, keys }) => keys.map((key) => ({ table, key }))) ?? [];
+    const wanted =
+      stop?.stop.records.flatMap(({ table, keys }) => keys.map((key) => ({ table, key }))) ?? [];
     if (wanted.length === 0 || this.resting) this.named = []; // which nobody reads then
     if (!stop || wanted.length === 0 || this.resting) return;
     const cards = await Promise.all(
-      wanted.map((each) => card_of(this.options_.api, { ...each, stop: stop.stop, language, languages }).catch(() => null)),
+      wanted.map((each) =>
+        card_of(this.options_.api, { ...each, stop: stop.stop, language, languages }).catch(
+          () => null,
+        ),
+      ),
     );
     if (naming !== this.naming_) return;
-    this.named = cards.flatMap((card) => (card ? [{ table: card.table, key: card.key, name: card.title }] : []));
+    this.named = cards.flatMap((card) =>
+      card ? [{ table: card.table, key: card.key, name: card.title }] : [],
+    );
     this.changed();
   }
 
@@ -235,19 +272,22 @@ export class KioskSession {
     if (!show || this.resting) return;
     const found = layer_there(seen_layers(show.layers, this.overrides()), picked);
     this.close_card();
-    if (found?.layer.table !== undefined) void this.open_card(String(found.layer.table), found.value);
+    if (found?.layer.table !== undefined)
+      void this.open_card(String(found.layer.table), found.value);
     else if (found) {
       this.place_ = { x, y, layer: found.layer.id, value: found.value };
       this.changed();
     }
   }
 
-  // ── the server ────────────────────────────────────────────────────────────────────────────────────────────────────
+  // ── the server
+  // ────────────────────────────────────────────────────────────────────────────────────────────────────
 
   private async on_told(self: KioskSelf): Promise<void> {
     const before = this.self;
     this.self = self;
-    if (!before || before.tour.version !== self.tour.version || before.tour.id !== self.tour.id) await this.take_tour();
+    if (!before || before.tour.version !== self.tour.version || before.tour.id !== self.tour.id)
+      await this.take_tour();
     else if (this.show?.drawn) this.keep(); // what is seen comes first
     if (!this.ready) await this.read_views();
     this.changed();
@@ -277,7 +317,8 @@ export class KioskSession {
   private async take_tour(): Promise<void> {
     const { self } = this;
     if (!self) return;
-    if (!this.languages.includes(this.language) || this.resting) this.language = this.languages[0] ?? "en";
+    if (!this.languages.includes(this.language) || this.resting)
+      this.language = this.languages[0] ?? "en";
     if (this.show?.model_ref !== self.model) {
       this.show?.close();
       this.show = this.make_show(self.model);
@@ -308,7 +349,11 @@ export class KioskSession {
     const views = await Promise.all(slugs.map((slug) => this.read_view(self.model, slug)));
     if (reading !== this.reading_ || this.worthless) return;
     if (!this.ready && views.includes(undefined)) return; // asked again when the server is
-    this.views_ = new Map(slugs.flatMap((slug, place): [string, View][] => [views[place] ?? []].flat().map((view) => [slug, view])));
+    this.views_ = new Map(
+      slugs.flatMap((slug, place): [string, View][] =>
+        [views[place] ?? []].flat().map((view) => [slug, view]),
+      ),
+    );
     const was_ready = this.ready;
     this.stops = stops_of(self.tour, this.views_);
     this.ready = true;
@@ -332,7 +377,8 @@ export class KioskSession {
     const { stop, show, choice } = this;
     if (!stop || !show) return void this.changed();
     this.choices = choices_of(stop, show.layers);
-    this.choice = this.choices.find((each) => each?.id === choice?.id) ?? first_choice(stop, this.choices);
+    this.choice =
+      this.choices.find((each) => each?.id === choice?.id) ?? first_choice(stop, this.choices);
     show.go_on(stop.view, this.overrides());
     void this.name_records();
     this.changed();
@@ -341,7 +387,12 @@ export class KioskSession {
   private keep(): void {
     const { self } = this;
     if (!self) return;
-    const state = JSON.stringify([self.id, self.tour.id, self.tour.version, [...this.views_.values()].map(({ id, version }) => [id, version])]);
+    const state = JSON.stringify([
+      self.id,
+      self.tour.id,
+      self.tour.version,
+      [...this.views_.values()].map(({ id, version }) => [id, version]),
+    ]);
     void this.options_.store.keep(self, state);
   }
 

@@ -1,5 +1,6 @@
-// How the kiosk looks: large, quiet, and in the lower half whatever is to be touched. Targets are 15 mm at least (57 CSS pixels), larger where fingers are
-// all there is. Upright screens have the object above the words, wide ones beside them.
+// How the kiosk looks: large, quiet, and in the lower half whatever is to be touched. Targets are
+// 15 mm at least (57 CSS pixels), larger where fingers are all there is. Upright screens have the
+// object above the words, wide ones beside them.
 
 import { css } from "lit";
 

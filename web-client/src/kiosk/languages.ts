@@ -3,7 +3,11 @@
 import type { TourWords } from "../core/protocol.gen";
 
 /** In that language, or else in the first of the tour that has it. */
-export function words_in(words: TourWords | undefined, language: string, languages: readonly string[]): string {
+export function words_in(
+  words: TourWords | undefined,
+  language: string,
+  languages: readonly string[],
+): string {
   for (const tag of [language, ...languages]) {
     const found = words?.[tag];
     if (found) return found;
@@ -13,4 +17,5 @@ export function words_in(words: TourWords | undefined, language: string, languag
 
 const kRightToLeft = ["ar", "dv", "fa", "he", "ku", "ps", "sd", "ug", "ur", "yi"];
 
-export const direction_of_language = (tag: string): "ltr" | "rtl" => (kRightToLeft.includes(tag.toLowerCase().split("-")[0]!) ? "rtl" : "ltr");
+export const direction_of_language = (tag: string): "ltr" | "rtl" =>
+  kRightToLeft.includes(tag.toLowerCase().split("-")[0]!) ? "rtl" : "ltr";

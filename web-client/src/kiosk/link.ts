@@ -1,5 +1,6 @@
-// The kiosk's link to its server: signs in with the link's secret, and asks from time to time whether it is still good, the tour still the
-// same, and whether the page is to be loaded anew. A server that is away is asked again for ever, ever more seldom; and so is, every five minutes, one
+// The kiosk's link to its server: signs in with the link's secret, and asks from time to time
+// whether it is still good, the tour still the same, and whether the page is to be loaded anew. A
+// server that is away is asked again for ever, ever more seldom; and so is, every five minutes, one
 // that knows no such link: what was in the Bin may be restored.
 
 import { ApiError } from "../core/api";
@@ -18,7 +19,10 @@ export interface LinkHost {
   told(self: KioskSelf): void;
   /** No answer, or none that says anything. */
   missed(): void;
-  /** It was revoked, is over, or its tour is in the Bin. Told each time. If it is good again, the page is loaded anew. */
+  /**
+   * It was revoked, is over, or its tour is in the Bin. Told each time. If it is good again, the
+   * page is loaded anew.
+   */
   worthless(): void;
   reload(): void;
 }
@@ -64,7 +68,11 @@ export class KioskLink {
       this.asking_ = false;
     }
     if (this.ended_) return;
-    const wait_s = this.worthless_ ? kWorthless_s : this.failures_ === 0 ? kHeartbeat_s : Math.min(kHeartbeat_s, kFirstRetry_s * 2 ** (this.failures_ - 1));
+    const wait_s = this.worthless_
+      ? kWorthless_s
+      : this.failures_ === 0
+        ? kHeartbeat_s
+        : Math.min(kHeartbeat_s, kFirstRetry_s * 2 ** (this.failures_ - 1));
     this.timer_ = setTimeout(() => void this.turn(), wait_s * 1000);
   }
 

@@ -9,7 +9,8 @@ import { KioskSession } from "./kiosk-session";
 import { KioskStore, open_browser_shelf, start_worker } from "./store";
 
 /** Behind /kiosk/; null: there is none. */
-export const secret_of = (path: string): string | null => /^\/kiosk\/([^/]{1,200})\/?$/.exec(path)?.[1] ?? null;
+export const secret_of = (path: string): string | null =>
+  /^\/kiosk\/([^/]{1,200})\/?$/.exec(path)?.[1] ?? null;
 
 export function start_kiosk(): void {
   // Visitors are told of no call that failed.

@@ -1,4 +1,5 @@
-// What lies where a visitor tapped: of a record its card tells more; of everything else the class, or what was measured, is named beside the place.
+// What lies where a visitor tapped: of a record its card tells more; of everything else the class,
+// or what was measured, is named beside the place.
 
 import { label_of } from "../core/cells";
 import { format_number } from "../core/measure";
@@ -13,8 +14,14 @@ export interface TappedPlace {
   value: number;
 }
 
-/** The topmost of the layers that holds a record there, or else the topmost that holds anything. Null: none is painted there. */
-export function layer_there(seen: readonly Layer[], { values }: Pick<Picked, "values">): { layer: Layer; value: number } | null {
+/**
+ * The topmost of the layers that holds a record there, or else the topmost that holds anything.
+ * Null: none is painted there.
+ */
+export function layer_there(
+  seen: readonly Layer[],
+  { values }: Pick<Picked, "values">,
+): { layer: Layer; value: number } | null {
   const painted = seen.flatMap((layer) => {
     const found = values?.[layer.slug];
     return found?.valid && found.value !== undefined ? [{ layer, value: found.value }] : [];
@@ -23,13 +30,19 @@ export function layer_there(seen: readonly Layer[], { values }: Pick<Picked, "va
 }
 
 /** What a layer is called in the visitor's language, or as its makers call it. */
-export const name_of_layer = (layer: Pick<Layer, "name" | "labels">, language: string): string => label_of(layer, [language]);
+export const name_of_layer = (layer: Pick<Layer, "name" | "labels">, language: string): string =>
+  label_of(layer, [language]);
 
 /** What the place is, in words: the class, or a number with its unit; and what that is about. */
-export function words_of_place(layer: Layer, value: number, language: string): { title: string; about: string } {
+export function words_of_place(
+  layer: Layer,
+  value: number,
+  language: string,
+): { title: string; about: string } {
   const about = name_of_layer(layer, language);
   const { mode, points } = layer.palette;
-  if (mode !== "categorical") return { title: `${format_number(value, 3)}${layer.unit ? ` ${layer.unit}` : ""}`, about };
+  if (mode !== "categorical")
+    return { title: `${format_number(value, 3)}${layer.unit ? ` ${layer.unit}` : ""}`, about };
   const title = points.find(({ at }) => at === value)?.label ?? "";
   return title === "" || title === about ? { title: title || about, about: "" } : { title, about };
 }

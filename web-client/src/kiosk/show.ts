@@ -1,4 +1,5 @@
-// The model on the kiosk's stage: the live connection, the camera, and what the stop that is seen shows of layers, looks and light.
+// The model on the kiosk's stage: the live connection, the camera, and what the stop that is seen
+// shows of layers, looks and light.
 
 import { ViewControl } from "../app/view-control";
 import { new_id } from "../core/api";
@@ -16,7 +17,10 @@ const kAway_ms = 3000; // so long a lost connection is no news
 const kTapReach_css = 14; // a finger on glass
 
 export interface ShowHost {
-  /** The model, its layers, or a named view are known, or others; `views`: those of the tour are to be read again. */
+  /**
+   * The model, its layers, or a named view are known, or others; `views`: those of the tour are to
+   * be read again.
+   */
   learned(what: "model" | "views"): void;
   /** A tap, and what is there; where on the stage, in CSS pixels. */
   tapped(picked: Picked, at: { x: number; y: number }): void;
@@ -65,7 +69,11 @@ export class KioskShow {
       changed: () => {},
     });
     this.orbit_tool_ = new OrbitTool(
-      { orbit: (dx, dy) => this.move(() => this.view.orbit_pixels(dx, dy)), pan: () => {}, tap: (sample) => this.tap(sample) },
+      {
+        orbit: (dx, dy) => this.move(() => this.view.orbit_pixels(dx, dy)),
+        pan: () => {},
+        tap: (sample) => this.tap(sample),
+      },
       () => kTapReach_css * this.view.scale,
     );
     this.connection_ = this.make_connection(make_socket);
@@ -112,9 +120,13 @@ export class KioskShow {
     this.view.fly(place_like(view.camera, this.view.camera), flight_ms);
   }
 
-  /** What is known of the model, or of the view, may be something else than before. Where visitors have turned to stays, unless the view itself was changed. */
+  /**
+   * What is known of the model, or of the view, may be something else than before. Where visitors
+   * have turned to stays, unless the view itself was changed.
+   */
   go_on(view: View, layers: LayerOverride[]): void {
-    const same = this.placed_ && JSON.stringify(this.view_shown_?.camera) === JSON.stringify(view.camera);
+    const same =
+      this.placed_ && JSON.stringify(this.view_shown_?.camera) === JSON.stringify(view.camera);
     if (same) this.show_settings(view, layers);
     else this.go_to(view, layers, 0);
   }
@@ -127,14 +139,19 @@ export class KioskShow {
   private show_settings(view: View, layers: LayerOverride[]): void {
     this.show_layers(layers);
     const { settings, stack } = looks_of_view(view, this.looks);
-    const shown = view.looks ? stack.map((look) => ({ look, opacity: settings.get(look)?.opacity ?? 1 })) : null;
+    const shown = view.looks
+      ? stack.map((look) => ({ look, opacity: settings.get(look)?.opacity ?? 1 }))
+      : null;
     this.connection_.set_appearance(shown, view.light);
   }
   show_layers(layers: LayerOverride[]): void {
     this.connection_.set_layer_overrides(layers);
   }
 
-  /** CSS pixels, and window pixels for each. The words of a stop may need more room than those before: what is on its way there goes on. */
+  /**
+   * CSS pixels, and window pixels for each. The words of a stop may need more room than those
+   * before: what is on its way there goes on.
+   */
   set_viewport(width: number, height: number, scale: number): void {
     this.view.set_viewport(width, height, scale);
     if (!this.view_shown_ || !this.stands_at_view_ || !this.model) return;
@@ -172,7 +189,12 @@ export class KioskShow {
     const address = `${protocol === "https:" ? "wss" : "ws"}://${host}/api/v1/models/${encodeURIComponent(this.model_ref)}/live`;
     const nothing = (): void => {};
     return new Connection(
-      { url: as_kiosk(address), client: "strata-kiosk/0.1", device_pixel_ratio: window.devicePixelRatio, ...(make_socket ? { make_socket } : {}) },
+      {
+        url: as_kiosk(address),
+        client: "strata-kiosk/0.1",
+        device_pixel_ratio: window.devicePixelRatio,
+        ...(make_socket ? { make_socket } : {}),
+      },
       {
         state: (state) => {
           if (state === "lost") this.on_lost();
@@ -182,12 +204,14 @@ export class KioskShow {
         layer: (event) => {
           if (event.event === "edited") return;
           this.layers = this.layers.filter(({ id }) => id !== event.layer_id);
-          if (event.layer && event.event !== "deleted") this.layers = by_order([...this.layers, complete_layer(event.layer)]);
+          if (event.layer && event.event !== "deleted")
+            this.layers = by_order([...this.layers, complete_layer(event.layer)]);
           this.host_.learned("model");
         },
         look: (event) => {
           this.looks = this.looks.filter(({ id }) => id !== event.look_id);
-          if (event.look && event.event !== "deleted") this.looks = by_order([...this.looks, event.look]);
+          if (event.look && event.event !== "deleted")
+            this.looks = by_order([...this.looks, event.look]);
           this.host_.learned("model");
         },
         model: ({ model }) => {
@@ -199,8 +223,15 @@ export class KioskShow {
           this.pick_ = "";
           this.host_.tapped(message, this.picked_at_);
         },
-        // What visitors could do nothing about is not told to them; who looks after the screen finds it in the browser's console.
-        problem: (problem) => console.info("the server refused something:", problem.status, problem.title, problem.detail),
+        // What visitors could do nothing about is not told to them; who looks after the screen
+        // finds it in the browser's console.
+        problem: (problem) =>
+          console.info(
+            "the server refused something:",
+            problem.status,
+            problem.title,
+            problem.detail,
+          ),
         saving: nothing,
         applied: nothing,
         saved: nothing,
@@ -247,4 +278,5 @@ export class KioskShow {
   }
 }
 
-const by_order = <T extends { id: number; order: number }>(things: readonly T[]): T[] => [...things].sort((a, b) => a.order - b.order || a.id - b.id);
+const by_order = <T extends { id: number; order: number }>(things: readonly T[]): T[] =>
+  [...things].sort((a, b) => a.order - b.order || a.id - b.id);

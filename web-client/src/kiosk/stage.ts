@@ -1,4 +1,5 @@
-// <strata-kiosk-stage>: the streamed picture and the fingers on it. While there is no live picture, the stored one of the stop stands in its place.
+// <strata-kiosk-stage>: the streamed picture and the fingers on it. While there is no live picture,
+// the stored one of the stop stands in its place.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
@@ -20,7 +21,8 @@ const kKeyZoom = 0.85;
 export class StrataKioskStage extends LitElement {
   @property({ attribute: false }) session!: KioskSession;
   @property({ attribute: false }) show!: KioskShow;
-  @property({ type: Number }) changes = 0; // counted up by who holds it: the session draws by being told
+  // counted up by who holds it: the session draws by being told
+  @property({ type: Number }) changes = 0;
   @query("canvas") private canvas_!: HTMLCanvasElement;
   @query(".surface") private surface_!: HTMLElement;
 
@@ -144,7 +146,8 @@ export class StrataKioskStage extends LitElement {
     const { session, show } = this;
     const view = session.stop?.view;
     const live = show.drawn && !show.away;
-    // Behind the live picture it would only take memory; the browser has it at hand when it is wanted.
+    // Behind the live picture it would only take memory; the browser has it at hand when it is
+    // wanted.
     return html`${view && !live ? this.stored_picture(view) : nothing}
       <div class="surface" tabindex="0" role="application" aria-label=${session.words.stage} @keydown=${this.on_key}>
         <canvas class=${live ? "live" : ""} width="2" height="2"></canvas>

@@ -1,4 +1,5 @@
-// What the stops of a tour show: which of them there are, and of each the layers among which visitors choose.
+// What the stops of a tour show: which of them there are, and of each the layers among which
+// visitors choose.
 
 import type { LayerOverride, Tour, TourStop, View } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
@@ -17,12 +18,16 @@ export const stops_of = (tour: Pick<Tour, "stops">, views: ReadonlyMap<string, V
     return view ? [{ stop, view }] : [];
   });
 
-export const step_from = (index: number, by: number, count: number): number => (((index + by) % count) + count) % count;
+export const step_from = (index: number, by: number, count: number): number =>
+  (((index + by) % count) + count) % count;
 
 /** One of the ways in which a stop shows its layers; null: as its view was kept. */
 export type LayerChoice = Layer | null;
 
-/** The layers of the stop that there are, and before them the view as it was kept, unless that shows just one of them, too. */
+/**
+ * The layers of the stop that there are, and before them the view as it was kept, unless that shows
+ * just one of them, too.
+ */
 export function choices_of({ stop, view }: Stop, layers: readonly Layer[]): LayerChoice[] {
   const offered = stop.layers.flatMap((slug) => layers.find((layer) => layer.slug === slug) ?? []);
   if (offered.length === 0) return [];
@@ -31,7 +36,12 @@ export function choices_of({ stop, view }: Stop, layers: readonly Layer[]): Laye
 
 /** Which of the choices is seen on arrival. */
 export const first_choice = (stop: Stop, choices: readonly LayerChoice[]): LayerChoice =>
-  choices.includes(null) ? null : (shown_at_first(stop, choices.filter((choice) => choice !== null))[0] ?? null);
+  choices.includes(null)
+    ? null
+    : (shown_at_first(
+        stop,
+        choices.filter((choice) => choice !== null),
+      )[0] ?? null);
 
 function shown_at_first({ view }: Stop, offered: readonly Layer[]): Layer[] {
   const shown = layers_of_view(view, offered);
@@ -39,14 +49,26 @@ function shown_at_first({ view }: Stop, offered: readonly Layer[]): Layer[] {
 }
 
 /** As the view has the layers, but of those that are chosen among only the chosen one. */
-export function layers_shown(stop: Stop, layers: readonly Layer[], choices: readonly LayerChoice[], chosen: LayerChoice): LayerOverride[] {
+export function layers_shown(
+  stop: Stop,
+  layers: readonly Layer[],
+  choices: readonly LayerChoice[],
+  chosen: LayerChoice,
+): LayerOverride[] {
   const shown = layers_of_view(stop.view, layers);
-  if (chosen) for (const layer of choices) if (layer) shown.set(layer.id, { ...shown.get(layer.id), visible: layer.id === chosen.id });
+  if (chosen)
+    for (const layer of choices)
+      if (layer) shown.set(layer.id, { ...shown.get(layer.id), visible: layer.id === chosen.id });
   return [...shown].map(([layer, rest]) => ({ layer, ...rest }));
 }
 
 /** The layers that are seen then, the topmost first. */
-export function seen_layers(layers: readonly Layer[], overrides: readonly LayerOverride[]): Layer[] {
+export function seen_layers(
+  layers: readonly Layer[],
+  overrides: readonly LayerOverride[],
+): Layer[] {
   const visible = new Map(overrides.map((each) => [each.layer, each.visible]));
-  return [...layers].sort((a, b) => b.order - a.order || b.id - a.id).filter((layer) => visible.get(layer.id) ?? layer.visible);
+  return [...layers]
+    .sort((a, b) => b.order - a.order || b.id - a.id)
+    .filter((layer) => visible.get(layer.id) ?? layer.visible);
 }

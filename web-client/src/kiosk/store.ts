@@ -1,5 +1,6 @@
-// What a kiosk keeps in its browser, so that the tour goes on while the server is away: the page's files, what it was told of its tour, and all that
-// the stops show. Where browsers have no such store (addresses without TLS other than localhost), nothing is kept.
+// What a kiosk keeps in its browser, so that the tour goes on while the server is away: the page's
+// files, what it was told of its tour, and all that the stops show. Where browsers have no such
+// store (addresses without TLS other than localhost), nothing is kept.
 
 import { Api, ApiError, type Fetch } from "../core/api";
 import type { KioskSelf } from "../core/protocol.gen";
@@ -35,7 +36,10 @@ export class KioskStore {
 
   constructor(private readonly options_: StoreOptions) {}
 
-  /** What the server told of this link last; null where that is not known, or the link is over by now. */
+  /**
+   * What the server told of this link last; null where that is not known, or the link is over by
+   * now.
+   */
   async last_told(now: Date = new Date()): Promise<KioskSelf | null> {
     const found = await (await this.options_.open_shelf())?.match(await this.self_key());
     if (!found) return null;
@@ -50,8 +54,11 @@ export class KioskStore {
     for (const key of (await shelf?.keys()) ?? []) await shelf?.delete(key);
   }
 
-  /** Keeps the tour with all that it shows, one thing after the other, and nothing else: what a former state of it needed goes. `state`: another one is
-   *  kept anew. What fails is tried again with the next call. */
+  /**
+   * Keeps the tour with all that it shows, one thing after the other, and nothing else: what a
+   * former state of it needed goes. `state`: another one is kept anew. What fails is tried again
+   * with the next call.
+   */
   async keep(self: KioskSelf, state: string): Promise<void> {
     const now_ms = performance.now();
     if (this.keeping_ || (state === this.kept_ && now_ms - this.kept_ms_ < kAgain_ms)) return;
@@ -98,7 +105,10 @@ export class KioskStore {
 
   /** Not the secret itself: it is nobody's who reads the store. */
   private async self_key(): Promise<string> {
-    const digest = await crypto.subtle.digest("SHA-256", new TextEncoder().encode(this.options_.secret));
+    const digest = await crypto.subtle.digest(
+      "SHA-256",
+      new TextEncoder().encode(this.options_.secret),
+    );
     return `/kiosk/told/${[...new Uint8Array(digest)].map((byte) => byte.toString(16).padStart(2, "0")).join("")}`;
   }
 }
@@ -121,7 +131,13 @@ async function keep_tour({ model, tour }: KioskSelf, get: Fetch, put: Put): Prom
   for (const stop of tour.stops)
     for (const { table, keys } of stop.records)
       for (const key of keys) {
-        const card = await card_of(api, { table, key, stop, language: tour.languages[0]!, languages: tour.languages });
+        const card = await card_of(api, {
+          table,
+          key,
+          stop,
+          language: tour.languages[0]!,
+          languages: tour.languages,
+        });
         for (const { small, large } of card?.pictures ?? []) {
           await picture(small);
           await picture(large);
@@ -140,7 +156,9 @@ async function unless_gone(asked: Promise<unknown>): Promise<void> {
 /** What the page has loaded under names that never change, and its icon. */
 function files_of_page(): string[] {
   const loaded = performance.getEntriesByType("resource").map(({ name }) => new URL(name));
-  const own = loaded.filter(({ origin, pathname }) => origin === location.origin && pathname.startsWith("/assets/"));
+  const own = loaded.filter(
+    ({ origin, pathname }) => origin === location.origin && pathname.startsWith("/assets/"),
+  );
   return [...new Set([...own.map(({ pathname }) => pathname), "/favicon.svg"])];
 }
 
@@ -151,15 +169,22 @@ export async function open_browser_shelf(): Promise<StoreShelf | null> {
     match: (key) => cache.match(key, { ignoreVary: true }),
     put: (key, response) => cache.put(key, response),
     delete: (key) => cache.delete(key, { ignoreVary: true }),
-    keys: async () => (await cache.keys()).map(({ url }) => new URL(url)).map(({ pathname, search }) => pathname + search),
+    keys: async () =>
+      (await cache.keys())
+        .map(({ url }) => new URL(url))
+        .map(({ pathname, search }) => pathname + search),
   };
 }
 
-/** The worker that answers from the store. Without one the page goes on all the same, as long as nobody loads it anew. */
+/**
+ * The worker that answers from the store. Without one the page goes on all the same, as long as
+ * nobody loads it anew.
+ */
 export async function start_worker(): Promise<void> {
   try {
     await navigator.serviceWorker?.register("/kiosk-worker.js", { scope: kPageKey });
   } catch (error) {
-    console.info("no service worker:", String(error)); // a browser that has none, or whose owner forbids it
+    // a browser that has none, or whose owner forbids it
+    console.info("no service worker:", String(error));
   }
 }

@@ -2,13 +2,18 @@
 
 const kReach = 48; // CSS pixels
 
-/** Tells +1 for what lies to the right, which is drawn in by going left; −1 for the other side. Returns how to stop. */
+/**
+ * Tells +1 for what lies to the right, which is drawn in by going left; −1 for the other side.
+ * Returns how to stop.
+ */
 export function follow_swipes(element: HTMLElement, swiped: (by: 1 | -1) => void): () => void {
   let start: { pointer: number; x: number; y: number } | null = null;
   let just_swiped = false;
   const down = (event: PointerEvent): void => {
     just_swiped = false;
-    start = event.isPrimary ? { pointer: event.pointerId, x: event.clientX, y: event.clientY } : null;
+    start = event.isPrimary
+      ? { pointer: event.pointerId, x: event.clientX, y: event.clientY }
+      : null;
   };
   const up = (event: PointerEvent): void => {
     if (start?.pointer !== event.pointerId) return;

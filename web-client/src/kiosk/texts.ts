@@ -1,11 +1,13 @@
-// The words of the kiosk's own buttons and signs. What the stops say comes with the tour, in languages of which this page may have no words of its own.
+// The words of the kiosk's own buttons and signs. What the stops say comes with the tour, in
+// languages of which this page may have no words of its own.
 
 import { page_language, type PageLanguage } from "../core/locale";
 
 const en = {
   begin: "Touch to begin",
   still_there: "Are you still there?",
-  begins_anew: (seconds: number) => `The tour begins anew in ${seconds} ${seconds === 1 ? "second" : "seconds"}.`,
+  begins_anew: (seconds: number) =>
+    `The tour begins anew in ${seconds} ${seconds === 1 ? "second" : "seconds"}.`,
   here: "I am still here",
   previous: "Previous",
   next: "Next",
@@ -19,21 +21,25 @@ const en = {
   enlarge: (name: string) => `Enlarge: ${name}`,
   yes: "yes",
   no: "no",
-  stage: "The object in 3D. One finger turns it; two fingers move, enlarge and tilt it; a tap tells more about a place.",
+  stage:
+    "The object in 3D. One finger turns it; two fingers move, enlarge and tilt it; a tap tells more about a place.",
   hint: "Turn with one finger, enlarge with two. Tap a place to learn more.",
   stored: "Still pictures for a moment",
   waiting: "One moment …",
   worthless: "This screen has no tour any more",
-  worthless_detail: "Its link was withdrawn or is over. Whoever looks after the screen can make a new one in Strata.",
+  worthless_detail:
+    "Its link was withdrawn or is over. Whoever looks after the screen can make a new one in Strata.",
   nothing: "This tour has nothing to show yet",
-  nothing_detail: "Whoever looks after it can give its stops views in Strata. This screen then begins by itself.",
+  nothing_detail:
+    "Whoever looks after it can give its stops views in Strata. This screen then begins by itself.",
 };
 export type KioskTexts = typeof en;
 
 const de: KioskTexts = {
   begin: "Zum Beginnen berühren",
   still_there: "Sind Sie noch da?",
-  begins_anew: (seconds) => `Der Rundgang beginnt in ${seconds} ${seconds === 1 ? "Sekunde" : "Sekunden"} von vorn.`,
+  begins_anew: (seconds) =>
+    `Der Rundgang beginnt in ${seconds} ${seconds === 1 ? "Sekunde" : "Sekunden"} von vorn.`,
   here: "Ich bin noch da",
   previous: "Zurück",
   next: "Weiter",
@@ -47,20 +53,24 @@ const de: KioskTexts = {
   enlarge: (name) => `Vergrößern: ${name}`,
   yes: "ja",
   no: "nein",
-  stage: "Das Objekt in 3D. Ein Finger dreht es; zwei Finger verschieben, vergrößern und neigen es; ein Tippen erzählt mehr über eine Stelle.",
+  stage:
+    "Das Objekt in 3D. Ein Finger dreht es; zwei Finger verschieben, vergrößern und neigen es; ein Tippen erzählt mehr über eine Stelle.",
   hint: "Mit einem Finger drehen, mit zweien vergrößern. Tippen Sie auf eine Stelle, um mehr zu erfahren.",
   stored: "Für einen Moment stehende Bilder",
   waiting: "Einen Moment …",
   worthless: "Dieser Bildschirm hat keinen Rundgang mehr",
-  worthless_detail: "Sein Link wurde zurückgezogen oder ist abgelaufen. Wer den Bildschirm betreut, kann in Strata einen neuen anlegen.",
+  worthless_detail:
+    "Sein Link wurde zurückgezogen oder ist abgelaufen. Wer den Bildschirm betreut, kann in Strata einen neuen anlegen.",
   nothing: "Dieser Rundgang hat noch nichts zu zeigen",
-  nothing_detail: "Wer ihn betreut, kann seinen Stationen in Strata Ansichten geben. Dieser Bildschirm beginnt dann von selbst.",
+  nothing_detail:
+    "Wer ihn betreut, kann seinen Stationen in Strata Ansichten geben. Dieser Bildschirm beginnt dann von selbst.",
 };
 
 const es: KioskTexts = {
   begin: "Toque para comenzar",
   still_there: "¿Sigue ahí?",
-  begins_anew: (seconds) => `El recorrido vuelve a empezar en ${seconds} ${seconds === 1 ? "segundo" : "segundos"}.`,
+  begins_anew: (seconds) =>
+    `El recorrido vuelve a empezar en ${seconds} ${seconds === 1 ? "segundo" : "segundos"}.`,
   here: "Sigo aquí",
   previous: "Anterior",
   next: "Siguiente",
@@ -74,17 +84,24 @@ const es: KioskTexts = {
   enlarge: (name) => `Ampliar: ${name}`,
   yes: "sí",
   no: "no",
-  stage: "El objeto en 3D. Con un dedo se gira; con dos se mueve, se amplía y se inclina; un toque cuenta más sobre un lugar.",
+  stage:
+    "El objeto en 3D. Con un dedo se gira; con dos se mueve, se amplía y se inclina; un toque cuenta más sobre un lugar.",
   hint: "Gire con un dedo, amplíe con dos. Toque un lugar para saber más.",
   stored: "Imágenes fijas por un momento",
   waiting: "Un momento…",
   worthless: "Esta pantalla ya no tiene recorrido",
-  worthless_detail: "Su enlace se retiró o ha caducado. Quien cuida la pantalla puede crear otro en Strata.",
+  worthless_detail:
+    "Su enlace se retiró o ha caducado. Quien cuida la pantalla puede crear otro en Strata.",
   nothing: "Este recorrido aún no tiene nada que mostrar",
-  nothing_detail: "Quien lo cuida puede dar vistas a sus paradas en Strata. Esta pantalla empezará entonces por sí sola.",
+  nothing_detail:
+    "Quien lo cuida puede dar vistas a sus paradas en Strata. Esta pantalla empezará entonces por sí sola.",
 };
 
 const all: Record<PageLanguage, KioskTexts> = { en, de, es };
 
-/** In the language of the tour that was chosen, or else in the first of the tour's that this page is written in, or English. */
-export const texts_in = (language: string, languages: readonly string[]): KioskTexts => all[page_language(language, languages)];
+/**
+ * In the language of the tour that was chosen, or else in the first of the tour's that this page is
+ * written in, or English.
+ */
+export const texts_in = (language: string, languages: readonly string[]): KioskTexts =>
+  all[page_language(language, languages)];

@@ -1,4 +1,5 @@
-// The service worker of the kiosks' page: while the server is away it answers with what the page has stored. It has no say over any other page.
+// The service worker of the kiosks' page: while the server is away it answers with what the page
+// has stored. It has no say over any other page.
 
 import { answered, says_away } from "./worker-rules";
 
@@ -36,14 +37,17 @@ scope.addEventListener("fetch", (event) => {
   }
 });
 
-const stored = (key: string): Promise<Response | undefined> => caches.match(key, { ignoreVary: true });
+const stored = (key: string): Promise<Response | undefined> =>
+  caches.match(key, { ignoreVary: true });
 
 /** The server's, or what is stored where it has none within a moment. */
 async function newest(request: Request, key: string): Promise<Response> {
   const asked = fetch(request);
   asked.catch(() => {}); // it may fail after the moment, when nobody waits for it any more
   let timer: ReturnType<typeof setTimeout> | undefined;
-  const late = new Promise<null>((resolve) => (timer = setTimeout(() => resolve(null), kPatience_ms)));
+  const late = new Promise<null>(
+    (resolve) => (timer = setTimeout(() => resolve(null), kPatience_ms)),
+  );
   try {
     const answer = await Promise.race([asked, late]);
     if (answer && !says_away(answer.status)) return answer;

@@ -53,8 +53,10 @@ export class BrushTool implements Tool {
     const spacing = Math.max(0.5, this.host_.radius_px() * 0.1);
     for (const sample of samples) {
       this.see(sample);
-      const pressed = Math.abs(this.newest_width_ - this.last_width_) >= kWidthStep; // in place, too
-      if (pressed || Math.hypot(sample.x - this.last_[0], sample.y - this.last_[1]) >= spacing) this.take();
+      // in place, too
+      const pressed = Math.abs(this.newest_width_ - this.last_width_) >= kWidthStep;
+      if (pressed || Math.hypot(sample.x - this.last_[0], sample.y - this.last_[1]) >= spacing)
+        this.take();
     }
     this.schedule();
   }
@@ -91,7 +93,10 @@ export class BrushTool implements Tool {
 
   private flush(): void {
     if (this.waiting_.length === 0) return;
-    this.stroke_?.extend(this.waiting_, this.widths_.some((width) => width !== 1) ? this.widths_ : undefined);
+    this.stroke_?.extend(
+      this.waiting_,
+      this.widths_.some((width) => width !== 1) ? this.widths_ : undefined,
+    );
     this.waiting_ = [];
     this.widths_ = [];
   }

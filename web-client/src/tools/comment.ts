@@ -1,4 +1,5 @@
-// A tap begins a comment at its place. A drag turns the model, as to the place that is meant one has to come first.
+// A tap begins a comment at its place. A drag turns the model, as to the place that is meant one
+// has to come first.
 
 import type { PointerSample } from "../core/input";
 import { DragTool, type Navigator } from "./navigate";

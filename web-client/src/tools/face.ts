@@ -1,4 +1,5 @@
-// A tap takes the face of the surface that lies there. A drag turns the model: what is looked for may lie on its other side.
+// A tap takes the face of the surface that lies there. A drag turns the model: what is looked for
+// may lie on its other side.
 
 import { DragTool, type Navigator } from "./navigate";
 import type { Tool } from "./tool";
@@ -20,7 +21,8 @@ export class FaceTool extends DragTool implements Tool {
   }
 
   key(key: string): boolean {
-    if (key === "Enter") this.host_.take_in_middle(); // without a pointer
+    if (key === "Enter")
+      this.host_.take_in_middle(); // without a pointer
     else if (key === "Escape") this.host_.give_up();
     else return false;
     return true;

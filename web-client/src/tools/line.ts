@@ -1,4 +1,5 @@
-// A line on the surface: drawn in one go, or pressed place by place. While one is drawn the camera stays, as with areas.
+// A line on the surface: drawn in one go, or pressed place by place. While one is drawn the camera
+// stays, as with areas.
 
 import type { Point } from "../core/connection";
 import type { PointerSample } from "../core/input";
@@ -12,7 +13,8 @@ const kDragReach_px = 6; // CSS pixels that a hand trembles: farther, and a pres
 export class LineTool extends PlacesTool implements Tool {
   readonly name = "line";
   private corners_: Point[] = [];
-  private press_: { at: Point; first: boolean; dragged: boolean; points: number } | null = null; // under way, with how many were before
+  // under way, with how many were before
+  private press_: { at: Point; first: boolean; dragged: boolean; points: number } | null = null;
 
   constructor(host: OutlineHost) {
     super(host, 2, kMostPoints);
@@ -21,7 +23,13 @@ export class LineTool extends PlacesTool implements Tool {
   override get outline(): Outline | null {
     if (this.points.length === 0) return null;
     const leads_on = !this.press_ && this.points.length < this.most;
-    return { points: this.points, corners: this.corners_, pointer: leads_on ? this.pointer : null, closable: false, area: false };
+    return {
+      points: this.points,
+      corners: this.corners_,
+      pointer: leads_on ? this.pointer : null,
+      closable: false,
+      area: false,
+    };
   }
 
   down(sample: PointerSample): void {
@@ -43,7 +51,9 @@ export class LineTool extends PlacesTool implements Tool {
     const press = this.press_;
     if (!press) return;
     const reach = kDragReach_px * this.host.scale();
-    press.dragged ||= samples.some(({ x, y }) => Math.hypot(x - press.at[0], y - press.at[1]) > reach);
+    press.dragged ||= samples.some(
+      ({ x, y }) => Math.hypot(x - press.at[0], y - press.at[1]) > reach,
+    );
     if (press.dragged) this.follow(samples);
   }
 
@@ -68,7 +78,9 @@ export class LineTool extends PlacesTool implements Tool {
 
   protected override take_back(points: number): void {
     const left = this.points.slice(0, points);
-    this.corners_ = this.corners_.filter((corner) => left.some(([x, y]) => x === corner[0] && y === corner[1]));
+    this.corners_ = this.corners_.filter((corner) =>
+      left.some(([x, y]) => x === corner[0] && y === corner[1]),
+    );
     super.take_back(points);
   }
 }

@@ -1,4 +1,5 @@
-// Taps set places that are measured between. A drag turns the model, as with comments: the far end of what is measured may lie on its other side.
+// Taps set places that are measured between. A drag turns the model, as with comments: the far end
+// of what is measured may lie on its other side.
 
 import type { PointerSample } from "../core/input";
 import { DragTool, type Navigator } from "./navigate";
@@ -31,7 +32,8 @@ export class MeasureTool extends DragTool implements Tool {
   }
 
   key(key: string): boolean {
-    if (key === "m" || key === "M") this.host_.set_in_middle(); // without a pointer
+    if (key === "m" || key === "M")
+      this.host_.set_in_middle(); // without a pointer
     else if (!this.host_.begun()) return false;
     else if (key === "Enter") this.host_.end();
     else if (key === "Backspace" || key === "Delete") this.host_.take_back();

@@ -31,7 +31,8 @@ export abstract class DragTool {
   move(samples: PointerSample[]): void {
     const now = samples[samples.length - 1];
     if (!now || !this.last_) return;
-    if (this.start_ && Math.hypot(now.x - this.start_.x, now.y - this.start_.y) > this.tap_reach_()) this.start_ = null;
+    if (this.start_ && Math.hypot(now.x - this.start_.x, now.y - this.start_.y) > this.tap_reach_())
+      this.start_ = null;
     this.dragged(now.x - this.last_.x, now.y - this.last_.y);
     this.last_ = now;
   }

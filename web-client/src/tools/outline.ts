@@ -1,5 +1,6 @@
-// Polygon and lasso: an outline in the picture, whose inside is painted. While one is drawn the camera stays, because its
-// points are pixels of the camera that it began with. Lines are drawn the same way.
+// Polygon and lasso: an outline in the picture, whose inside is painted. While one is drawn the
+// camera stays, because its points are pixels of the camera that it began with. Lines are drawn the
+// same way.
 
 import type { Point } from "../core/connection";
 import type { PointerSample } from "../core/input";
@@ -45,7 +46,9 @@ export abstract class OutlineTool {
   ) {}
 
   get outline(): Outline | null {
-    return this.points.length > 0 ? { points: this.points, corners: [], pointer: null, closable: false, area: true } : null;
+    return this.points.length > 0
+      ? { points: this.points, corners: [], pointer: null, closable: false, area: true }
+      : null;
   }
 
   activate(): void {}
@@ -156,7 +159,13 @@ export class PolygonTool extends PlacesTool implements Tool {
 
   override get outline(): Outline | null {
     if (this.points.length === 0) return null;
-    return { points: this.points, corners: this.points, pointer: this.pointer, closable: this.points.length >= 3, area: true };
+    return {
+      points: this.points,
+      corners: this.points,
+      pointer: this.pointer,
+      closable: this.points.length >= 3,
+      area: true,
+    };
   }
 
   down(sample: PointerSample): void {
@@ -166,7 +175,9 @@ export class PolygonTool extends PlacesTool implements Tool {
       this.added_ = this.begin(sample);
       return;
     }
-    const closes = this.is_at(sample, this.points[0]!) || this.is_at(sample, this.points[this.points.length - 1]!);
+    const closes =
+      this.is_at(sample, this.points[0]!) ||
+      this.is_at(sample, this.points[this.points.length - 1]!);
     if (closes) {
       if (this.points.length >= 3) this.finish();
       return;

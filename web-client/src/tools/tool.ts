@@ -3,12 +3,32 @@
 import type { PointerSample } from "../core/input";
 import type { Outline } from "./outline";
 
-export type ToolName = "orbit" | "pan" | "brush" | "eraser" | "polygon" | "lasso" | "bucket" | "pick" | "line" | "point" | "comment" | "measure" | "face";
+export type ToolName =
+  | "orbit"
+  | "pan"
+  | "brush"
+  | "eraser"
+  | "polygon"
+  | "lasso"
+  | "bucket"
+  | "pick"
+  | "line"
+  | "point"
+  | "comment"
+  | "measure"
+  | "face";
 
 /** Those that add to a record of the layer's table. */
 export const kMarkingTools: readonly ToolName[] = ["line", "point"];
 /** Those that change what a layer shows. */
-export const kPaintingTools: readonly ToolName[] = ["brush", "eraser", "polygon", "lasso", "bucket", ...kMarkingTools];
+export const kPaintingTools: readonly ToolName[] = [
+  "brush",
+  "eraser",
+  "polygon",
+  "lasso",
+  "bucket",
+  ...kMarkingTools,
+];
 /** Those of whoever may do more than look. */
 export const kChangingTools: readonly ToolName[] = [...kPaintingTools, "comment"];
 

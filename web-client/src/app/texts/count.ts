@@ -9,4 +9,5 @@ export function plural(n: number, one: string, other: string, many = other): str
 }
 
 /** "1 layer", "1,200 layers". */
-export const count = (n: number, one: string, other: string, many = other): string => `${format_count(n)} ${plural(n, one, other, many)}`;
+export const count = (n: number, one: string, other: string, many = other): string =>
+  `${format_count(n)} ${plural(n, one, other, many)}`;

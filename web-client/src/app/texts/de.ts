@@ -1,4 +1,5 @@
-// German, as it is written in archaeology and conservation. Orders are put without a person where that reads naturally ("Datei wählen"), else with "Sie".
+// German, as it is written in archaeology and conservation. Orders are put without a person where
+// that reads naturally ("Datei wählen"), else with "Sie".
 //
 // Words of the field:
 //   model Modell · scan Scan · surface Oberfläche · layer Ebene · look Oberflächenbild · raking light Streiflicht · section Schnitt
@@ -44,19 +45,23 @@ export const texts = {
     button: "Anmelden",
     empty: "Bitte Namen und Passwort eingeben.",
     wrong: "Name oder Passwort stimmt nicht. Beim Passwort zählt Groß- und Kleinschreibung.",
-    forgotten: "Passwort vergessen? Die Administration dieses Servers kann einen neuen Link schicken.",
+    forgotten:
+      "Passwort vergessen? Die Administration dieses Servers kann einen neuen Link schicken.",
     otherwise: "Mit Link oder Token",
-    otherwise_lead: "Hier den Link einfügen, den der Server beim Start ausgegeben hat, oder ein Token.",
+    otherwise_lead:
+      "Hier den Link einfügen, den der Server beim Start ausgegeben hat, oder ein Token.",
     token: "Link oder Token",
     token_hint: "Der Link sieht so aus:",
     token_empty: "Bitte zuerst einen Link oder ein Token einfügen.",
-    token_wrong: "Dieser Link oder dieses Token ist hier nicht bekannt. Bitte vollständig und ohne Leerzeichen kopieren und erneut versuchen.",
+    token_wrong:
+      "Dieser Link oder dieses Token ist hier nicht bekannt. Bitte vollständig und ohne Leerzeichen kopieren und erneut versuchen.",
   },
 
   password: {
     show: "Passwort anzeigen",
     hide: "Passwort verbergen",
-    hint: (least) => `Mindestens ${least} Zeichen. Mehrere Wörter sind leicht zu merken und schwer zu erraten.`,
+    hint: (least) =>
+      `Mindestens ${least} Zeichen. Mehrere Wörter sind leicht zu merken und schwer zu erraten.`,
     too_short: (least) => `Bitte mindestens ${least} Zeichen nehmen.`,
     is_the_name: "Das Passwort darf nicht der Name sein.",
     differs: "Die beiden stimmen nicht überein. Bitte noch einmal schreiben.",
@@ -64,9 +69,11 @@ export const texts = {
 
   join: {
     greeting: (name) => `Willkommen, ${name}`,
-    lead: (role) => `Sie sind auf diesen Server eingeladen, mit der Rolle „${role}“. Wählen Sie ein Passwort: damit und mit Ihrem Namen melden Sie sich künftig an.`,
+    lead: (role) =>
+      `Sie sind auf diesen Server eingeladen, mit der Rolle „${role}“. Wählen Sie ein Passwort: damit und mit Ihrem Namen melden Sie sich künftig an.`,
     groups: (groups) => `Sie gehören zu: ${groups}.`,
-    lead_again: "Wählen Sie ein neues Passwort: damit und mit Ihrem Namen melden Sie sich künftig an. Bis dahin gilt das alte.",
+    lead_again:
+      "Wählen Sie ein neues Passwort: damit und mit Ihrem Namen melden Sie sich künftig an. Bis dahin gilt das alte.",
     user: "Name zum Anmelden",
     full_name: "Vollständiger Name",
     password: "Passwort",
@@ -74,9 +81,11 @@ export const texts = {
     button: "Passwort festlegen und anmelden",
     looking: "Einladung wird geprüft …",
     useless_title: "Dieser Link gilt nicht mehr",
-    useless_lead: "Er wurde schon benutzt, ist zu alt, oder ein neuerer hat ihn ersetzt. Bitten Sie die Person, die Sie eingeladen hat, um einen neuen.",
+    useless_lead:
+      "Er wurde schon benutzt, ist zu alt, oder ein neuerer hat ihn ersetzt. Bitten Sie die Person, die Sie eingeladen hat, um einen neuen.",
     incomplete_title: "Dieser Link ist unvollständig",
-    incomplete_lead: "Bitte den ganzen Link, bis zum Ende, in die Adresszeile des Browsers kopieren.",
+    incomplete_lead:
+      "Bitte den ganzen Link, bis zum Ende, in die Adresszeile des Browsers kopieren.",
     to_sign_in: "Zur Anmeldung",
     other_person: (signed_in, invited) =>
       `In diesem Browser ist jemand anderes angemeldet: ${signed_in}. Der Link ist für ${invited}. Bitte hier zuerst abmelden, dann fortfahren.`,
@@ -106,7 +115,8 @@ export const texts = {
     people: "Personen …",
     sign_out: "Abmelden",
     sign_out_title: "Jetzt abmelden?",
-    sign_out_lead: (n) => `${changes(n)} ${plural(n, "ist", "sind")} noch nicht gespeichert. Was vorher nicht gespeichert werden kann, bleibt in diesem Browser, bis Sie hier zum Modell zurückkommen.`,
+    sign_out_lead: (n) =>
+      `${changes(n)} ${plural(n, "ist", "sind")} noch nicht gespeichert. Was vorher nicht gespeichert werden kann, bleibt in diesem Browser, bis Sie hier zum Modell zurückkommen.`,
     title: "Ihr Konto",
     about: (user, role) => `Name zum Anmelden: ${user} · Rolle: ${role}`,
     in_projects: "Ihre Rollen in Projekten",
@@ -114,7 +124,8 @@ export const texts = {
     full_name: "Vollständiger Name",
     full_name_saved: "Ihr Name ist gespeichert.",
     password: "Passwort",
-    password_set: "Sie haben noch kein Passwort: ohne eines kommen Sie nur über einen Link wieder herein.",
+    password_set:
+      "Sie haben noch kein Passwort: ohne eines kommen Sie nur über einen Link wieder herein.",
     current: "Bisheriges Passwort",
     current_missing: "Bitte das jetzige Passwort angeben.",
     new: "Neues Passwort",
@@ -125,7 +136,10 @@ export const texts = {
     no_password: "Passwort festlegen",
     no_password_why: "damit Sie auch ohne den Link wieder hereinkommen.",
     sessions: "Wo Sie angemeldet sind",
-    browser: (browser, system) => (browser && system ? `${browser} auf ${system}` : browser || system || "Ein Browser, der seinen Namen nicht nennt"),
+    browser: (browser, system) =>
+      browser && system
+        ? `${browser} auf ${system}`
+        : browser || system || "Ein Browser, der seinen Namen nicht nennt",
     this_browser: "dieser Browser",
     last_used: (when) => `benutzt ${when}`,
     since: (when) => `angemeldet ${when}`,
@@ -133,12 +147,14 @@ export const texts = {
     sign_out_others: "Überall sonst abmelden",
     signed_out_others: "Sie sind überall sonst abgemeldet.",
     tokens: "Token für Skripte",
-    tokens_lead: "Ein Skript sendet sein Token statt eines Passworts und darf, was die Rolle des Tokens erlaubt.",
+    tokens_lead:
+      "Ein Skript sendet sein Token statt eines Passworts und darf, was die Rolle des Tokens erlaubt.",
     no_tokens: "Es gibt keine.",
     token_new: "Neues Token",
     token_name: "Wofür es ist",
     token_name_hint: "Nächtlicher Bericht",
-    token_name_missing: "Bitte angeben, wofür es ist, damit später klar ist, welches zu widerrufen ist.",
+    token_name_missing:
+      "Bitte angeben, wofür es ist, damit später klar ist, welches zu widerrufen ist.",
     token_role: "Rolle",
     token_where: "Gilt in",
     token_everywhere: "Allen meinen Projekten",
@@ -151,16 +167,19 @@ export const texts = {
       [3650, "zehn Jahre"],
     ],
     token_make: "Token anlegen",
-    token_made: (name) => `Das Token „${name}“. Bitte jetzt kopieren: es wird nicht noch einmal angezeigt.`,
+    token_made: (name) =>
+      `Das Token „${name}“. Bitte jetzt kopieren: es wird nicht noch einmal angezeigt.`,
     token_example: "Zum Beispiel",
-    token_line: (role, where, until, used) => [role, where, until, used].filter(Boolean).join(" · "),
+    token_line: (role, where, until, used) =>
+      [role, where, until, used].filter(Boolean).join(" · "),
     token_until: (when) => `bis ${when}`,
     token_expired: (when) => `abgelaufen ${when}`,
     token_used: (when) => `benutzt ${when}`,
     token_unused: "nie benutzt",
     token_revoke: (name) => `${name} widerrufen`,
     token_revoke_title: (name) => `Das Token „${name}“ widerrufen?`,
-    token_revoke_lead: "Skripte, die es benutzen, werden ab sofort abgewiesen. Das lässt sich nicht rückgängig machen.",
+    token_revoke_lead:
+      "Skripte, die es benutzen, werden ab sofort abgewiesen. Das lässt sich nicht rückgängig machen.",
     revoke: "Widerrufen",
   },
 
@@ -187,7 +206,11 @@ export const texts = {
     states: { invited: "eingeladen", active: "aktiv", disabled: "gesperrt" },
     no_password: "kein Passwort",
     no_password_hint: "Kommt über den Link herein, den der Server ausgibt",
-    state_hints: { invited: "Es wurde noch kein Passwort festgelegt", active: "Kann sich anmelden", disabled: "Kann sich nicht anmelden" },
+    state_hints: {
+      invited: "Es wurde noch kein Passwort festgelegt",
+      active: "Kann sich anmelden",
+      disabled: "Kann sich nicht anmelden",
+    },
     last_seen: "Zuletzt da",
     never: "nie",
     you: "Sie",
@@ -197,24 +220,29 @@ export const texts = {
     invite_user: "Name zum Anmelden",
     invite_user_hint: "ada",
     user_missing: "Bitte einen Namen zum Anmelden angeben.",
-    user_wrong: "Nur Buchstaben ohne Akzente, Ziffern und . _ - @, zuerst ein Buchstabe oder eine Ziffer, höchstens 64.",
+    user_wrong:
+      "Nur Buchstaben ohne Akzente, Ziffern und . _ - @, zuerst ein Buchstabe oder eine Ziffer, höchstens 64.",
     invite_button: "Link erzeugen",
     link: (name) => `Link für ${name}`,
-    link_lead: (until) => `Nur an diese Person weitergeben: wer ihn hat, kann das Passwort festlegen. Er wird nur jetzt angezeigt, gilt einmal und bis ${until}.`,
+    link_lead: (until) =>
+      `Nur an diese Person weitergeben: wer ihn hat, kann das Passwort festlegen. Er wird nur jetzt angezeigt, gilt einmal und bis ${until}.`,
     link_done: "Fertig",
     new_link: "Neuer Link …",
     new_link_title: (name) => `Neuer Link für ${name}?`,
-    new_link_lead: "Damit wird ein neues Passwort festgelegt. Frühere Links werden ungültig; ein vorhandenes Passwort gilt bis dahin weiter.",
+    new_link_lead:
+      "Damit wird ein neues Passwort festgelegt. Frühere Links werden ungültig; ein vorhandenes Passwort gilt bis dahin weiter.",
     new_link_button: "Link erzeugen",
     disable: "Sperren …",
     disable_title: (name) => `Das Konto von ${name} sperren?`,
-    disable_lead: "Die Person wird überall abgemeldet, ihre Token gelten nicht mehr, und sie kann sich erst wieder anmelden, wenn das Konto entsperrt ist.",
+    disable_lead:
+      "Die Person wird überall abgemeldet, ihre Token gelten nicht mehr, und sie kann sich erst wieder anmelden, wenn das Konto entsperrt ist.",
     disable_button: "Sperren",
     enable: "Entsperren",
     projects: "Rollen in Projekten …",
     delete: "Löschen …",
     delete_title: (name) => `Das Konto von ${name} löschen?`,
-    delete_lead: "Die Person wird abgemeldet und kann nicht wiederkommen. Was sie gemalt und geschrieben hat, bleibt in der Historie, unter einem Namen, der nichts verrät. Das lässt sich nicht rückgängig machen.",
+    delete_lead:
+      "Die Person wird abgemeldet und kann nicht wiederkommen. Was sie gemalt und geschrieben hat, bleibt in der Historie, unter einem Namen, der nichts verrät. Das lässt sich nicht rückgängig machen.",
     role_changed: (role) => `Hat jetzt die Rolle „${role}“.`,
     disabled: "Kann sich nicht mehr anmelden.",
     enabled: "Kann sich wieder anmelden.",
@@ -229,12 +257,14 @@ export const texts = {
     name_empty: "Bitte der Gruppe einen Namen geben.",
     make: "Gruppe anlegen",
     none: "Es gibt noch keine Gruppen.",
-    about: (people, projects) => `${count(people, "Person", "Personen")} · ${projects === 0 ? "in keinem Projekt eine Rolle" : `Rolle in ${count(projects, "Projekt", "Projekten")}`}`,
+    about: (people, projects) =>
+      `${count(people, "Person", "Personen")} · ${projects === 0 ? "in keinem Projekt eine Rolle" : `Rolle in ${count(projects, "Projekt", "Projekten")}`}`,
     options: (name) => `Optionen für die Gruppe ${name}`,
     of: (name) => `Gruppen von ${name}`,
     members: "Wer dazugehört …",
     members_of: (name) => `Wer zu „${name}“ gehört`,
-    inside: (n) => `${count(n, "Person gehört", "Personen gehören")} dazu. Jede Änderung gilt sofort.`,
+    inside: (n) =>
+      `${count(n, "Person gehört", "Personen gehören")} dazu. Jede Änderung gilt sofort.`,
     find_hint: "Name",
     put_in: "Gehört jetzt dazu.",
     taken_out: "Gehört nicht mehr dazu.",
@@ -264,7 +294,8 @@ export const texts = {
   projects: {
     new: "Neues Projekt",
     new_title: "Neues Projekt",
-    new_lead: "Ein Projekt ist ein Fundplatz oder eine Sammlung: seine Modelle, deren Tabellen und die Personen, die daran arbeiten.",
+    new_lead:
+      "Ein Projekt ist ein Fundplatz oder eine Sammlung: seine Modelle, deren Tabellen und die Personen, die daran arbeiten.",
     name: "Name",
     name_hint: "Villa Giulia",
     name_empty: "Geben Sie ihm einen Namen.",
@@ -272,27 +303,38 @@ export const texts = {
     text_hint: "Was hier dokumentiert wird, wann und von wem",
     create: "Projekt anlegen",
     made: (name) => `Das Projekt „${name}“ ist angelegt.`,
-    made_next: "Importieren Sie hier seine Scans. Wer daran arbeiten darf, steht im Kontomenü unter „Personen“.",
+    made_next:
+      "Importieren Sie hier seine Scans. Wer daran arbeiten darf, steht im Kontomenü unter „Personen“.",
     describe: "Umbenennen und beschreiben …",
     describe_title: (name) => `Das Projekt „${name}“`,
-    describe_lead: (path) => `Seine Adresse bleibt, wie sie ist, ${path}, damit Links weiter hierher führen.`,
+    describe_lead: (path) =>
+      `Seine Adresse bleibt, wie sie ist, ${path}, damit Links weiter hierher führen.`,
     require_version: "Programme müssen die Version nennen, die sie ändern",
-    require_version_hint: "Skripte und andere Programme können dann nicht überschreiben, was jemand anderes inzwischen geändert hat: Ohne die Version, die sie gelesen haben, lehnt der Server ihre Änderung ab (HTTP If-Match, 428). Für die Arbeit auf dieser Seite ändert sich nichts.",
-    changed: (name) => `Jemand anderes hat dieses Projekt inzwischen geändert; es heißt jetzt „${name}“. Noch einmal speichern, um Ihre Fassung an die Stelle zu setzen.`,
+    require_version_hint:
+      "Skripte und andere Programme können dann nicht überschreiben, was jemand anderes inzwischen geändert hat: Ohne die Version, die sie gelesen haben, lehnt der Server ihre Änderung ab (HTTP If-Match, 428). Für die Arbeit auf dieser Seite ändert sich nichts.",
+    changed: (name) =>
+      `Jemand anderes hat dieses Projekt inzwischen geändert; es heißt jetzt „${name}“. Noch einmal speichern, um Ihre Fassung an die Stelle zu setzen.`,
     delete_title: (name) => `Das Projekt „${name}“ löschen?`,
-    delete_lead: "Auch die Rollen von Personen darin und seine Aktivität werden gelöscht. Links zu ihm führen nirgendwohin. Das lässt sich nicht rückgängig machen.",
-    delete_tables_lead: (n) => (n === 1 ? "Seine Tabelle wird mit gelöscht, mit allen Datensätzen und deren Historie:" : `Seine ${count(n, "Tabelle", "Tabellen")} werden mit gelöscht, mit allen Datensätzen und deren Historie:`),
+    delete_lead:
+      "Auch die Rollen von Personen darin und seine Aktivität werden gelöscht. Links zu ihm führen nirgendwohin. Das lässt sich nicht rückgängig machen.",
+    delete_tables_lead: (n) =>
+      n === 1
+        ? "Seine Tabelle wird mit gelöscht, mit allen Datensätzen und deren Historie:"
+        : `Seine ${count(n, "Tabelle", "Tabellen")} werden mit gelöscht, mit allen Datensätzen und deren Historie:`,
     type_name: (name) => `Zum Löschen „${name}“ eingeben`,
     kept_title: (name) => `„${name}“ hat noch Modelle`,
-    kept_lead: (n) => `Ein Projekt wird erst gelöscht, wenn es leer ist, damit kein Scan aus Versehen verloren geht. Löschen Sie zuerst ${n === 1 ? "sein Modell, über dessen Menü" : `seine ${count(n, "Modell", "Modelle")}, jeweils über deren Menü`}.`,
+    kept_lead: (n) =>
+      `Ein Projekt wird erst gelöscht, wenn es leer ist, damit kein Scan aus Versehen verloren geht. Löschen Sie zuerst ${n === 1 ? "sein Modell, über dessen Menü" : `seine ${count(n, "Modell", "Modelle")}, jeweils über deren Menü`}.`,
     kept_by_bin_title: (name) => `Modelle von „${name}“ liegen im Papierkorb`,
-    kept_by_bin_lead: "Ein Projekt wird erst gelöscht, wenn es leer ist, damit kein Scan aus Versehen verloren geht. Stellen Sie wieder her, was in seinem Papierkorb liegt, oder löschen Sie es dort endgültig.",
+    kept_by_bin_lead:
+      "Ein Projekt wird erst gelöscht, wenn es leer ist, damit kein Scan aus Versehen verloren geht. Stellen Sie wieder her, was in seinem Papierkorb liegt, oder löschen Sie es dort endgültig.",
   },
 
   bin: {
     open: "Papierkorb …",
     title_of: (project) => `Papierkorb von „${project}“`,
-    lead: (days) => `Was in diesem Projekt gelöscht wird, bleibt ${count(days, "Tag", "Tage")} hier und lässt sich wiederherstellen, wie es war.`,
+    lead: (days) =>
+      `Was in diesem Projekt gelöscht wird, bleibt ${count(days, "Tag", "Tage")} hier und lässt sich wiederherstellen, wie es war.`,
     not_kept_lead: "Dieser Server entfernt Gelöschtes sofort.",
     none: "Der Papierkorb ist leer.",
     more: "Früheres zeigen",
@@ -301,19 +343,25 @@ export const texts = {
       layer: (model) => `Ebene von ${model}`,
       record: (table) => `Datensatz von ${table}`,
     },
-    deleted_when: (ago, user) => (user === undefined ? `${ago} gelöscht` : `${ago} von ${user} gelöscht`),
+    deleted_when: (ago, user) =>
+      user === undefined ? `${ago} gelöscht` : `${ago} von ${user} gelöscht`,
     erased_on: (date) => `endgültig weg am ${date}`,
     restore: "Wiederherstellen",
     restore_of: (name) => `${name} wiederherstellen`,
     restored: (name) => `„${name}“ ist wieder da.`,
-    restored_as: (name, before, now) => `„${name}“ ist wieder da. Der Kurzname ist jetzt ${now}, da inzwischen etwas anderes ${before} heißt.`,
+    restored_as: (name, before, now) =>
+      `„${name}“ ist wieder da. Der Kurzname ist jetzt ${now}, da inzwischen etwas anderes ${before} heißt.`,
     erase: "Endgültig löschen",
     erase_of: (name) => `${name} endgültig löschen`,
     erase_title: (name) => `„${name}“ endgültig löschen?`,
-    erase_lead: "Alles, was darin gemalt wurde, und die Historie werden entfernt. Das lässt sich nicht rückgängig machen.",
+    erase_lead:
+      "Alles, was darin gemalt wurde, und die Historie werden entfernt. Das lässt sich nicht rückgängig machen.",
     erase_yes: "Endgültig löschen",
     erased: (name) => `„${name}“ wurde endgültig gelöscht.`,
-    kept: (days) => (days === null ? "Es kommt in den Papierkorb des Projekts." : `Aus dem Papierkorb des Projekts lässt es sich ${count(days, "Tag", "Tage")} lang wiederherstellen.`),
+    kept: (days) =>
+      days === null
+        ? "Es kommt in den Papierkorb des Projekts."
+        : `Aus dem Papierkorb des Projekts lässt es sich ${count(days, "Tag", "Tage")} lang wiederherstellen.`,
     not_kept: "Das lässt sich nicht rückgängig machen.",
     deleted: {
       layer: (name) => `Die Ebene „${name}“ wurde gelöscht.`,
@@ -329,14 +377,16 @@ export const texts = {
     count_projects: (n) => count(n, "Projekt", "Projekte"),
     changed: (day) => `geändert: ${day}`,
     missing_title: "Dieses Projekt ist nicht hier",
-    missing_lead: "Vielleicht wurde es gelöscht, oder Sie haben keine Rolle darin. Fragen Sie die Person, von der Sie den Link haben.",
+    missing_lead:
+      "Vielleicht wurde es gelöscht, oder Sie haben keine Rolle darin. Fragen Sie die Person, von der Sie den Link haben.",
     no_projects: "Noch kein Projekt",
     import: "Scan importieren",
     into: "Importieren in",
     drop_title: "Zum Importieren ablegen",
     drop_lead: "PLY, OBJ, STL, glTF oder zip, mit seinen Bildern oder als Ordner",
     empty_title: "Noch keine Modelle",
-    empty_lead: "Einen Scan (PLY, OBJ, STL, glTF; mit Material- und Bilddateien, als Ordner oder gezippt) auf diese Seite ziehen oder seine Dateien wählen. Er bleibt auf Ihrem eigenen Server.",
+    empty_lead:
+      "Einen Scan (PLY, OBJ, STL, glTF; mit Material- und Bilddateien, als Ordner oder gezippt) auf diese Seite ziehen oder seine Dateien wählen. Er bleibt auf Ihrem eigenen Server.",
     choose_file: "Datei wählen",
     open: (name) => `${name} öffnen`,
     options: (name) => `Optionen für ${name}`,
@@ -344,8 +394,10 @@ export const texts = {
     delete_lead: "Der Scan wird gelöscht, mit allen seinen Ebenen und deren Historie.",
     deleted: (name) => `„${name}“ wurde gelöscht.`,
     triangles: (n) => count(n, "Dreieck", "Dreiecke"),
-    empty_viewer: "Noch hat niemand einen Scan importiert. Das tun Kuratierende des Projekts: Bitten Sie sie darum, dann erscheint er hier.",
-    empty_guest: "Sie sehen die Modelle von Projekten, in denen Sie eine Rolle haben. Bitten Sie die Person, die Sie eingeladen hat, um eine.",
+    empty_viewer:
+      "Noch hat niemand einen Scan importiert. Das tun Kuratierende des Projekts: Bitten Sie sie darum, dann erscheint er hier.",
+    empty_guest:
+      "Sie sehen die Modelle von Projekten, in denen Sie eine Rolle haben. Bitten Sie die Person, die Sie eingeladen hat, um eine.",
     count: (n) => count(n, "Modell", "Modelle"),
     no_picture: "Kein Bild",
     scale_open: "Größe nicht bestätigt",
@@ -366,8 +418,12 @@ export const texts = {
     repeat_named: (name) => `${name} noch einmal importieren`,
     dismiss: (name) => `Hinweis zu ${name} entfernen`,
     open: "Öffnen",
-    wrong_kind: (name) => `„${name}“ ist kein Scan, der hier gelesen werden kann: PLY, OBJ, STL, glTF, GLB oder ein zip davon. Bitte in einem dieser Formate exportieren und hier ablegen.`,
-    left_out: (n, name) => (n === 1 ? `„${name}“ wurde ausgelassen.` : `„${name}“ und ${count(n - 1, "weitere Datei", "weitere Dateien")} wurden ausgelassen.`),
+    wrong_kind: (name) =>
+      `„${name}“ ist kein Scan, der hier gelesen werden kann: PLY, OBJ, STL, glTF, GLB oder ein zip davon. Bitte in einem dieser Formate exportieren und hier ablegen.`,
+    left_out: (n, name) =>
+      n === 1
+        ? `„${name}“ wurde ausgelassen.`
+        : `„${name}“ und ${count(n - 1, "weitere Datei", "weitere Dateien")} wurden ausgelassen.`,
     empty_file: (name) => `„${name}“ ist leer.`,
     ready: (name) => `„${name}“ ist bereit.`,
   },
@@ -375,7 +431,8 @@ export const texts = {
   model: {
     back: "Alle Modelle",
     tools: "Werkzeuge",
-    stage: "Ansicht des Modells. Ziehen benutzt das Werkzeug, Ziehen mit rechts dreht, das Mausrad holt näher.",
+    stage:
+      "Ansicht des Modells. Ziehen benutzt das Werkzeug, Ziehen mit rechts dreht, das Mausrad holt näher.",
     undo: "Rückgängig",
     redo: "Wiederholen",
     help: "Hilfe",
@@ -440,24 +497,30 @@ export const texts = {
     saved: "Alles gespeichert",
     saving: "Wird gespeichert …",
     not_saved: (n) => `${changes(n)} nicht gespeichert`,
-    not_saved_hint: "Die Änderungen bleiben in diesem Browser und werden von selbst erneut gesendet. Bitte die Seite offen lassen oder später hier zum Modell zurückkommen.",
+    not_saved_hint:
+      "Die Änderungen bleiben in diesem Browser und werden von selbst erneut gesendet. Bitte die Seite offen lassen oder später hier zum Modell zurückkommen.",
     left_behind: (n, model) => `${changes(n)} an „${model}“ noch nicht gespeichert`,
-    left_behind_hint: "Die Änderungen bleiben in diesem Browser und werden gesendet, sobald der Server sie annimmt. Bitte die Seite offen lassen oder später hier zum Modell zurückkommen.",
+    left_behind_hint:
+      "Die Änderungen bleiben in diesem Browser und werden gesendet, sobald der Server sie annimmt. Bitte die Seite offen lassen oder später hier zum Modell zurückkommen.",
     left_saved: (model) => `Alle Änderungen an „${model}“ sind jetzt gespeichert.`,
     lost_with_model: (n, model) => `„${model}“ wurde gelöscht und damit ${changes(n)}.`,
-    discarded: (n) => `${changes(n)} der vorher angemeldeten Person ${plural(n, "bleibt", "bleiben")} in diesem Browser, bis sie hier zum Modell zurückkommt.`,
+    discarded: (n) =>
+      `${changes(n)} der vorher angemeldeten Person ${plural(n, "bleibt", "bleiben")} in diesem Browser, bis sie hier zum Modell zurückkommt.`,
     taken_up: (n) => `${changes(n)} von vorher erneut gesendet`,
-    taken_up_hint: "Sie haben sie hier gemacht, und sie waren nicht gespeichert, als die Seite geschlossen wurde.",
+    taken_up_hint:
+      "Sie haben sie hier gemacht, und sie waren nicht gespeichert, als die Seite geschlossen wurde.",
     not_kept: "Dieser Browser bewahrt für diese Seite nichts auf",
     not_kept_hint: "Bitte die Seite offen lassen, bis alles gespeichert ist.",
   },
 
   connection: {
     part_missing: "Ein Teil der Seite konnte nicht geladen werden",
-    part_missing_hint: "Vielleicht wurde der Server aktualisiert, oder die Verbindung ging verloren. Laden Sie die Seite neu; Ungespeichertes bleibt erhalten.",
+    part_missing_hint:
+      "Vielleicht wurde der Server aktualisiert, oder die Verbindung ging verloren. Laden Sie die Seite neu; Ungespeichertes bleibt erhalten.",
     reload: "Neu laden",
     lost: "Verbindung verloren. Neuer Versuch …",
-    kept: (n) => `${changes(n)} ${plural(n, "bleibt hier und wird", "bleiben hier und werden")} gesendet.`,
+    kept: (n) =>
+      `${changes(n)} ${plural(n, "bleibt hier und wird", "bleiben hier und werden")} gesendet.`,
     retry: "Jetzt versuchen",
     back: "Wieder verbunden.",
   },
@@ -480,8 +543,12 @@ export const texts = {
     lead: "Zum Mitschauen einladen",
     lead_hint: "bittet die anderen, Ihrer Ansicht zu folgen",
     stop_leading: "Nicht mehr zum Mitschauen einladen",
-    leading: (n) => (n === 0 ? "Sie haben die anderen zum Mitschauen eingeladen" : `${count(n, "Person schaut", "Personen schauen")} mit`),
-    followers: (n) => (n === 0 ? "noch folgt niemand" : count(n, "Person folgt", "Personen folgen")),
+    leading: (n) =>
+      n === 0
+        ? "Sie haben die anderen zum Mitschauen eingeladen"
+        : `${count(n, "Person schaut", "Personen schauen")} mit`,
+    followers: (n) =>
+      n === 0 ? "noch folgt niemand" : count(n, "Person folgt", "Personen folgen"),
     invites: (name) => `${name} lädt zum Mitschauen ein`,
     accept: "Folgen",
     left: (name) => `${name} ist gegangen: die Ansicht gehört wieder Ihnen.`,
@@ -503,7 +570,8 @@ export const texts = {
     square: "Quadratisch",
     slant: "Flächen auslassen, die schräger zu sehen sind als",
     slant_degrees: "Größter Winkel zwischen Oberfläche und Blick, in Grad",
-    slant_through: "Verdecktes ist unter keinem Winkel zu sehen: das geht nicht zusammen mit dem Bemalen von Verdecktem.",
+    slant_through:
+      "Verdecktes ist unter keinem Winkel zu sehen: das geht nicht zusammen mit dem Bemalen von Verdecktem.",
     pressure: "Wird der Stift weniger gedrückt, malt er schmaler",
     value: "Wert",
     class: "Klasse, die gemalt wird",
@@ -512,31 +580,37 @@ export const texts = {
     no_layer: "Zuerst eine Ebene wählen oder anlegen, dann malen.",
     fill: "Ganze Oberfläche füllen",
     fill_title: (layer) => `„${layer}“ ganz füllen?`,
-    fill_lead: (what) => `Die ganze Oberfläche erhält ${what}. Was dort gemalt ist, wird ersetzt; das lässt sich rückgängig machen.`,
-    hidden_layer: (layer) => `„${layer}“ war verborgen und wurde eingeblendet, damit zu sehen ist, was gemalt wird.`,
+    fill_lead: (what) =>
+      `Die ganze Oberfläche erhält ${what}. Was dort gemalt ist, wird ersetzt; das lässt sich rückgängig machen.`,
+    hidden_layer: (layer) =>
+      `„${layer}“ war verborgen und wurde eingeblendet, damit zu sehen ist, was gemalt wird.`,
     bad_value: "Bitte eine Zahl angeben, ohne Tausenderpunkte.",
     out_of_range: (min, max) => `Bitte eine Zahl von ${min} bis ${max} angeben.`,
     whole_number: "Diese Ebene nimmt nur ganze Zahlen auf.",
     not_connected: "Nicht verbunden: malen geht erst wieder, wenn der Server zurück ist.",
-    too_much_waits: "Zu viel ist noch nicht gespeichert: malen geht weiter, sobald der Server nachgekommen ist.",
+    too_much_waits:
+      "Zu viel ist noch nicht gespeichert: malen geht weiter, sobald der Server nachgekommen ist.",
     record: "Nummer des Datensatzes",
     find_record: "Datensatz, der gemalt wird, nach Namen",
     new_record: "Neuer Datensatz",
     no_record: (n) => `Die Tabelle der Ebene hat noch keinen Datensatz ${n}.`,
     make_record: (n) => `Datensatz ${n} anlegen`,
-    new_record_hint: "Legt in der Tabelle der Ebene einen Datensatz mit der nächsten Nummer an und malt diese Nummer",
+    new_record_hint:
+      "Legt in der Tabelle der Ebene einen Datensatz mit der nächsten Nummer an und malt diese Nummer",
     viewer_only: "Sie dürfen dieses Modell ansehen, aber nicht ändern.",
   },
 
   terms: {
-    choose: "Begriff, der gemalt wird: tippen sucht, Pfeiltasten gehen durch die Liste, Enter wählt",
+    choose:
+      "Begriff, der gemalt wird: tippen sucht, Pfeiltasten gehen durch die Liste, Enter wählt",
     search: "Begriffe suchen",
     show_all: "Alle Begriffe zeigen",
     tree: "Begriffe",
     none_found: "So heißt kein Begriff.",
     more_found: (n) => `und ${format_count(n)} weitere: mehr vom Wort schreiben`,
     empty: "Die Liste hat noch keine Begriffe.",
-    more: (n, all) => `Die ersten ${format_count(n)} von ${format_count(all)} Begriffen. Die anderen findet die Suche.`,
+    more: (n, all) =>
+      `Die ersten ${format_count(n)} von ${format_count(all)} Begriffen. Die anderen findet die Suche.`,
   },
 
   templates: {
@@ -550,7 +624,8 @@ export const texts = {
     layer: "Ebene zum Malen",
     terms: (n) => `Liste mit ${count(n, "Begriff", "Begriffen")}`,
     columns: (n) => `Tabelle mit ${count(n, "Spalte", "Spalten")}`,
-    made: (tables, layers) => `${count(tables, "Tabelle", "Tabellen")} und ${count(layers, "Ebene", "Ebenen")} angelegt.`,
+    made: (tables, layers) =>
+      `${count(tables, "Tabelle", "Tabellen")} und ${count(layers, "Ebene", "Ebenen")} angelegt.`,
   },
 
   shapes: {
@@ -569,7 +644,8 @@ export const texts = {
     rename: "Umbenennen",
     rename_title: (name) => `„${name}“ umbenennen`,
     delete_title: (name) => `Die Form „${name}“ löschen?`,
-    delete_lead: "Sie verschwindet für alle auf diesem Server. Was damit gemalt wurde, bleibt und lässt sich wie bisher rückgängig machen.",
+    delete_lead:
+      "Sie verschwindet für alle auf diesem Server. Was damit gemalt wurde, bleibt und lässt sich wie bisher rückgängig machen.",
     gone: (name) => `Die Form „${name}“ wurde gelöscht. Der Pinsel ist jetzt rund.`,
   },
 
@@ -615,7 +691,8 @@ export const texts = {
 
   areas: {
     how: {
-      polygon: "Die Ecken anklicken; ein Klick auf die erste oder Enter schließt. Rücktaste nimmt eine Ecke zurück, Escape gibt auf.",
+      polygon:
+        "Die Ecken anklicken; ein Klick auf die erste oder Enter schließt. Rücktaste nimmt eine Ecke zurück, Escape gibt auf.",
       lasso: "Umfahren, was bemalt werden soll.",
       bucket: "Eine Stelle anklicken: was auf der Oberfläche mit ihr zusammenhängt, wird gefüllt.",
     },
@@ -632,7 +709,8 @@ export const texts = {
     nothing_changed: "Dort hat sich nichts geändert.",
     where: "Füllen, wo …",
     where_title: (layer) => `„${layer}“ füllen, wo …`,
-    where_lead: "Jeder Teil der Oberfläche, wo dies gilt, wird geändert. Das lässt sich rückgängig machen.",
+    where_lead:
+      "Jeder Teil der Oberfläche, wo dies gilt, wird geändert. Das lässt sich rückgängig machen.",
     condition: "Bedingung",
     condition_example: "Feuchte > 0.3 and not valid(Risse)",
     grammar: [
@@ -653,26 +731,32 @@ export const texts = {
     title: (layer) => `„${layer}“ aus einer Datei malen`,
     lead: "Messwerte (CSV), eine Karte mit Flächen (GeoJSON, Shapefile), ein Raster (GeoTIFF), ein Orthofoto oder ein gescannter Plan (TIFF, PNG, JPEG). Das lässt sich rückgängig machen.",
     file: "Datei, oder Dateien, die zusammengehören",
-    file_hint: "Ein Shapefile: seine .shp und .dbf (und .prj, .cpg), oder alles in einem zip. Ein Bild: mit seinem Worldfile, falls es eines gibt.",
-    unknown: (file) => `„${file}“ ist nichts davon: .csv, .geojson, .shp mit .dbf, .tif, .png, .jpg, .zip`,
+    file_hint:
+      "Ein Shapefile: seine .shp und .dbf (und .prj, .cpg), oder alles in einem zip. Ein Bild: mit seinem Worldfile, falls es eines gibt.",
+    unknown: (file) =>
+      `„${file}“ ist nichts davon: .csv, .geojson, .shp mit .dbf, .tif, .png, .jpg, .zip`,
     looking: "Wird angesehen …",
     sending: (percent) => `Wird gesendet: ${percent} %`,
     polygons: (n) => count(n, "Fläche", "Flächen"),
     columns: (n) => count(n, "Attribut", "Attribute"),
     bands: (n) => count(n, "Kanal", "Kanäle"),
     bounds: (x0, x1, y0, y1) => `von ${x0} bis ${x1} und von ${y0} bis ${y1}`,
-    readings_hint: "Die erste Zeile nennt die Spalten x, y, z und value, in Koordinaten und Einheit des Modells. Was die Kreise nicht erreichen, bleibt.",
+    readings_hint:
+      "Die erste Zeile nennt die Spalten x, y, z und value, in Koordinaten und Einheit des Modells. Was die Kreise nicht erreichen, bleibt.",
     radius: "Radius um jeden Messpunkt",
     tolerance: "Größter Abstand zur Oberfläche",
-    vertices_hint: "Eine Zahl je Zeile, in der Reihenfolge der Punkte des Scans. Die Ebene enthält danach diese Zahlen und sonst nichts.",
+    vertices_hint:
+      "Eine Zahl je Zeile, in der Reihenfolge der Punkte des Scans. Die Ebene enthält danach diese Zahlen und sonst nichts.",
     source: "Punkte von",
     attribute: "Jede Fläche erhält",
     one_value: "denselben Wert",
     attribute_number: (name) => `${name} (Zahl)`,
     attribute_text: (name) => `${name} (Name einer Klasse)`,
     samples: (values) => `Etwa ${values}`,
-    names_need_legend: "Namen brauchen eine Ebene mit Klassen: bitte eine solche Ebene wählen oder ein Attribut mit Zahlen.",
-    names_become: "Namen, die Klassen dieser Ebene sind, stehen für diese; andere werden neue Klassen.",
+    names_need_legend:
+      "Namen brauchen eine Ebene mit Klassen: bitte eine solche Ebene wählen oder ein Attribut mit Zahlen.",
+    names_become:
+      "Namen, die Klassen dieser Ebene sind, stehen für diese; andere werden neue Klassen.",
     names: "Namen der Klassen",
     no_names: "wie sie sind",
     picture_gives: "Jede Stelle erhält",
@@ -680,7 +764,8 @@ export const texts = {
     mode_hints: {
       luminance: "Die Helligkeit des Bildes dort, 0 bis 255.",
       band: "Die Zahl, die das Raster dort hat; nichts, wo es keine hat.",
-      colors: "Wofür die Farbe dort steht. Wo Farben ausgelassen sind, bleibt die Ebene, wie sie ist.",
+      colors:
+        "Wofür die Farbe dort steht. Wo Farben ausgelassen sind, bleibt die Ebene, wie sie ist.",
     },
     band: "Kanal",
     color: "Farbe",
@@ -689,14 +774,17 @@ export const texts = {
     left_out: "ausgelassen",
     value_of: (color) => `Wert von ${color}`,
     color_tolerance: "Farben gelten als gleich innerhalb von",
-    color_tolerance_hint: "Größer bei verblassten oder verrauschten Scans, kleiner bei ähnlichen Farben.",
+    color_tolerance_hint:
+      "Größer bei verblassten oder verrauschten Scans, kleiner bei ähnlichen Farben.",
     colors_wrong: "Bitte jeder benutzten Farbe eine Zahl geben und mindestens eine benutzen.",
     bad_tolerance: (least, most) => `Bitte eine Zahl von ${least} bis ${most} angeben.`,
     world: "Die sechs Zahlen des Worldfiles (.tfw, .pgw, .jgw)",
     world_known: "Die Datei sagt, wo sie liegt.",
-    world_wrong: "Bitte die sechs Zahlen des Worldfiles angeben: ohne sie ist die Lage des Bildes unbekannt.",
+    world_wrong:
+      "Bitte die sechs Zahlen des Worldfiles angeben: ohne sie ist die Lage des Bildes unbekannt.",
     crs: {
-      question: (crs: string) => `Die Karte liegt in ${crs}, und dieses Modell hat kein Koordinatensystem. Sind die Koordinaten des Modells solche von ${crs}?`,
+      question: (crs: string) =>
+        `Die Karte liegt in ${crs}, und dieses Modell hat kein Koordinatensystem. Sind die Koordinaten des Modells solche von ${crs}?`,
       hint: "Sonst liegt die Karte an der falschen Stelle. Kuratoren können dem Modell sein Koordinatensystem geben; dann wird nicht mehr gefragt.",
       yes: "Ja, Karte verwenden",
       no: "Nein",
@@ -728,10 +816,14 @@ export const texts = {
 
   rasters: {
     save: { tif: "Als GeoTIFF sichern", png: "Als PNG sichern", npy: "Für NumPy sichern" },
-    save_outlines: { geojson: "Umrisse als GeoJSON sichern", gpkg: "Umrisse als GeoPackage sichern" },
+    save_outlines: {
+      geojson: "Umrisse als GeoJSON sichern",
+      gpkg: "Umrisse als GeoPackage sichern",
+    },
     import: "Durch ein Raster ersetzen …",
     title: (layer) => `Inhalt von „${layer}“ ersetzen?`,
-    lead: (file) => `Die Ebene enthält danach, was in „${file}“ steht: eine Datei, die aus einer Ebene dieses Modells gesichert wurde, verändert oder nicht. Das lässt sich rückgängig machen.`,
+    lead: (file) =>
+      `Die Ebene enthält danach, was in „${file}“ steht: eine Datei, die aus einer Ebene dieses Modells gesichert wurde, verändert oder nicht. Das lässt sich rückgängig machen.`,
     replace: "Ersetzen",
     same: "Die Ebene enthält genau das bereits.",
     unknown: (file) => `Aus „${file}“ lässt sich keine Ebene lesen`,
@@ -748,7 +840,11 @@ export const texts = {
     },
     of: (name) => `Wer ${name} sieht`,
     download: "Die Dateien des Scans sind für",
-    download_roles: { viewer: "alle, die das Projekt sehen", annotator: "Annotierende und Kuratierende", curator: "Kuratierende allein" },
+    download_roles: {
+      viewer: "alle, die das Projekt sehen",
+      annotator: "Annotierende und Kuratierende",
+      curator: "Kuratierende allein",
+    },
     no_download: "Mit Ihrer Rolle nicht zum Herunterladen.",
   },
 
@@ -760,7 +856,8 @@ export const texts = {
     new: "Neue Ebene",
     more: "Mehr zu den Ebenen",
     empty_title: "Noch keine Ebenen",
-    empty_lead: "Eine Ebene hält eine Art von Wissen über die Oberfläche fest: wo die Risse sind, aus welchen Stücken sie besteht, wie feucht sie ist.",
+    empty_lead:
+      "Eine Ebene hält eine Art von Wissen über die Oberfläche fest: wo die Risse sind, aus welchen Stücken sie besteht, wie feucht sie ist.",
     show: (name) => `${name} einblenden`,
     hide: (name) => `${name} ausblenden`,
     select: (name) => `Auf ${name} malen`,
@@ -779,18 +876,22 @@ export const texts = {
     unlock: "Entsperren",
     unlock_computed: "Entsperren und von Hand bearbeiten",
     locked_computed: "Gesperrt: ihre Werte wurden berechnet.",
-    computed_detail: (name) => `Die Werte von „${name}“ wurden berechnet. Wer kuratiert, kann die Ebene entsperren und von Hand bearbeiten.`,
+    computed_detail: (name) =>
+      `Die Werte von „${name}“ wurden berechnet. Wer kuratiert, kann die Ebene entsperren und von Hand bearbeiten.`,
     by_hand: "Von Hand bearbeitet: ihre Werte müssen nicht die berechneten sein.",
     by_hand_formula: "Sie wird nicht mehr von selbst neu berechnet.",
     overwrite_title: (name) => `„${name}“ neu berechnen?`,
-    overwrite_lead: "Das überschreibt, was von Hand bearbeitet wurde. Danach ist die Ebene wieder gesperrt.",
+    overwrite_lead:
+      "Das überschreibt, was von Hand bearbeitet wurde. Danach ist die Ebene wieder gesperrt.",
     locked: "Ebene gesperrt",
-    locked_detail: (name) => `Die Ebene „${name}“ ist gesperrt: wer kuratiert, kann sie entsperren.`,
+    locked_detail: (name) =>
+      `Die Ebene „${name}“ ist gesperrt: wer kuratiert, kann sie entsperren.`,
     locked_to_you: "Gesperrt: wer kuratiert, kann sie entsperren.",
     locked_to_others: "Für Annotierende gesperrt. Sie dürfen sie weiterhin ändern.",
     widen: "Platz für mehr Datensätze …",
     widen_title: (layer) => `Platz für mehr Datensätze in „${layer}“?`,
-    widen_lead: (highest) => `Sie nimmt Schlüssel bis ${format_count(highest)} auf. Danach nimmt sie alle Schlüssel auf und braucht mehr Speicher; was gemalt ist und seine Historie bleiben.`,
+    widen_lead: (highest) =>
+      `Sie nimmt Schlüssel bis ${format_count(highest)} auf. Danach nimmt sie alle Schlüssel auf und braucht mehr Speicher; was gemalt ist und seine Historie bleiben.`,
     widen_yes: "Platz schaffen",
     widened: "Die Ebene nimmt jetzt alle Schlüssel auf.",
     saved_default: "Was Sie sehen, ist jetzt die Vorgabe für alle.",
@@ -817,13 +918,15 @@ export const texts = {
     measurement: "Messwert",
     measurement_lead: "Überall eine Zahl: Feuchte, Tiefe, Farbabweichung.",
     records: "Einzelnes mit Datensätzen",
-    records_lead: "Einzelne Dinge, jedes mit der Nummer seines Datensatzes: Befunde, Funde, Proben.",
+    records_lead:
+      "Einzelne Dinge, jedes mit der Nummer seines Datensatzes: Befunde, Funde, Proben.",
     table: "Datensätze von",
     own_table: "eine neue Tabelle mit dem Namen der Ebene",
     table_of_terms: (table, n) => `${table} (${count(n, "Begriff", "Begriffe")})`,
     table_of_records: (table, n) => `${table} (${records(n)})`,
     formula: "Aus einem Ausdruck",
-    formula_lead: "Berechnet aus anderen Ebenen, deren Datensätzen und der Oberfläche: Risiko = Feuchte × Salz.",
+    formula_lead:
+      "Berechnet aus anderen Ebenen, deren Datensätzen und der Oberfläche: Risiko = Feuchte × Salz.",
     formula_hint: "Risiko",
     formula_example: "if(valid(Risse), 2, 1) * Feuchte",
     expression: "Ausdruck: eine Zahl oder eine Bedingung (gemalt, wo sie gilt)",
@@ -833,7 +936,12 @@ export const texts = {
     shape_lead: "Berechnet: Krümmung, Rauheit, Höhe, Abstände.",
     compute: "Ebene berechnen",
     name: "Name",
-    name_hint: { presence: "Risse", classes: "Materialien", measurement: "Feuchte", records: "Befunde" },
+    name_hint: {
+      presence: "Risse",
+      classes: "Materialien",
+      measurement: "Feuchte",
+      records: "Befunde",
+    },
     description: "Beschreibung",
     description_hint: "Freiwillig: wie beobachtet wurde, nach welchen Regeln",
     color: "Farbe",
@@ -850,32 +958,69 @@ export const texts = {
     range_to: "bis",
     stepped: "In Stufen zeigen",
     detail: "Kleinstes Detail",
-    detail_hint: "Feineres Detail braucht mehr Speicher auf dem Server, sobald gemalt wird. Später lässt es sich nicht ändern.",
+    detail_hint:
+      "Feineres Detail braucht mehr Speicher auf dem Server, sobald gemalt wird. Später lässt es sich nicht ändern.",
     create: "Ebene anlegen",
     name_missing: "Bitte der Ebene einen Namen geben.",
     range_wrong: "Die zweite Zahl muss größer sein als die erste.",
     classes_missing: "Bitte mindestens einer Klasse eine Bezeichnung geben.",
     too_many: "Eine Ebene hat höchstens 255 Klassen.",
-    changed: "Jemand anderes hat diese Ebene inzwischen geändert; Ihre Änderung wurde daher nicht gespeichert.",
+    changed:
+      "Jemand anderes hat diese Ebene inzwischen geändert; Ihre Änderung wurde daher nicht gespeichert.",
     reload: "Neuesten Stand zeigen",
   },
 
   shape: {
     kind: "Was berechnet wird",
-    groups: { form: "Form und Relief", place: "Lage und Richtung", distance: "Abstände", file: "Aus der Datei des Scans" },
+    groups: {
+      form: "Form und Relief",
+      place: "Lage und Richtung",
+      distance: "Abstände",
+      file: "Aus der Datei des Scans",
+    },
     kinds: {
-      mean_curvature: { title: "Krümmung", lead: "Wo sich die Oberfläche wölbt (positiv) oder hohl ist (negativ): Werkspuren, Reliefs, abgegriffene Schrift." },
-      gaussian_curvature: { title: "Gaußsche Krümmung", lead: "Buckel und Mulden (positiv) gegen Sättel (negativ); 0, wo sich die Oberfläche abrollen ließe." },
-      max_curvature: { title: "Grate", lead: "Die größte Krümmung in irgendeiner Richtung: hoch an Kanten und Graten." },
-      min_curvature: { title: "Rillen", lead: "Die kleinste Krümmung in irgendeiner Richtung: niedrig in Rillen, Fugen und Rissen." },
-      roughness: { title: "Rauheit", lead: "Abstand der Oberfläche zur bestpassenden Ebene: verwittert gegen frisch, geglättet gegen scharriert." },
-      ambient_occlusion: { title: "Offenheit", lead: "Anteil des Lichts von allen Seiten, der dorthin gelangt: 1 im Freien, 0 in tiefen Höhlungen." },
+      mean_curvature: {
+        title: "Krümmung",
+        lead: "Wo sich die Oberfläche wölbt (positiv) oder hohl ist (negativ): Werkspuren, Reliefs, abgegriffene Schrift.",
+      },
+      gaussian_curvature: {
+        title: "Gaußsche Krümmung",
+        lead: "Buckel und Mulden (positiv) gegen Sättel (negativ); 0, wo sich die Oberfläche abrollen ließe.",
+      },
+      max_curvature: {
+        title: "Grate",
+        lead: "Die größte Krümmung in irgendeiner Richtung: hoch an Kanten und Graten.",
+      },
+      min_curvature: {
+        title: "Rillen",
+        lead: "Die kleinste Krümmung in irgendeiner Richtung: niedrig in Rillen, Fugen und Rissen.",
+      },
+      roughness: {
+        title: "Rauheit",
+        lead: "Abstand der Oberfläche zur bestpassenden Ebene: verwittert gegen frisch, geglättet gegen scharriert.",
+      },
+      ambient_occlusion: {
+        title: "Offenheit",
+        lead: "Anteil des Lichts von allen Seiten, der dorthin gelangt: 1 im Freien, 0 in tiefen Höhlungen.",
+      },
       height: { title: "Höhe", lead: "Über dem tiefsten Punkt, in der Richtung, die oben ist." },
-      slope: { title: "Neigung", lead: "0° liegt flach, 90° ist eine senkrechte Wand, mehr hängt über." },
+      slope: {
+        title: "Neigung",
+        lead: "0° liegt flach, 90° ist eine senkrechte Wand, mehr hängt über.",
+      },
       azimuth: { title: "Exposition", lead: "Grad im Uhrzeigersinn von Norden, von oben gesehen." },
-      boundary_distance: { title: "Abstand zum Rand", lead: "Zum nächsten offenen Rand des Netzes: Bruchkante eines Fragments, ein Loch." },
-      model_distance: { title: "Abstand zu einem anderen Modell", lead: "Was seither hinzukam (positiv) oder verschwand (negativ): zwei Zustände einer Grabung oder eines Objekts." },
-      vertex_property: { title: "Werte aus der Datei des Scans", lead: "Eine Zahl, die das Scanprogramm je Punkt gesichert hat: Güte, Konfidenz, Intensität." },
+      boundary_distance: {
+        title: "Abstand zum Rand",
+        lead: "Zum nächsten offenen Rand des Netzes: Bruchkante eines Fragments, ein Loch.",
+      },
+      model_distance: {
+        title: "Abstand zu einem anderen Modell",
+        lead: "Was seither hinzukam (positiv) oder verschwand (negativ): zwei Zustände einer Grabung oder eines Objekts.",
+      },
+      vertex_property: {
+        title: "Werte aus der Datei des Scans",
+        lead: "Eine Zahl, die das Scanprogramm je Punkt gesichert hat: Güte, Konfidenz, Intensität.",
+      },
     },
     radius: "In einem Umkreis von",
     radius_hint: "4 Kanten des Netzes",
@@ -883,7 +1028,8 @@ export const texts = {
     distance_hint: "passend zur Größe",
     rays: "Strahlen je Punkt",
     rays_hint: "Mehr Strahlen: glattere Werte und mehr Zeit",
-    bad_rays: (least, most) => `Bitte eine ganze Zahl von Strahlen von ${least} bis ${most} angeben.`,
+    bad_rays: (least, most) =>
+      `Bitte eine ganze Zahl von Strahlen von ${least} bis ${most} angeben.`,
     absolute: "Als Koordinate der Grabung, nicht über dem tiefsten Punkt",
     model: "Zur Oberfläche von",
     property: "Eigenschaft",
@@ -904,7 +1050,8 @@ export const texts = {
     tolerance: "Die Scans weichen ab um höchstens",
     tolerance_hint: "Was weiter von der anderen Oberfläche entfernt liegt, bleibt leer.",
     angle: "Die Flächen zeigen gleich, bis auf",
-    angle_hint: "Hält die beiden Seiten einer dünnen Wand auseinander. Größer, wo die Scans rau sind.",
+    angle_hint:
+      "Hält die beiden Seiten einer dünnen Wand auseinander. Größer, wo die Scans rau sind.",
     bad_angle: "Bitte einen Winkel von 1 bis 180 Grad angeben.",
     start: "Übernehmen",
     job: (model) => `Ebenen aus „${model}“`,
@@ -920,7 +1067,12 @@ export const texts = {
     column: "Färben nach",
     each_record: "Jeder Datensatz eine eigene Farbe",
     method: "Klassen",
-    methods: { quantile: "Gleich viele Datensätze", equal: "Gleiche Intervalle", smooth: "Stufenloser Verlauf", unique: "Jeder Wert" },
+    methods: {
+      quantile: "Gleich viele Datensätze",
+      equal: "Gleiche Intervalle",
+      smooth: "Stufenloser Verlauf",
+      unique: "Jeder Wert",
+    },
     count: "Wie viele",
     ramp: "Farben von niedrig bis hoch",
     ramps: { viridis: "Blau bis Gelb", reds: "Hell- bis Dunkelrot", blues: "Hell- bis Dunkelblau" },
@@ -928,7 +1080,8 @@ export const texts = {
     color_of: (name) => `Farbe von ${name}`,
     pattern_of: (name) => `Muster von ${name}`,
     patterned: "Muster für alle",
-    patterned_hint: "Was darunter liegt, bleibt lesbar, und Klassen sind auch in Schwarzweiß zu unterscheiden.",
+    patterned_hint:
+      "Was darunter liegt, bleibt lesbar, und Klassen sind auch in Schwarzweiß zu unterscheiden.",
     by: (column) => `Nach ${column}`,
     others: "Andere, oder kein Wert",
     further: "Datensätze, die später dazukommen, erhalten je eine eigene Farbe.",
@@ -949,11 +1102,13 @@ export const texts = {
     sending_one: (name, n, of) => `${name} wird gesendet (${n} von ${of}) …`,
     count: (n) => files(n),
     folder_title: (n) => `${files(n)} für Datensätze`,
-    no_column: "Diese Tabelle hat keine Spalte für Bilder oder Dokumente. Bitte zuerst eine anlegen.",
+    no_column:
+      "Diese Tabelle hat keine Spalte für Bilder oder Dokumente. Bitte zuerst eine anlegen.",
     by_column: "Die Namen enthalten",
     into: "Ablegen in",
     pattern: "Muster der Namen",
-    pattern_hint: "Jedes {Wort} steht für einige Zeichen; das, das wie die Spalte heißt, nennt den Datensatz.",
+    pattern_hint:
+      "Jedes {Wort} steht für einige Zeichen; das, das wie die Spalte heißt, nennt den Datensatz.",
     matched: (n) => `${files(n)} mit Datensatz`,
     unmatched: (n) => `${files(n)} ohne; ${plural(n, "sie bleibt", "sie bleiben")} hier`,
     duplicates: (n) => `${files(n)} ${plural(n, "ist", "sind")} schon da`,
@@ -973,7 +1128,8 @@ export const texts = {
   measure: {
     title: "Messen",
     how: "Stellen auf der Oberfläche anklicken oder antippen. Ziehen dreht das Modell, auch zwischen zwei Stellen. Ohne Zeiger setzt M eine in die Mitte der Ansicht.",
-    how_on: "Klicken oder Tippen auf die letzte Stelle oder Enter beendet die Linie; Rücktaste nimmt eine Stelle zurück, Escape räumt alles weg.",
+    how_on:
+      "Klicken oder Tippen auf die letzte Stelle oder Enter beendet die Linie; Rücktaste nimmt eine Stelle zurück, Escape räumt alles weg.",
     how_anew: "Beendet. Das nächste Klicken oder Tippen beginnt eine andere Linie.",
     most: (n) => `Das sind ${format_count(n)} Stellen; mehr können nicht gesetzt werden.`,
     set_in_middle: "Stelle in der Mitte",
@@ -986,15 +1142,20 @@ export const texts = {
     ends: "Erste bis letzte Stelle, gerade",
     along: "Entlang der Oberfläche",
     along_parts: (n) => `Entlang der Oberfläche, in ${format_count(n)} Teilen`,
-    no_way: "Die geraden Linien gehen durch das Objekt, und was ihnen am nächsten ist, ist kein Weg über seine Oberfläche. Das Modell drehen, bis alle Stellen zu sehen sind, dann „Gesehenem“ wählen.",
+    no_way:
+      "Die geraden Linien gehen durch das Objekt, und was ihnen am nächsten ist, ist kein Weg über seine Oberfläche. Das Modell drehen, bis alle Stellen zu sehen sind, dann „Gesehenem“ wählen.",
     rise: (axis) => `Höhenunterschied (${axis})`,
     area: "Ebene Fläche des Polygons",
     perimeter: "Umfang des Polygons",
-    area_hint: "Das Polygon ist eben und geht durch die Stellen, von der letzten zurück zur ersten: Es ist nicht die Fläche der Oberfläche darin.",
-    off_plane: (length) => `Die Stellen liegen bis zu ${length} neben seiner Ebene; die Fläche ist die ihrer Projektion darauf.`,
-    gaps: (n) => `Die Linie verlässt die Oberfläche ${n === 1 ? "einmal" : `${format_count(n)}-mal`}; was dazwischenliegt, zählt nicht.`,
+    area_hint:
+      "Das Polygon ist eben und geht durch die Stellen, von der letzten zurück zur ersten: Es ist nicht die Fläche der Oberfläche darin.",
+    off_plane: (length) =>
+      `Die Stellen liegen bis zu ${length} neben seiner Ebene; die Fläche ist die ihrer Projektion darauf.`,
+    gaps: (n) =>
+      `Die Linie verlässt die Oberfläche ${n === 1 ? "einmal" : `${format_count(n)}-mal`}; was dazwischenliegt, zählt nicht.`,
     busy: "…",
-    unconfirmed: "Längen und Flächen stimmen so weit wie die Einheit, die für die Datei angenommen wurde.",
+    unconfirmed:
+      "Längen und Flächen stimmen so weit wie die Einheit, die für die Datei angenommen wurde.",
     profile: "Profil",
     plot: "Stelle entlang des Profils",
     plot_hint: "Auf die Kurve zeigen oder Pfeiltasten drücken: Die Stelle wird am Modell gezeigt.",
@@ -1008,7 +1169,8 @@ export const texts = {
     ways: { seen: "Gesehenem", nearest: "Nächstem" },
     way_hints: {
       seen: "Die Oberfläche, die unter den geraden Linien zu sehen war. Noch einmal gewählt, wird von der jetzigen Ansicht aus geschaut.",
-      nearest: "Zu jedem Schritt der geraden Linien die nächste Oberfläche. Gut, wo sie fast eben ist; gilt, wo nicht alle Stellen auf einmal zu sehen sind.",
+      nearest:
+        "Zu jedem Schritt der geraden Linien die nächste Oberfläche. Gut, wo sie fast eben ist; gilt, wo nicht alle Stellen auf einmal zu sehen sind.",
     },
     save_csv: "Als CSV speichern",
     save_svg: "Als SVG speichern",
@@ -1029,13 +1191,15 @@ export const texts = {
     into: "Spalte",
     no_column: {
       line: "Linien gehören zu Datensätzen: bitte eine Ebene wählen, deren Tabelle eine Spalte für Linien hat, oder der Tabelle eine hinzufügen.",
-      point: "Punkte gehören zu Datensätzen: bitte eine Ebene wählen, deren Tabelle eine Spalte für Punkte hat, oder der Tabelle eine hinzufügen.",
+      point:
+        "Punkte gehören zu Datensätzen: bitte eine Ebene wählen, deren Tabelle eine Spalte für Punkte hat, oder der Tabelle eine hinzufügen.",
     },
     line_cut: (pieces) => `Die Linie lief über eine Kante und wurde in ${pieces} Stücke geteilt.`,
     line_drawn: (length, record) => `${length} für „${record}“ gezeichnet.`,
     point_set: (record) => `Ein Punkt für „${record}“ gesetzt.`,
     missed: "Dort ist keine Oberfläche.",
-    changed_since: "Die Tabelle hat sich seither geändert: bitte die Linie oder den Punkt im Formular des Datensatzes entfernen oder in der Tabelle Schritt für Schritt zurückgehen.",
+    changed_since:
+      "Die Tabelle hat sich seither geändert: bitte die Linie oder den Punkt im Formular des Datensatzes entfernen oder in der Tabelle Schritt für Schritt zurückgehen.",
   },
 
   comments: {
@@ -1047,7 +1211,8 @@ export const texts = {
     states: { open: "Offen", resolved: "Erledigt", all: "Alle" },
     state: "Welche Kommentare",
     mine: "Mit mir",
-    mine_hint: "Nur die, in denen Sie geschrieben haben oder jemand @ und Ihren Namen geschrieben hat",
+    mine_hint:
+      "Nur die, in denen Sie geschrieben haben oder jemand @ und Ihren Namen geschrieben hat",
     find: "Kommentare suchen",
     find_hint: "Wörter oder Name",
     show_pins: "Am Modell zeigen",
@@ -1116,7 +1281,13 @@ export const texts = {
     look: "Ansehen, wie es beim Malen zu sehen war",
     stroke: (what, name) => `${what}, ${name}`,
     more: (n) => `${format_count(n)} weitere sind zu sehen, wenn über diese entschieden ist.`,
-    ops: { stroke: "Strich", fill: "Füllung", polygon: "Umriss", import: "eingelesene Daten", restore: "früherer Stand" },
+    ops: {
+      stroke: "Strich",
+      fill: "Füllung",
+      polygon: "Umriss",
+      import: "eingelesene Daten",
+      restore: "früherer Stand",
+    },
     done: {
       accept: (n) => `${count(n, "Änderung", "Änderungen")} angenommen`,
       reject: (n) => `${count(n, "Änderung", "Änderungen")} abgelehnt`,
@@ -1125,7 +1296,8 @@ export const texts = {
     told: {
       accept: (user, layer) => `${user} hat angenommen, was Sie auf ${layer} gemalt haben`,
       reject: (user, layer) => `${user} hat abgelehnt, was Sie auf ${layer} gemalt haben`,
-      reopen: (user, layer) => `Was Sie auf ${layer} gemalt haben, wartet wieder auf Prüfung (${user})`,
+      reopen: (user, layer) =>
+        `Was Sie auf ${layer} gemalt haben, wartet wieder auf Prüfung (${user})`,
     },
   },
 
@@ -1254,7 +1426,8 @@ export const texts = {
     isolate: "Alle anderen Datensätze ausblenden",
     fly: "Dorthin gehen, wo sie sind",
     nothing_here: "Keiner davon hat eine Fläche, eine Linie oder einen Punkt auf diesem Modell",
-    painted_of: (n, all) => `${format_count(n)} von ${count(all, "Datensatz", "Datensätzen")} auf dieses Modell gemalt`,
+    painted_of: (n, all) =>
+      `${format_count(n)} von ${count(all, "Datensatz", "Datensätzen")} auf dieses Modell gemalt`,
     sort: (column) => `Nach ${column} ordnen; noch einmal kehrt die Reihenfolge um`,
     required: "Braucht einen Wert",
     yes: "ja",
@@ -1275,8 +1448,10 @@ export const texts = {
     save_next: "Speichern & neu",
     undo: "Meine letzte Änderung an der Tabelle zurücknehmen",
     redo: "Wiederherstellen",
-    undone: (created, changed, deleted) => `Zurückgenommen: ${what_changed(created, changed, deleted) || "eine Spalte"}.`,
-    redone: (created, changed, deleted) => `Wiederhergestellt: ${what_changed(created, changed, deleted) || "eine Spalte"}.`,
+    undone: (created, changed, deleted) =>
+      `Zurückgenommen: ${what_changed(created, changed, deleted) || "eine Spalte"}.`,
+    redone: (created, changed, deleted) =>
+      `Wiederhergestellt: ${what_changed(created, changed, deleted) || "eine Spalte"}.`,
     key_is: (key) => `Schlüssel ${key}`,
     area_on: (area, layer) => `${area} auf „${layer}“`,
     not_painted_on: (layer) => `nicht auf „${layer}“ gemalt`,
@@ -1293,21 +1468,27 @@ export const texts = {
     correct: "Berichtigen",
     give_up: "Verwerfen",
     somebody: "Jemand",
-    changed_by: (user, time) => `${user} hat dies inzwischen geändert${time ? `, um ${time}` : ""}:`,
+    changed_by: (user, time) =>
+      `${user} hat dies inzwischen geändert${time ? `, um ${time}` : ""}:`,
     yours: "Ihres:",
     keep_theirs: "Fremdes behalten",
     take_mine: "Meines nehmen",
     edited_by: (user) => `${user} bearbeitet dies gerade.`,
     edited_elsewhere: "Sie bearbeiten dies in einem anderen Fenster.",
-    taken_over: (user) => `${user} hat dies übernommen. Was Sie geschrieben haben, bleibt hier zum Kopieren; es ist nicht gespeichert.`,
-    taken_elsewhere: "Sie haben dies in einem anderen Fenster übernommen. Was Sie geschrieben haben, bleibt hier zum Kopieren; es ist nicht gespeichert.",
+    taken_over: (user) =>
+      `${user} hat dies übernommen. Was Sie geschrieben haben, bleibt hier zum Kopieren; es ist nicht gespeichert.`,
+    taken_elsewhere:
+      "Sie haben dies in einem anderen Fenster übernommen. Was Sie geschrieben haben, bleibt hier zum Kopieren; es ist nicht gespeichert.",
     written: "Was Sie geschrieben haben",
     take_over: "Übernehmen",
     take_over_title: (record) => `„${record}“ übernehmen?`,
-    take_over_lead: (user) => `${user} bearbeitet dies gerade und erfährt davon; was noch nicht gespeichert ist, bleibt dort zum Kopieren.`,
-    take_over_own: "Sie bearbeiten dies in einem anderen Fenster. Was dort nicht gespeichert ist, bleibt dort zum Kopieren.",
+    take_over_lead: (user) =>
+      `${user} bearbeitet dies gerade und erfährt davon; was noch nicht gespeichert ist, bleibt dort zum Kopieren.`,
+    take_over_own:
+      "Sie bearbeiten dies in einem anderen Fenster. Was dort nicht gespeichert ist, bleibt dort zum Kopieren.",
     now_is: (value) => `Jetzt: ${value}. Beim Speichern tritt Ihres an die Stelle.`,
-    changed_meanwhile: (user) => `${user} hat diesen Datensatz inzwischen geändert. Bitte noch einmal ansehen, dann speichern.`,
+    changed_meanwhile: (user) =>
+      `${user} hat diesen Datensatz inzwischen geändert. Bitte noch einmal ansehen, dann speichern.`,
     search_records: "Datensätze suchen",
     none_found: "So heißt kein Datensatz.",
     take_out: (name) => `${name} entfernen`,
@@ -1325,10 +1506,12 @@ export const texts = {
     column_menu: (column) => `Optionen für die Spalte ${column}`,
     change_column: "Ändern …",
     title_column: "Als Titel verwenden",
-    title_hint: "Datensätze heißen nach dem, was in dieser Spalte steht: in Legenden, Marken, Meldungen und Karten.",
+    title_hint:
+      "Datensätze heißen nach dem, was in dieser Spalte steht: in Legenden, Marken, Meldungen und Karten.",
     drop_column: "Entfernen …",
     drop_title: (column) => `Die Spalte „${column}“ entfernen?`,
-    drop_lead: "Ihre Werte sind nicht mehr zu sehen. Rückgängig bringt sie mit allen Werten zurück.",
+    drop_lead:
+      "Ihre Werte sind nicht mehr zu sehen. Rückgängig bringt sie mit allen Werten zurück.",
     drop: "Entfernen",
     save_csv: "Als CSV sichern",
     save_xlsx: "Als XLSX sichern (Excel)",
@@ -1338,7 +1521,8 @@ export const texts = {
     csv_looking: "Wird angesehen …",
     csv_rows: "Zeilen",
     csv_import: "Importieren",
-    csv_done: (created, changed) => `${records(created)} angelegt, ${format_count(changed)} geändert.`,
+    csv_done: (created, changed) =>
+      `${records(created)} angelegt, ${format_count(changed)} geändert.`,
   },
 
   reports: {
@@ -1349,7 +1533,8 @@ export const texts = {
       `${count(n, "weitere Bezeichnung oder Oberbegriff hat", "weitere Bezeichnungen oder Oberbegriffe haben")} in einer Liste keinen Platz und ${plural(n, "wird", "werden")} ausgelassen.`,
     good: "Alles passt. Es wurde noch nichts geschrieben.",
     same: "All das steht schon in der Tabelle.",
-    wrong: (n) => `${plural(n, "Eines davon passt", `${format_count(n)} davon passen`)} nicht, daher wird nichts geschrieben. Bitte die Datei berichtigen und erneut versuchen.`,
+    wrong: (n) =>
+      `${plural(n, "Eines davon passt", `${format_count(n)} davon passen`)} nicht, daher wird nichts geschrieben. Bitte die Datei berichtigen und erneut versuchen.`,
     line: "Zeile",
     term: "Begriff",
     column: "Spalte",
@@ -1370,16 +1555,19 @@ export const texts = {
     title: "Begriffsliste aus einer Datei",
     more_title: (list) => `Begriffe für „${list}“`,
     lead: "SKOS (Turtle, N-Triples oder RDF/XML), wie Thesauri veröffentlicht werden, oder CSV mit den Spalten code, parent, label, label-de (oder eine andere Sprache), definition, uri, color und pattern; nur code muss da sein.",
-    more_lead: "SKOS oder CSV. Begriffe, die die Liste nach Adresse oder Code schon hat, werden geändert und behalten, was mit ihnen gemalt ist; andere sind neu. Das lässt sich rückgängig machen.",
+    more_lead:
+      "SKOS oder CSV. Begriffe, die die Liste nach Adresse oder Code schon hat, werden geändert und behalten, was mit ihnen gemalt ist; andere sind neu. Das lässt sich rückgängig machen.",
     file: "Datei mit Begriffen",
     name: "Name der Liste",
     name_missing: "Bitte der Liste einen Namen geben.",
     with_layer: "Eine Ebene daraus machen, um darauf zu malen",
     rows: "Begriffe",
     looking: "Wird angesehen …",
-    unknown: (file) => `„${file}“ ist keine Begriffsliste, die hier gelesen werden kann. Bitte CSV (.csv) oder SKOS als Turtle (.ttl), N-Triples (.nt) oder RDF/XML (.rdf) nehmen.`,
+    unknown: (file) =>
+      `„${file}“ ist keine Begriffsliste, die hier gelesen werden kann. Bitte CSV (.csv) oder SKOS als Turtle (.ttl), N-Triples (.nt) oder RDF/XML (.rdf) nehmen.`,
     import: "Importieren",
-    done: (created, changed) => `${count(created, "Begriff", "Begriffe")} angelegt, ${format_count(changed)} geändert.`,
+    done: (created, changed) =>
+      `${count(created, "Begriff", "Begriffe")} angelegt, ${format_count(changed)} geändert.`,
     no_layer: (list) => `„${list}“ wurde angelegt, aber keine Ebene daraus`,
   },
 
@@ -1407,7 +1595,8 @@ export const texts = {
       line: "Linien auf der Oberfläche, mit ihrer Länge",
       point: "Punkte auf der Oberfläche",
     },
-    retype_hint: "Werte, die nicht von der neuen Art sein können, werden ausgelassen; wie viele, wird angezeigt, und es lässt sich zurücknehmen.",
+    retype_hint:
+      "Werte, die nicht von der neuen Art sein können, werden ausgelassen; wie viele, wird angezeigt, und es lässt sich zurücknehmen.",
     unit: "Einheit",
     minimum: "Mindestens",
     maximum: "Höchstens",
@@ -1453,11 +1642,16 @@ export const texts = {
     comment: (comment) => `Aus der Datei selbst: „${comment}“.`,
     comment_up: (comment) => `Aus der Datei selbst: „${comment}“.`,
     coordinates: "Die Koordinaten sind die einer Karte: Meter, mit +Z oben.",
-    size: (unit) => `Die Datei sagt es nicht. Aus der Größe geschätzt: In ${unit} ist es so groß, wie solche Objekte sind.`,
-    size_unsure: "Die Datei sagt es nicht, und die Größe passt zu mehreren Einheiten. Bitte wählen.",
-    shape: (up) => `Die Datei sagt es nicht. Aus der Form geschätzt: Es steht, wenn ${up} oben ist.`,
-    shape_unsure: (up) => `Die Datei sagt es nicht, und die Form lässt es offen: ${up} ist nur geraten. Bitte wählen.`,
-    until_then: (unit, up) => `„Später entscheiden“ behält ${unit} und ${up} oben bei, als nicht bestätigt. Beim nächsten Öffnen wird wieder gefragt.`,
+    size: (unit) =>
+      `Die Datei sagt es nicht. Aus der Größe geschätzt: In ${unit} ist es so groß, wie solche Objekte sind.`,
+    size_unsure:
+      "Die Datei sagt es nicht, und die Größe passt zu mehreren Einheiten. Bitte wählen.",
+    shape: (up) =>
+      `Die Datei sagt es nicht. Aus der Form geschätzt: Es steht, wenn ${up} oben ist.`,
+    shape_unsure: (up) =>
+      `Die Datei sagt es nicht, und die Form lässt es offen: ${up} ist nur geraten. Bitte wählen.`,
+    until_then: (unit, up) =>
+      `„Später entscheiden“ behält ${unit} und ${up} oben bei, als nicht bestätigt. Beim nächsten Öffnen wird wieder gefragt.`,
     unit: "Die Zahlen in der Datei sind",
     mm: "Millimeter",
     cm: "Zentimeter",
@@ -1466,7 +1660,8 @@ export const texts = {
     yes: "Ja, das stimmt",
     later: "Später entscheiden",
     saved: "Größe und Richtung nach oben sind bestätigt.",
-    changed: "Jemand hat dieses Modell inzwischen geändert. Die neuesten Werte sind zu sehen; bitte noch einmal prüfen.",
+    changed:
+      "Jemand hat dieses Modell inzwischen geändert. Die neuesten Werte sind zu sehen; bitte noch einmal prüfen.",
   },
 
   view: {
@@ -1486,7 +1681,8 @@ export const texts = {
     no_looks: "Dieses Modell hat keine Bilder seiner Oberfläche.",
     no_looks_curator:
       "Ein Oberflächenbild ist ein Bild auf der Textur des Modells: seine Farben, oder dieselbe Oberfläche unter UV-Licht oder im Infrarot. Hinzugefügt wird es als JPEG, PNG, TIFF, WebP, BMP oder TGA.",
-    too_many_looks: (n) => `Eine Ansicht zeigt höchstens ${n} Oberflächenbilder. Bitte zuerst eines ausblenden.`,
+    too_many_looks: (n) =>
+      `Eine Ansicht zeigt höchstens ${n} Oberflächenbilder. Bitte zuerst eines ausblenden.`,
     light: "Licht",
     lights: { museum: "Museum", headlight: "Frontal", raking: "Streifend", unlit: "Ohne" },
     light_hints: {
@@ -1496,7 +1692,8 @@ export const texts = {
       unlit: "Die Farben, wie sie sind",
     },
     light_direction: "Richtung des Lichts",
-    light_pad_hint: "Ziehen oder Pfeiltasten benutzen. Nahe am Rand streift das Licht die Oberfläche nur.",
+    light_pad_hint:
+      "Ziehen oder Pfeiltasten benutzen. Nahe am Rand streift das Licht die Oberfläche nur.",
     light_from: (from, above) => `Von ${Math.round(from / 30) % 12 || 12} Uhr, ${above}° hoch`,
     section: "Schnitt",
     sections: { off: "Ohne", x: "X", y: "Y", z: "Z", box: "Quader" },
@@ -1507,7 +1704,8 @@ export const texts = {
       z: "Quer zur Z-Achse schneiden",
       box: "Nur behalten, was in einem Quader liegt",
     },
-    section_of_view: (planes) => `Eigener Schnitt der Ansicht, aus ${count(planes, "Schnittebene", "Schnittebenen")}`,
+    section_of_view: (planes) =>
+      `Eigener Schnitt der Ansicht, aus ${count(planes, "Schnittebene", "Schnittebenen")}`,
     section_remove: "Aufheben",
     cut_position: "Lage des Schnitts",
     flip: "Andere Seite behalten",
@@ -1518,7 +1716,8 @@ export const texts = {
     title: "Ansichten",
     keep: "Ansicht speichern …",
     none: "Noch ist keine gespeichert. Eine Ansicht bewahrt unter einem Namen, was Sie jetzt sehen, mit Ebenen, Licht und Schnitt: zum Wiederkommen und Zeigen, für Bericht oder Führung.",
-    none_viewer: "Noch ist keine gespeichert. Annotierende speichern Ansichten: was von einer Stelle aus zu sehen ist, mit Ebenen, Licht und Schnitt.",
+    none_viewer:
+      "Noch ist keine gespeichert. Annotierende speichern Ansichten: was von einer Stelle aus zu sehen ist, mit Ebenen, Licht und Schnitt.",
     none_yet: "Noch ist keine Ansicht gespeichert.",
     failed: "Die Ansichten ließen sich nicht lesen.",
     more: (n) => `${format_count(n)} weitere zeigen`,
@@ -1526,7 +1725,8 @@ export const texts = {
     shown: (name) => `Ansicht „${name}“`,
     back: "Zurück zu dem, was ich sah",
     keep_title: "Diese Ansicht speichern",
-    keep_lead: "Kamera, Schnitt, Licht, Oberflächenbilder und Ebenen, wie Sie sie jetzt sehen, für alle. Was andere später malen, erscheint auch darin.",
+    keep_lead:
+      "Kamera, Schnitt, Licht, Oberflächenbilder und Ebenen, wie Sie sie jetzt sehen, für alle. Was andere später malen, erscheint auch darin.",
     keep_yes: "Speichern",
     kept: (name) => `Die Ansicht „${name}“ ist gespeichert.`,
     name: "Name",
@@ -1538,12 +1738,14 @@ export const texts = {
     copy_by_hand: "Bitte diesen Link von Hand kopieren:",
     describe: "Umbenennen und beschreiben …",
     describe_title: (name) => `Die Ansicht „${name}“`,
-    changed: (name) => `Jemand hat diese Ansicht inzwischen geändert; sie heißt jetzt „${name}“. Nochmals speichern ersetzt das durch Ihres.`,
+    changed: (name) =>
+      `Jemand hat diese Ansicht inzwischen geändert; sie heißt jetzt „${name}“. Nochmals speichern ersetzt das durch Ihres.`,
     replace: "Stattdessen dies zeigen",
     replaced: (name) => `„${name}“ zeigt jetzt, was Sie sehen.`,
     undo: "Rückgängig",
     delete_title: (name) => `Die Ansicht „${name}“ löschen?`,
-    delete_lead: "Sie wird für alle gelöscht, und Links zu ihr führen nirgendwohin. Das lässt sich nicht rückgängig machen.",
+    delete_lead:
+      "Sie wird für alle gelöscht, und Links zu ihr führen nirgendwohin. Das lässt sich nicht rückgängig machen.",
   },
 
   figures: {
@@ -1566,14 +1768,16 @@ export const texts = {
     pick: "Fläche wählen …",
     pick_again: "Andere Fläche wählen …",
     pick_title: "Fläche, auf die senkrecht geblickt wird",
-    pick_lead: "Die Fläche anklicken, auf die senkrecht geblickt werden soll. Ziehen dreht das Modell, Escape führt zurück.",
+    pick_lead:
+      "Die Fläche anklicken, auf die senkrecht geblickt werden soll. Ziehen dreht das Modell, Escape führt zurück.",
     pick_middle: "Bildmitte nehmen",
     no_face: "Zuerst die Fläche wählen, auf die senkrecht geblickt werden soll.",
     scale: "Maßstab",
     fits: "Passend",
     own_scale: "Anderer …",
     own_scale_label: "Maßstab, etwa 1 : 40 oder 2 : 1",
-    wrong_scale: "Als 1 : 40 schreiben, als 2 : 1 oder die 40 allein; von 100\u00a0:\u00a01 bis 1\u00a0:\u00a01\u00a0000\u00a0000.",
+    wrong_scale:
+      "Als 1 : 40 schreiben, als 2 : 1 oder die 40 allein; von 100\u00a0:\u00a01 bis 1\u00a0:\u00a01\u00a0000\u00a0000.",
     paper: "Papier",
     orientation: "Ausrichtung",
     orientations: { portrait: "Hochformat", landscape: "Querformat" },
@@ -1599,12 +1803,16 @@ export const texts = {
     labels: "Beschriftung mit Datensätzen",
     no_labels: "Keine",
     column: "Was dort steht",
-    no_columns: "Die Tabelle dieser Ebene hat keine Spalte, die sich ausschreiben lässt. Eine anlegen oder eine andere Ebene wählen.",
-    preview: (paper: string, from: string, scale: string) => `Vorschau des Blattes: ${paper}, Blick von: ${from}, Maßstab: ${scale}`,
-    preview_hint: "Eine grobe Vorschau. Die ganze Abbildung zeigt einen Stand der Ebenen, auch während andere malen.",
+    no_columns:
+      "Die Tabelle dieser Ebene hat keine Spalte, die sich ausschreiben lässt. Eine anlegen oder eine andere Ebene wählen.",
+    preview: (paper: string, from: string, scale: string) =>
+      `Vorschau des Blattes: ${paper}, Blick von: ${from}, Maßstab: ${scale}`,
+    preview_hint:
+      "Eine grobe Vorschau. Die ganze Abbildung zeigt einen Stand der Ebenen, auch während andere malen.",
     drawing: "Wird gezeichnet …",
     see_field: "Mit der Auswahl stimmt etwas nicht; es steht am Feld.",
-    unsure: "Die Größe dieses Modells hat noch niemand bestätigt: Der Maßstab der Abbildung kann falsch sein.",
+    unsure:
+      "Die Größe dieses Modells hat noch niemand bestätigt: Der Maßstab der Abbildung kann falsch sein.",
     unsure_ask: "Bitten Sie Kuratierende, sie zu prüfen.",
     make: "Abbildung erstellen",
     making: "Die Abbildung wird erstellt",
@@ -1623,26 +1831,31 @@ export const texts = {
     about: (stops, languages) => `${count(stops, "Station", "Stationen")} · ${languages}`,
     edit: "Bearbeiten …",
     delete_title: (name) => `Die Führung „${name}“ löschen?`,
-    delete_lead: "Sie wird für alle gelöscht, und die Links der Kioske, die sie zeigen, sind sofort wertlos. Das lässt sich nicht rückgängig machen.",
+    delete_lead:
+      "Sie wird für alle gelöscht, und die Links der Kioske, die sie zeigen, sind sofort wertlos. Das lässt sich nicht rückgängig machen.",
     new_title: "Neue Führung",
     edit_title: (name) => `Die Führung „${name}“`,
     name: "Name",
     name_hint: "Einmal um das Gefäß",
     text: "Worum es geht",
     idle: "Ohne Berührung von vorn nach",
-    idle_hint: "So lange nach der letzten Berührung beginnt die Führung von vorn und läuft von selbst.",
+    idle_hint:
+      "So lange nach der letzten Berührung beginnt die Führung von vorn und läuft von selbst.",
     languages: "Sprachen",
     first_language: "zuerst",
     language_add: "Sprache hinzufügen",
     make_first: (language) => `${language} zuerst zeigen`,
     language_remove: (language) => `${language} entfernen`,
     language_remove_title: (language) => `${language} aus der Führung entfernen?`,
-    language_remove_lead: "Was in dieser Sprache geschrieben ist, an allen Stationen, wird mit entfernt.",
+    language_remove_lead:
+      "Was in dieser Sprache geschrieben ist, an allen Stationen, wird mit entfernt.",
     language_remove_yes: "Entfernen",
     stops: "Stationen",
-    stops_lead: "Was an einer Station zu sehen und zu lesen ist, wird hier geschrieben, sobald es eine gibt.",
+    stops_lead:
+      "Was an einer Station zu sehen und zu lesen ist, wird hier geschrieben, sobald es eine gibt.",
     none_stops: "Noch keine. Jede Station zeigt eine der gespeicherten Ansichten.",
-    no_views: "Noch ist keine Ansicht gespeichert. Schließen Sie dies, zeigen Sie am Modell, was zu sehen sein soll, und speichern Sie es mit „Ansicht speichern …“.",
+    no_views:
+      "Noch ist keine Ansicht gespeichert. Schließen Sie dies, zeigen Sie am Modell, was zu sehen sein soll, und speichern Sie es mit „Ansicht speichern …“.",
     add_view: "Ansicht der neuen Station",
     add: "Station hinzufügen",
     remove: "Station entfernen",
@@ -1653,7 +1866,8 @@ export const texts = {
     lacks: "Unvollständig in dieser Sprache",
     view: "Ansicht",
     view_choose: "Bitte eine Ansicht wählen",
-    view_gone: "Die Ansicht dieser Station wurde gelöscht. Bitte eine andere wählen oder die Station entfernen.",
+    view_gone:
+      "Die Ansicht dieser Station wurde gelöscht. Bitte eine andere wählen oder die Station entfernen.",
     view_gone_short: "Ihre Ansicht wurde gelöscht",
     try_stop: "Ausprobieren",
     trial: "Eine Station zum Ausprobieren",
@@ -1670,8 +1884,10 @@ export const texts = {
     transitions: { move: "Flug", cut: "Sofort" },
     transition_takes: "Der Flug dauert",
     swipe: "Ebenen zum Überblenden",
-    swipe_hint: "Mit dem Finger lässt sich eine über die andere ziehen. Zu sehen sind nur öffentliche Ebenen.",
-    layer_names: "Namen dieser Ebenen, wie Besucher sie lesen. Sie werden sofort mit der Ebene gesichert.",
+    swipe_hint:
+      "Mit dem Finger lässt sich eine über die andere ziehen. Zu sehen sind nur öffentliche Ebenen.",
+    layer_names:
+      "Namen dieser Ebenen, wie Besucher sie lesen. Sie werden sofort mit der Ebene gesichert.",
     layer_name: (layer, language) => `${layer} auf ${language}`,
     layer_add: "Ebene hinzufügen",
     records: "Datensätze",
@@ -1690,11 +1906,14 @@ export const texts = {
       name_missing: "Bitte einen Namen geben.",
       language_missing: "Eine Führung hat mindestens eine Sprache.",
       stops_missing: "Bitte eine Station hinzufügen: eine Führung hat mindestens eine.",
-      view_missing: "Die Ansicht dieser Station wurde gelöscht. Bitte eine andere wählen oder die Station entfernen.",
+      view_missing:
+        "Die Ansicht dieser Station wurde gelöscht. Bitte eine andere wählen oder die Station entfernen.",
       title_missing: "Bitte der Station in der ersten Sprache einen Titel geben.",
     },
-    wrong_seconds: (least, most) => `Sekunden von ${format_count(least)} bis ${format_count(most)}.`,
-    conflict: "Jemand hat diese Führung inzwischen geändert. Von Ihrem ist nichts verloren: nochmals speichern ersetzt das andere dadurch.",
+    wrong_seconds: (least, most) =>
+      `Sekunden von ${format_count(least)} bis ${format_count(most)}.`,
+    conflict:
+      "Jemand hat diese Führung inzwischen geändert. Von Ihrem ist nichts verloren: nochmals speichern ersetzt das andere dadurch.",
     take_theirs: "Stattdessen das andere zeigen",
     theirs_title: "Zeigen, was gespeichert wurde?",
     gone: "Diese Führung wurde inzwischen gelöscht. Nochmals speichern legt sie neu an.",
@@ -1717,7 +1936,8 @@ export const texts = {
     title: "Kioske",
     title_of: (tour) => `Kioske mit „${tour}“`,
     lead: "Bildschirme, die über einen Link eine Führung zeigen. Neue Links entstehen an der Führung eines Modells.",
-    lead_of: "Wer einen solchen Link öffnet, sieht diese Führung und was von ihrem Modell öffentlich ist, ohne Konto, und ändert nichts.",
+    lead_of:
+      "Wer einen solchen Link öffnet, sieht diese Führung und was von ihrem Modell öffentlich ist, ohne Konto, und ändert nichts.",
     none: "Es gibt keine Links für Kioske.",
     none_of: "Für diese Führung gibt es noch keinen Link.",
     new: "Neuer Link",
@@ -1728,12 +1948,20 @@ export const texts = {
     days_unit: "Tage",
     days_hint: "ohne Ende",
     days_lead: "Ohne eine Zahl von Tagen gilt der Link, bis er widerrufen wird.",
-    days_wrong: (least, most) => `Eine ganze Zahl von Tagen von ${format_count(least)} bis ${format_count(most)}, oder nichts.`,
+    days_wrong: (least, most) =>
+      `Eine ganze Zahl von Tagen von ${format_count(least)} bis ${format_count(most)}, oder nichts.`,
     make: "Link erzeugen",
     link: (name) => `Link für „${name}“`,
-    link_lead: "Einmal im Browser des Bildschirms öffnen. Er wird nur jetzt angezeigt; ein verlorener wird widerrufen und ein neuer erzeugt.",
+    link_lead:
+      "Einmal im Browser des Bildschirms öffnen. Er wird nur jetzt angezeigt; ein verlorener wird widerrufen und ein neuer erzeugt.",
     link_done: "Fertig",
-    states: { running: "läuft", silent: "still", unopened: "noch nicht geöffnet", revoked: "widerrufen", expired: "abgelaufen" },
+    states: {
+      running: "läuft",
+      silent: "still",
+      unopened: "noch nicht geöffnet",
+      revoked: "widerrufen",
+      expired: "abgelaufen",
+    },
     asked: "soll neu laden",
     seen: (when) => `Zuletzt da: ${when}`,
     never_seen: "Noch nie da",
@@ -1743,11 +1971,13 @@ export const texts = {
     made_by: (user, day) => `von ${user}, ${day}`,
     reload: "Neu laden",
     reload_of: (name) => `${name} neu laden`,
-    reload_asked: "Die Seite wird dort binnen einer halben Minute neu geladen, wenn der Bildschirm läuft.",
+    reload_asked:
+      "Die Seite wird dort binnen einer halben Minute neu geladen, wenn der Bildschirm läuft.",
     revoke: "Widerrufen …",
     revoke_of: (name) => `Den Link von ${name} widerrufen`,
     revoke_title: (name) => `Den Link von „${name}“ widerrufen?`,
-    revoke_lead: "Der Bildschirm zeigt sofort nichts mehr, und der Link ist wertlos. Das lässt sich nicht rückgängig machen.",
+    revoke_lead:
+      "Der Bildschirm zeigt sofort nichts mehr, und der Link ist wertlos. Das lässt sich nicht rückgängig machen.",
     revoke_yes: "Widerrufen",
   },
 
@@ -1792,7 +2022,8 @@ export const texts = {
     nothing: (layer) => `nicht in ${layer}`,
     empty: "In beiden Ebenen ist nichts gemalt.",
     sum: "Alle",
-    cut: (n) => `Gezeigt werden die ersten ${format_count(n)} Zeilen und Spalten. Kopie und Dateien haben alle.`,
+    cut: (n) =>
+      `Gezeigt werden die ersten ${format_count(n)} Zeilen und Spalten. Kopie und Dateien haben alle.`,
   },
 
   column_filter: {
@@ -1800,13 +2031,20 @@ export const texts = {
     open: (column) => `Nach ${column} filtern`,
     open_on: (column) => `Nach ${column} filtern (ist an)`,
     show: "Datensätze zeigen",
-    kinds: { one_of: "mit einem dieser Werte", range: "in einem Bereich", contains: "deren Text enthält", filled: "mit irgendeinem Wert", empty: "ohne Wert" },
+    kinds: {
+      one_of: "mit einem dieser Werte",
+      range: "in einem Bereich",
+      contains: "deren Text enthält",
+      filled: "mit irgendeinem Wert",
+      empty: "ohne Wert",
+    },
     remove: "Entfernen",
     apply: "Filtern",
     search: "Werte suchen",
     no_value: "ohne Wert",
     more: (n) => `${format_count(n)} weitere Werte: bitte suchen.`,
-    counted: (n, all) => `Gezählt in den ersten ${format_count(n)} von ${format_count(all)} Datensätzen.`,
+    counted: (n, all) =>
+      `Gezählt in den ersten ${format_count(n)} von ${format_count(all)} Datensätzen.`,
     from: "Von",
     to: "Bis",
     contains: "Text",
@@ -1819,7 +2057,10 @@ export const texts = {
     keys: "Tasten",
     mouse_rows: [
       ["Links ziehen", "das gewählte Werkzeug"],
-      ["Ruhen beim Drehen oder Verschieben", "der Datensatz, der dort liegt, auf einen Blick; Escape nimmt ihn weg"],
+      [
+        "Ruhen beim Drehen oder Verschieben",
+        "der Datensatz, der dort liegt, auf einen Blick; Escape nimmt ihn weg",
+      ],
       ["Klick beim Drehen oder Verschieben", "der Datensatz, der dort liegt"],
       ["Rechts ziehen, oder Leertaste + links", "das Modell drehen"],
       ["Mitte ziehen, oder Umschalt + rechts", "das Modell verschieben"],
@@ -1830,20 +2071,38 @@ export const texts = {
       ["Tippen beim Drehen oder Verschieben", "der Datensatz, der dort liegt"],
       ["Zwei Finger", "verschieben; spreizen holt näher; drehen dreht"],
       ["Tippen mit Messen", "eine Stelle, von oder zu der gemessen wird; Ziehen dreht das Modell"],
-      ["Stift", "das gewählte Werkzeug; solange er aufliegt oder in der Nähe ist, tun Hand und Finger nichts"],
-      ["Ein Finger, sobald ein Stift benutzt wurde", "dreht das Modell, auch wenn das Werkzeug malt oder zeichnet"],
+      [
+        "Stift",
+        "das gewählte Werkzeug; solange er aufliegt oder in der Nähe ist, tun Hand und Finger nichts",
+      ],
+      [
+        "Ein Finger, sobald ein Stift benutzt wurde",
+        "dreht das Modell, auch wenn das Werkzeug malt oder zeichnet",
+      ],
     ],
     key_rows: [
       ["B · E · I", "Pinsel · Radierer · Wert aufnehmen"],
       ["A · L · G", "Polygon · Lasso · Zusammenhängendes füllen"],
       ["D · S", "Linie, mit ihrer Länge beim Zeichnen · Punkt, für den Datensatz, der gemalt wird"],
-      ["Enter · Rücktaste · Escape", "Polygon schließen, Linie beenden · eine Ecke zurück · aufgeben"],
+      [
+        "Enter · Rücktaste · Escape",
+        "Polygon schließen, Linie beenden · eine Ecke zurück · aufgeben",
+      ],
       ["V · H", "drehen · verschieben"],
       ["C, dann ein Klick", "ein Kommentar dort; Enter: in der Mitte der Ansicht"],
-      ["Strg + Enter · Escape", "senden · den Kommentar weglegen, den Sie schreiben; er bleibt erhalten"],
-      ["M, dann Klicks", "messen: gerade, entlang der Oberfläche, Flächen, Profil; noch einmal M: eine Stelle in der Mitte; Enter beendet, Escape räumt weg"],
+      [
+        "Strg + Enter · Escape",
+        "senden · den Kommentar weglegen, den Sie schreiben; er bleibt erhalten",
+      ],
+      [
+        "M, dann Klicks",
+        "messen: gerade, entlang der Oberfläche, Flächen, Profil; noch einmal M: eine Stelle in der Mitte; Enter beendet, Escape räumt weg",
+      ],
       ["[ · ]", "schmalerer · breiterer Pinsel"],
-      ["Strg + Z · Strg + Umschalt + Z", "eigene Striche rückgängig · wiederholen; mit den Werkzeugen für Linien und Punkte, was Sie gezeichnet haben"],
+      [
+        "Strg + Z · Strg + Umschalt + Z",
+        "eigene Striche rückgängig · wiederholen; mit den Werkzeugen für Linien und Punkte, was Sie gezeichnet haben",
+      ],
       ["Pfeile", "drehen (mit Umschalt: verschieben)"],
       ["+ · −", "näher · ferner"],
       ["Pos1", "ganzes Modell"],
@@ -1854,27 +2113,60 @@ export const texts = {
       ["N · Umschalt + N", "nächste · vorige der gespeicherten Ansichten"],
       ["T", "Tabelle der Datensätze der Ebene, auf oder zu"],
       ["F", "maßstäbliche Abbildung: was Sie sehen, als Zeichnung in PDF, SVG, PNG oder TIFF"],
-      ["Escape", "der Ansicht von jemandem nicht mehr folgen; auch jede eigene Bewegung beendet es"],
-      ["I, dann ein Klick", "auf einer Ebene mit Datensätzen: die Karte des Datensatzes dort, und der Pinsel malt ihn"],
+      [
+        "Escape",
+        "der Ansicht von jemandem nicht mehr folgen; auch jede eigene Bewegung beendet es",
+      ],
+      [
+        "I, dann ein Klick",
+        "auf einer Ebene mit Datensätzen: die Karte des Datensatzes dort, und der Pinsel malt ihn",
+      ],
       ["?", "diese Hilfe"],
     ],
     table: "In der Tabelle der Datensätze",
     table_rows: [
       ["Pfeile · Bild · Pos1 · Ende", "von Zelle zu Zelle; mit Strg: erste, letzte"],
-      ["Enter, F2 oder noch ein Klick", "in die Zelle schreiben; auf dem Schlüssel: das Formular des Datensatzes"],
-      ["Buchstaben und Ziffern", "kommen in Zellen mit Text, Ziffern auch in Zahlen, Daten und Zeiten; überall sonst sind sie die Tasten der Seite, wie T, D und V; nach Escape immer"],
-      ["Trichter einer Spalte", "zeigt nur Datensätze mit bestimmten Werten, in einem Bereich, mit einem Text oder ohne Wert; die Bedingung steht im Filterfeld"],
-      ["Enter · Tab · Escape", "beim Schreiben: hinunter · nächste Zelle · wie es war; Umschalt + Enter: neue Zeile"],
+      [
+        "Enter, F2 oder noch ein Klick",
+        "in die Zelle schreiben; auf dem Schlüssel: das Formular des Datensatzes",
+      ],
+      [
+        "Buchstaben und Ziffern",
+        "kommen in Zellen mit Text, Ziffern auch in Zahlen, Daten und Zeiten; überall sonst sind sie die Tasten der Seite, wie T, D und V; nach Escape immer",
+      ],
+      [
+        "Trichter einer Spalte",
+        "zeigt nur Datensätze mit bestimmten Werten, in einem Bereich, mit einem Text oder ohne Wert; die Bedingung steht im Filterfeld",
+      ],
+      [
+        "Enter · Tab · Escape",
+        "beim Schreiben: hinunter · nächste Zelle · wie es war; Umschalt + Enter: neue Zeile",
+      ],
       ["Entf", "die Zelle leeren"],
-      ["Leertaste, oder Klick auf einen Schlüssel", "die Zeile wählen; mit Strg: weitere, mit Umschalt: alle dazwischen"],
+      [
+        "Leertaste, oder Klick auf einen Schlüssel",
+        "die Zeile wählen; mit Strg: weitere, mit Umschalt: alle dazwischen",
+      ],
       ["Strg + Z · Strg + Umschalt + Z", "eigene Änderungen der Tabelle rückgängig · wiederholen"],
-      ["⋯ einer Spalte → Ändern", "wie sie heißt, auch in anderen Sprachen: alle sehen den Namen in ihrer Sprache"],
-      ["Eine CSV ablegen", "sagt Zeile für Zeile, was sie ändern würde, und importiert sie dann; auf einer Begriffsliste sind CSV und SKOS Begriffe dafür"],
+      [
+        "⋯ einer Spalte → Ändern",
+        "wie sie heißt, auch in anderen Sprachen: alle sehen den Namen in ihrer Sprache",
+      ],
+      [
+        "Eine CSV ablegen",
+        "sagt Zeile für Zeile, was sie ändern würde, und importiert sie dann; auf einer Begriffsliste sind CSV und SKOS Begriffe dafür",
+      ],
     ],
     brush: "Was der Pinsel erreicht",
     brush_rows: [
-      ["Form", "rund, quadratisch oder ein beliebiges Bild: + oder ein PNG oder JPEG neben den Formen ablegen; alle auf dem Server teilen sie"],
-      ["Schräge Flächen auslassen", "lässt aus, was zu flach zu sehen ist; näher holen oder drehen, dann dort malen"],
+      [
+        "Form",
+        "rund, quadratisch oder ein beliebiges Bild: + oder ein PNG oder JPEG neben den Formen ablegen; alle auf dem Server teilen sie",
+      ],
+      [
+        "Schräge Flächen auslassen",
+        "lässt aus, was zu flach zu sehen ist; näher holen oder drehen, dann dort malen",
+      ],
       ["Auch, was dahinter verdeckt ist", "malt durch das Objekt hindurch"],
     ],
     terms: "In einer Begriffsliste",
@@ -1887,15 +2179,39 @@ export const texts = {
     ],
     layers: "Ebenen ohne Pinsel",
     layer_rows: [
-      ["Ebenen ⋯ → Aus einer Vorlage", "Begriffslisten, Tabellen und Ebenen für Stein, Wandmalerei, Grabung und Behandlung"],
-      ["Ebenen ⋯ → Begriffsliste aus einer Datei", "CSV oder SKOS (Turtle, RDF/XML), mit dem, was geschähe, bevor geschrieben wird; erneut hinein und heraus im ⋯ der Tabelle"],
-      ["⋯ einer Ebene → Aus einer Datei malen", "Messpunkte, Karten, Shapefiles, GeoTIFF und gescannte Pläne; Zahlen für die Punkte des Scans"],
-      ["Ansicht → Oberflächenbilder → Orthofoto hinzufügen", "ein Bild, entlang einer Achse auf die Oberfläche gelegt"],
-      ["⋯ einer Ebene → Flächen", "bei Messwerten ein Histogramm, mit Griffen (oder Pfeiltasten) für den Bereich der Farben"],
-      ["Neue Ebene → Aus einem Ausdruck", "Werte aus anderen Ebenen, deren Datensätzen und der Oberfläche; ergänzt Namen beim Schreiben"],
+      [
+        "Ebenen ⋯ → Aus einer Vorlage",
+        "Begriffslisten, Tabellen und Ebenen für Stein, Wandmalerei, Grabung und Behandlung",
+      ],
+      [
+        "Ebenen ⋯ → Begriffsliste aus einer Datei",
+        "CSV oder SKOS (Turtle, RDF/XML), mit dem, was geschähe, bevor geschrieben wird; erneut hinein und heraus im ⋯ der Tabelle",
+      ],
+      [
+        "⋯ einer Ebene → Aus einer Datei malen",
+        "Messpunkte, Karten, Shapefiles, GeoTIFF und gescannte Pläne; Zahlen für die Punkte des Scans",
+      ],
+      [
+        "Ansicht → Oberflächenbilder → Orthofoto hinzufügen",
+        "ein Bild, entlang einer Achse auf die Oberfläche gelegt",
+      ],
+      [
+        "⋯ einer Ebene → Flächen",
+        "bei Messwerten ein Histogramm, mit Griffen (oder Pfeiltasten) für den Bereich der Farben",
+      ],
+      [
+        "Neue Ebene → Aus einem Ausdruck",
+        "Werte aus anderen Ebenen, deren Datensätzen und der Oberfläche; ergänzt Namen beim Schreiben",
+      ],
       ["Neue Ebene → Aus der Geometrie", "Werte aus dem Netz; rückgängig zu machen wie Striche"],
-      ["Ebenen ⋯ → Ebenen übernehmen", "was auf einem früheren Scan des Objekts gemalt war, mit einem Bericht über das Verlorene"],
-      ["Ansicht → Führungen", "Stationen aus gespeicherten Ansichten mit Texten in mehreren Sprachen, für einen Bildschirm in der Ausstellung; Links für solche Bildschirme in ⋯ der Führung"],
+      [
+        "Ebenen ⋯ → Ebenen übernehmen",
+        "was auf einem früheren Scan des Objekts gemalt war, mit einem Bericht über das Verlorene",
+      ],
+      [
+        "Ansicht → Führungen",
+        "Stationen aus gespeicherten Ansichten mit Texten in mehreren Sprachen, für einen Bildschirm in der Ausstellung; Links für solche Bildschirme in ⋯ der Führung",
+      ],
     ],
   },
 
@@ -1909,29 +2225,38 @@ export const texts = {
     steps: {
       turn: {
         title: "Das Modell drehen",
-        mouse: "Mit der rechten Maustaste ziehen; solange „Drehen“ gewählt ist, auch mit der linken. Das Rad führt näher heran.",
-        touch: "Mit einem Finger ziehen. Zwei Finger verschieben, führen näher heran und drehen im Bild.",
+        mouse:
+          "Mit der rechten Maustaste ziehen; solange „Drehen“ gewählt ist, auch mit der linken. Das Rad führt näher heran.",
+        touch:
+          "Mit einem Finger ziehen. Zwei Finger verschieben, führen näher heran und drehen im Bild.",
       },
       layers: {
         title: "Ebenen",
         way: "Diese Schaltfläche bringt sie her.",
-        paint: "Was man weiß, liegt in Ebenen auf der Oberfläche. Wählen Sie die, auf die Sie malen wollen; ihr Auge zeigt und verbirgt sie.",
+        paint:
+          "Was man weiß, liegt in Ebenen auf der Oberfläche. Wählen Sie die, auf die Sie malen wollen; ihr Auge zeigt und verbirgt sie.",
         look: "Was man weiß, liegt in Ebenen auf der Oberfläche. Wählen Sie eine, um ihre Legende zu sehen; ihr Auge zeigt und verbirgt sie.",
       },
       brush: {
         title: "Malen",
-        mouse: "Nehmen Sie den Pinsel (B) und ziehen Sie über das Modell. [ und ] machen ihn schmaler und breiter. Jeder Strich wird sofort gespeichert, und andere sehen ihn, während Sie malen.",
-        touch: "Nehmen Sie den Pinsel und malen Sie mit Finger oder Stift auf das Modell; zwei Finger bewegen es weiterhin. Jeder Strich wird sofort gespeichert, und andere sehen ihn, während Sie malen.",
+        mouse:
+          "Nehmen Sie den Pinsel (B) und ziehen Sie über das Modell. [ und ] machen ihn schmaler und breiter. Jeder Strich wird sofort gespeichert, und andere sehen ihn, während Sie malen.",
+        touch:
+          "Nehmen Sie den Pinsel und malen Sie mit Finger oder Stift auf das Modell; zwei Finger bewegen es weiterhin. Jeder Strich wird sofort gespeichert, und andere sehen ihn, während Sie malen.",
       },
       undo: {
         title: "Zurücknehmen",
-        mouse: "Rückgängig (Strg + Z) nimmt Ihren eigenen letzten Strich auf der Ebene zurück, auch morgen noch. Was andere gemalt haben, bleibt.",
-        touch: "Rückgängig nimmt Ihren eigenen letzten Strich auf der Ebene zurück, auch morgen noch. Was andere gemalt haben, bleibt.",
+        mouse:
+          "Rückgängig (Strg + Z) nimmt Ihren eigenen letzten Strich auf der Ebene zurück, auch morgen noch. Was andere gemalt haben, bleibt.",
+        touch:
+          "Rückgängig nimmt Ihren eigenen letzten Strich auf der Ebene zurück, auch morgen noch. Was andere gemalt haben, bleibt.",
       },
       values: {
         title: "Was ist hier?",
-        mouse: "Lassen Sie die Maus auf dem Modell ruhen: unten rechts steht, was die Ebenen dort enthalten. Mit diesem Werkzeug (I) oder durch einen Klick beim Drehen zeigt ein Datensatz seine Karte.",
-        touch: "Nehmen Sie dieses Werkzeug und tippen Sie auf das Modell: Sie erfahren, was die gewählte Ebene dort enthält, und ein Datensatz zeigt seine Karte.",
+        mouse:
+          "Lassen Sie die Maus auf dem Modell ruhen: unten rechts steht, was die Ebenen dort enthalten. Mit diesem Werkzeug (I) oder durch einen Klick beim Drehen zeigt ein Datensatz seine Karte.",
+        touch:
+          "Nehmen Sie dieses Werkzeug und tippen Sie auf das Modell: Sie erfahren, was die gewählte Ebene dort enthält, und ein Datensatz zeigt seine Karte.",
       },
       share: {
         title: "Anderen zeigen, Hilfe finden",
@@ -1948,31 +2273,50 @@ export const texts = {
     theme: "Farbschema",
     themes: { system: "Wie das System", light: "Hell", dark: "Dunkel", contrast: "Hoher Kontrast" },
     reload_title: "Sprache jetzt wechseln?",
-    reload_lead: (n) => `Die Seite wird neu geladen. ${changes(n)} ${plural(n, "ist noch nicht gespeichert, bleibt in diesem Browser und wird", "sind noch nicht gespeichert, bleiben in diesem Browser und werden")} danach erneut gesendet.`,
+    reload_lead: (n) =>
+      `Die Seite wird neu geladen. ${changes(n)} ${plural(n, "ist noch nicht gespeichert, bleibt in diesem Browser und wird", "sind noch nicht gespeichert, bleiben in diesem Browser und werden")} danach erneut gesendet.`,
     reload: "Sprache wechseln",
   },
 
   calls: {
-    unreachable: ["Der Server ist nicht zu erreichen", "Bitte prüfen, ob der Server läuft und ob Sie mit seinem Netz verbunden sind, dann erneut versuchen."],
+    unreachable: [
+      "Der Server ist nicht zu erreichen",
+      "Bitte prüfen, ob der Server läuft und ob Sie mit seinem Netz verbunden sind, dann erneut versuchen.",
+    ],
     statuses: {
       401: ["Nicht angemeldet", "Bitte wieder anmelden."],
-      403: ["Nicht erlaubt", "Ihr Konto darf das nicht. Bitte wenden Sie sich an die Person, der der Server gehört."],
+      403: [
+        "Nicht erlaubt",
+        "Ihr Konto darf das nicht. Bitte wenden Sie sich an die Person, der der Server gehört.",
+      ],
       404: ["Nicht gefunden", "Vielleicht wurde es gelöscht. Bitte die Seite neu laden."],
-      412: ["Von jemand anderem geändert", "Jemand hat dies gleichzeitig geändert. Bitte noch einmal ansehen, dann die Änderung wiederholen."],
+      412: [
+        "Von jemand anderem geändert",
+        "Jemand hat dies gleichzeitig geändert. Bitte noch einmal ansehen, dann die Änderung wiederholen.",
+      ],
       413: ["Zu groß", "Die Datei oder Nachricht ist größer, als der Server annimmt."],
       429: ["Zu schnell", "Der Server bittet um eine Pause. Bitte gleich noch einmal versuchen."],
-      502: ["Unerwartete Antwort", "Die Antwort des Servers war nicht zu lesen. Bitte die Seite neu laden."],
-      503: ["Der Server ist nicht bereit", "Er startet, oder ihm fehlt die Datenbank. Bitte gleich noch einmal versuchen."],
+      502: [
+        "Unerwartete Antwort",
+        "Die Antwort des Servers war nicht zu lesen. Bitte die Seite neu laden.",
+      ],
+      503: [
+        "Der Server ist nicht bereit",
+        "Er startet, oder ihm fehlt die Datenbank. Bitte gleich noch einmal versuchen.",
+      ],
     },
     other_status: (status) => `Der Server hat mit ${status} geantwortet`,
-    other_status_detail: "Bitte erneut versuchen; wenn es bleibt, sagen Sie es der Person, die den Server betreibt.",
+    other_status_detail:
+      "Bitte erneut versuchen; wenn es bleibt, sagen Sie es der Person, die den Server betreibt.",
     unreadable: "Der Server hat etwas gesendet, das diese Seite nicht lesen kann",
-    unreadable_detail: (what) => `${what}. Bitte die Seite neu laden; wenn es bleibt, sind Seite und Server von verschiedenen Versionen.`,
+    unreadable_detail: (what) =>
+      `${what}. Bitte die Seite neu laden; wenn es bleibt, sind Seite und Server von verschiedenen Versionen.`,
   },
 
   problems: {
     unexpected: "Auf dieser Seite ist etwas schiefgegangen",
-    unexpected_detail: "Bitte die Seite neu laden. Was gespeichert ist, liegt sicher auf dem Server.",
+    unexpected_detail:
+      "Bitte die Seite neu laden. Was gespeichert ist, liegt sicher auf dem Server.",
     picture: "Ein Bild vom Server ließ sich nicht zeichnen",
   },
 } satisfies Texts;

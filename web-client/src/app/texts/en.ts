@@ -37,13 +37,15 @@ export const texts = {
     token: "Link or token",
     token_hint: "The link looks like",
     token_empty: "Paste a link or a token first.",
-    token_wrong: "This link or token is not known here. Copy it whole, without spaces, and try again.",
+    token_wrong:
+      "This link or token is not known here. Copy it whole, without spaces, and try again.",
   },
 
   password: {
     show: "Show the password",
     hide: "Hide the password",
-    hint: (least: number) => `At least ${least} characters. Several words are easy to remember and hard to guess.`,
+    hint: (least: number) =>
+      `At least ${least} characters. Several words are easy to remember and hard to guess.`,
     too_short: (least: number) => `Take at least ${least} characters.`,
     is_the_name: "The password must not be the name.",
     differs: "The two are not the same. Write it once more.",
@@ -51,9 +53,11 @@ export const texts = {
 
   join: {
     greeting: (name: string) => `Welcome, ${name}`,
-    lead: (role: string) => `You are invited to this site as ${role.toLowerCase()}. Choose a password: from then on you sign in with it and your name.`,
+    lead: (role: string) =>
+      `You are invited to this site as ${role.toLowerCase()}. Choose a password: from then on you sign in with it and your name.`,
     groups: (groups: string) => `You are in: ${groups}.`,
-    lead_again: "Choose a new password: from then on you sign in with it and your name. The old one is good until then.",
+    lead_again:
+      "Choose a new password: from then on you sign in with it and your name. The old one is good until then.",
     user: "Name for signing in",
     full_name: "Full name",
     password: "Password",
@@ -61,7 +65,8 @@ export const texts = {
     button: "Choose password and sign in",
     looking: "Looking at the invitation…",
     useless_title: "This link is of no use any more",
-    useless_lead: "It was used already, is too old, or a newer one has taken its place. Ask whoever invited you for a new link.",
+    useless_lead:
+      "It was used already, is too old, or a newer one has taken its place. Ask whoever invited you for a new link.",
     incomplete_title: "This link is not whole",
     incomplete_lead: "Copy it as a whole, up to its end, into the address of the browser.",
     to_sign_in: "To the sign-in",
@@ -93,7 +98,8 @@ export const texts = {
     people: "People…",
     sign_out: "Sign out",
     sign_out_title: "Sign out now?",
-    sign_out_lead: (n: number) => `${count(n, "change is", "changes are")} not saved yet. What cannot be saved before you leave is kept in this browser until you come back to the model here.`,
+    sign_out_lead: (n: number) =>
+      `${count(n, "change is", "changes are")} not saved yet. What cannot be saved before you leave is kept in this browser until you come back to the model here.`,
     title: "Your account",
     about: (user: string, role: string) => `Name for signing in: ${user} · Role: ${role}`,
     in_projects: "Your roles in projects",
@@ -112,7 +118,10 @@ export const texts = {
     no_password: "Choose a password",
     no_password_why: "so that you can come back without the link.",
     sessions: "Where you are signed in",
-    browser: (browser: string, system: string) => (browser && system ? `${browser} on ${system}` : browser || system || "A browser that does not say its name"),
+    browser: (browser: string, system: string) =>
+      browser && system
+        ? `${browser} on ${system}`
+        : browser || system || "A browser that does not say its name",
     this_browser: "this browser",
     last_used: (when: string) => `used ${when}`,
     since: (when: string) => `signed in ${when}`,
@@ -120,7 +129,8 @@ export const texts = {
     sign_out_others: "Sign out everywhere else",
     signed_out_others: "You are signed out everywhere else.",
     tokens: "Tokens for scripts",
-    tokens_lead: "A script sends its token instead of a password, and may do what the token's role allows.",
+    tokens_lead:
+      "A script sends its token instead of a password, and may do what the token's role allows.",
     no_tokens: "You have none.",
     token_new: "New token",
     token_name: "What it is for",
@@ -140,7 +150,8 @@ export const texts = {
     token_make: "Make token",
     token_made: (name: string) => `The token “${name}”. Copy it now: it is not shown again.`,
     token_example: "For example",
-    token_line: (role: string, where: string, until: string, used: string) => [role, where, until, used].filter(Boolean).join(" · "),
+    token_line: (role: string, where: string, until: string, used: string) =>
+      [role, where, until, used].filter(Boolean).join(" · "),
     token_until: (when: string) => `until ${when}`,
     token_expired: (when: string) => `expired ${when}`,
     token_used: (when: string) => `used ${when}`,
@@ -174,7 +185,11 @@ export const texts = {
     states: { invited: "invited", active: "active", disabled: "disabled" },
     no_password: "no password",
     no_password_hint: "Comes in by the link that the server prints",
-    state_hints: { invited: "No password was chosen yet", active: "Can sign in", disabled: "Cannot sign in" },
+    state_hints: {
+      invited: "No password was chosen yet",
+      active: "Can sign in",
+      disabled: "Cannot sign in",
+    },
     last_seen: "Last seen",
     never: "never",
     you: "you",
@@ -184,24 +199,29 @@ export const texts = {
     invite_user: "Name for signing in",
     invite_user_hint: "ada",
     user_missing: "Give a name to sign in with.",
-    user_wrong: "Letters without accents, digits and . _ - @ only, a letter or digit first, at most 64.",
+    user_wrong:
+      "Letters without accents, digits and . _ - @ only, a letter or digit first, at most 64.",
     invite_button: "Make link",
     link: (name: string) => `Link for ${name}`,
-    link_lead: (until: string) => `Send it to them alone: whoever has it can choose the password. It is shown only now, good for one use, until ${until}.`,
+    link_lead: (until: string) =>
+      `Send it to them alone: whoever has it can choose the password. It is shown only now, good for one use, until ${until}.`,
     link_done: "Done",
     new_link: "New link…",
     new_link_title: (name: string) => `New link for ${name}?`,
-    new_link_lead: "With it they choose a new password. Earlier links become worthless; a password that they have stays good until then.",
+    new_link_lead:
+      "With it they choose a new password. Earlier links become worthless; a password that they have stays good until then.",
     new_link_button: "Make link",
     disable: "Disable…",
     disable_title: (name: string) => `Disable the account of ${name}?`,
-    disable_lead: "They are signed out everywhere, their tokens stop working, and they cannot sign in until you enable the account again.",
+    disable_lead:
+      "They are signed out everywhere, their tokens stop working, and they cannot sign in until you enable the account again.",
     disable_button: "Disable",
     enable: "Enable",
     projects: "Roles in projects…",
     delete: "Delete…",
     delete_title: (name: string) => `Delete the account of ${name}?`,
-    delete_lead: "They are signed out and cannot come back. What they painted and wrote stays in the history, under a name that nobody can tell. This cannot be undone.",
+    delete_lead:
+      "They are signed out and cannot come back. What they painted and wrote stays in the history, under a name that nobody can tell. This cannot be undone.",
     role_changed: (role: string) => `Is ${role.toLowerCase()} now.`,
     disabled: "Cannot sign in any more.",
     enabled: "Can sign in again.",
@@ -216,12 +236,14 @@ export const texts = {
     name_empty: "Give the group a name.",
     make: "Make group",
     none: "There are no groups yet.",
-    about: (people: number, projects: number) => `${count(people, "person", "people")} · ${projects === 0 ? "no role in any project" : `a role in ${count(projects, "project", "projects")}`}`,
+    about: (people: number, projects: number) =>
+      `${count(people, "person", "people")} · ${projects === 0 ? "no role in any project" : `a role in ${count(projects, "project", "projects")}`}`,
     options: (name: string) => `Options for the group ${name}`,
     of: (name: string) => `Groups of ${name}`,
     members: "Who is in it…",
     members_of: (name: string) => `Who is in “${name}”`,
-    inside: (n: number) => `${count(n, "person is", "people are")} in it. Each change counts at once.`,
+    inside: (n: number) =>
+      `${count(n, "person is", "people are")} in it. Each change counts at once.`,
     find_hint: "Name",
     put_in: "Is in it now.",
     taken_out: "Is out now.",
@@ -231,17 +253,21 @@ export const texts = {
     delete_lead: (losing: number, people: number) =>
       (losing === 0
         ? "Nobody loses anything by it: whatever it gives, its people have otherwise, too."
-        : `${count(losing, "person", "people")} of the ${format_count(people)} in it will see fewer projects, or may do less there.`) + " Its roles in projects go with it. This cannot be undone.",
+        : `${count(losing, "person", "people")} of the ${format_count(people)} in it will see fewer projects, or may do less there.`) +
+      " Its roles in projects go with it. This cannot be undone.",
   },
 
   project_roles: {
     title: (name: string) => `${name} in projects`,
-    lead: (role: string) => `Everywhere: ${role.toLowerCase()}. In a project the higher role counts.`,
+    lead: (role: string) =>
+      `Everywhere: ${role.toLowerCase()}. In a project the higher role counts.`,
     role_in: (project: string) => `Role in ${project}`,
     none: "No role of their own",
     removed: "Has no role of their own there any more.",
-    by_groups: (role: string, groups: string) => `Is ${role.toLowerCase()} there by group: ${groups}.`,
-    by_groups_also: (role: string, groups: string) => `Also ${role.toLowerCase()} by group: ${groups}.`,
+    by_groups: (role: string, groups: string) =>
+      `Is ${role.toLowerCase()} there by group: ${groups}.`,
+    by_groups_also: (role: string, groups: string) =>
+      `Also ${role.toLowerCase()} by group: ${groups}.`,
     group_lead: "Everybody in the group has at least this role there.",
     group_none: "No role",
     group_removed: "Has no role there any more.",
@@ -250,7 +276,8 @@ export const texts = {
   projects: {
     new: "New project",
     new_title: "New project",
-    new_lead: "A project is a site or a collection: its models, their tables, and the people who work on them.",
+    new_lead:
+      "A project is a site or a collection: its models, their tables, and the people who work on them.",
     name: "Name",
     name_hint: "Villa Giulia",
     name_empty: "Give it a name.",
@@ -258,27 +285,38 @@ export const texts = {
     text_hint: "What is recorded here, when and by whom",
     create: "Make the project",
     made: (name: string) => `The project “${name}” is there.`,
-    made_next: "Import its scans here. Who may work on it is said in the account menu, under People.",
+    made_next:
+      "Import its scans here. Who may work on it is said in the account menu, under People.",
     describe: "Rename and describe…",
     describe_title: (name: string) => `The project “${name}”`,
-    describe_lead: (path: string) => `Its address stays as it is, ${path}, so that links go on leading here.`,
+    describe_lead: (path: string) =>
+      `Its address stays as it is, ${path}, so that links go on leading here.`,
     require_version: "Programs must name the version that they change",
-    require_version_hint: "Scripts and other programs then cannot overwrite what somebody else changed meanwhile: without the version that they have read, the server refuses their change (HTTP If-Match, 428). Nothing changes for work on this page.",
-    changed: (name: string) => `Somebody else changed this project meanwhile; it is called “${name}” now. Save again to put yours in its place.`,
+    require_version_hint:
+      "Scripts and other programs then cannot overwrite what somebody else changed meanwhile: without the version that they have read, the server refuses their change (HTTP If-Match, 428). Nothing changes for work on this page.",
+    changed: (name: string) =>
+      `Somebody else changed this project meanwhile; it is called “${name}” now. Save again to put yours in its place.`,
     delete_title: (name: string) => `Delete the project “${name}”?`,
-    delete_lead: "Roles that people have in it, and its activity, are deleted, too. Links to it lead nowhere. This cannot be undone.",
-    delete_tables_lead: (n: number) => (n === 1 ? "Its table goes with it, with all records and their history:" : `Its ${count(n, "table", "tables")} go with it, with all records and their history:`),
+    delete_lead:
+      "Roles that people have in it, and its activity, are deleted, too. Links to it lead nowhere. This cannot be undone.",
+    delete_tables_lead: (n: number) =>
+      n === 1
+        ? "Its table goes with it, with all records and their history:"
+        : `Its ${count(n, "table", "tables")} go with it, with all records and their history:`,
     type_name: (name: string) => `Type “${name}” to delete them`,
     kept_title: (name: string) => `“${name}” still has models`,
-    kept_lead: (n: number) => `A project is deleted once it is empty, so that no scan is lost by accident. Delete ${n === 1 ? "its model first, from its menu" : `its ${count(n, "model", "models")} first, from the menu of each`}.`,
+    kept_lead: (n: number) =>
+      `A project is deleted once it is empty, so that no scan is lost by accident. Delete ${n === 1 ? "its model first, from its menu" : `its ${count(n, "model", "models")} first, from the menu of each`}.`,
     kept_by_bin_title: (name: string) => `Models of “${name}” lie in the Bin`,
-    kept_by_bin_lead: "A project is deleted once it is empty, so that no scan is lost by accident. Restore what lies in its Bin, or delete it there for ever.",
+    kept_by_bin_lead:
+      "A project is deleted once it is empty, so that no scan is lost by accident. Restore what lies in its Bin, or delete it there for ever.",
   },
 
   bin: {
     open: "Bin…",
     title_of: (project: string) => `Bin of “${project}”`,
-    lead: (days: number) => `What is deleted in this project stays here for ${count(days, "day", "days")} and can be restored as it was.`,
+    lead: (days: number) =>
+      `What is deleted in this project stays here for ${count(days, "day", "days")} and can be restored as it was.`,
     not_kept_lead: "This server erases at once what is deleted.",
     none: "Nothing lies in the Bin.",
     more: "Show earlier",
@@ -287,19 +325,24 @@ export const texts = {
       layer: (model: string) => `Layer of ${model}`,
       record: (table: string) => `Record of ${table}`,
     },
-    deleted_when: (ago: string, user: string | undefined) => (user === undefined ? `deleted ${ago}` : `deleted by ${user} ${ago}`),
+    deleted_when: (ago: string, user: string | undefined) =>
+      user === undefined ? `deleted ${ago}` : `deleted by ${user} ${ago}`,
     erased_on: (date: string) => `erased on ${date}`,
     restore: "Restore",
     restore_of: (name: string) => `Restore ${name}`,
     restored: (name: string) => `“${name}” is back.`,
-    restored_as: (name: string, before: string, now: string) => `“${name}” is back. Its short name is ${now} now, as something else is called ${before}.`,
+    restored_as: (name: string, before: string, now: string) =>
+      `“${name}” is back. Its short name is ${now} now, as something else is called ${before}.`,
     erase: "Delete for ever",
     erase_of: (name: string) => `Delete ${name} for ever`,
     erase_title: (name: string) => `Delete “${name}” for ever?`,
     erase_lead: "Everything painted in it and its history are erased. This cannot be undone.",
     erase_yes: "Delete for ever",
     erased: (name: string) => `“${name}” was deleted for ever.`,
-    kept: (days: number | null) => (days === null ? "It goes to the Bin of the project." : `For ${count(days, "day", "days")} it can be restored from the Bin of the project.`),
+    kept: (days: number | null) =>
+      days === null
+        ? "It goes to the Bin of the project."
+        : `For ${count(days, "day", "days")} it can be restored from the Bin of the project.`,
     not_kept: "This cannot be undone.",
     deleted: {
       layer: (name: string) => `The layer “${name}” was deleted.`,
@@ -315,14 +358,16 @@ export const texts = {
     count_projects: (n: number) => count(n, "project", "projects"),
     changed: (day: string) => `changed ${day}`,
     missing_title: "This project is not here",
-    missing_lead: "It may have been deleted, or you have no role in it. Ask whoever sent you the link.",
+    missing_lead:
+      "It may have been deleted, or you have no role in it. Ask whoever sent you the link.",
     no_projects: "No project yet",
     import: "Import a scan",
     into: "Import into",
     drop_title: "Drop to import",
     drop_lead: "A PLY, OBJ, STL, glTF or zip, with its pictures or as a folder",
     empty_title: "No models yet",
-    empty_lead: "Drag a scan (PLY, OBJ, STL, glTF; with its material and picture files, as a folder, or zipped) onto this page, or choose its files. It stays on your own server.",
+    empty_lead:
+      "Drag a scan (PLY, OBJ, STL, glTF; with its material and picture files, as a folder, or zipped) onto this page, or choose its files. It stays on your own server.",
     choose_file: "Choose a file",
     open: (name: string) => `Open ${name}`,
     options: (name: string) => `Options for ${name}`,
@@ -330,8 +375,10 @@ export const texts = {
     delete_lead: "The scan goes, with all its layers and their history.",
     deleted: (name: string) => `“${name}” was deleted.`,
     triangles: (n: number) => count(n, "triangle", "triangles"),
-    empty_viewer: "Nobody has imported a scan yet. Curators of the project do; ask one of them, and it appears here.",
-    empty_guest: "You see the models of projects that you have a role in. Ask whoever invited you for one.",
+    empty_viewer:
+      "Nobody has imported a scan yet. Curators of the project do; ask one of them, and it appears here.",
+    empty_guest:
+      "You see the models of projects that you have a role in. Ask whoever invited you for one.",
     count: (n: number) => count(n, "model", "models"),
     no_picture: "No picture",
     scale_open: "Size not confirmed",
@@ -352,8 +399,12 @@ export const texts = {
     repeat_named: (name: string) => `Import ${name} again`,
     dismiss: (name: string) => `Remove the note about ${name}`,
     open: "Open",
-    wrong_kind: (name: string) => `“${name}” is not a scan that can be read here: PLY, OBJ, STL, glTF, GLB or a zip of one. Export it as one of these, then drop it here.`,
-    left_out: (n: number, name: string) => (n === 1 ? `“${name}” was left out.` : `“${name}” and ${count(n - 1, "more file", "more files")} were left out.`),
+    wrong_kind: (name: string) =>
+      `“${name}” is not a scan that can be read here: PLY, OBJ, STL, glTF, GLB or a zip of one. Export it as one of these, then drop it here.`,
+    left_out: (n: number, name: string) =>
+      n === 1
+        ? `“${name}” was left out.`
+        : `“${name}” and ${count(n - 1, "more file", "more files")} were left out.`,
     empty_file: (name: string) => `“${name}” is empty.`,
     ready: (name: string) => `“${name}” is ready.`,
   },
@@ -426,12 +477,17 @@ export const texts = {
     saved: "All saved",
     saving: "Saving…",
     not_saved: (n: number) => `${count(n, "change", "changes")} not saved`,
-    not_saved_hint: "They are kept in this browser and sent again by itself. Keep the page open, or come back to the model here later.",
-    left_behind: (n: number, model: string) => `${count(n, "change", "changes")} of “${model}” not saved yet`,
-    left_behind_hint: "They are kept in this browser and sent as soon as the server takes them. Keep the page open, or come back to the model here later.",
+    not_saved_hint:
+      "They are kept in this browser and sent again by itself. Keep the page open, or come back to the model here later.",
+    left_behind: (n: number, model: string) =>
+      `${count(n, "change", "changes")} of “${model}” not saved yet`,
+    left_behind_hint:
+      "They are kept in this browser and sent as soon as the server takes them. Keep the page open, or come back to the model here later.",
     left_saved: (model: string) => `All changes of “${model}” are saved now.`,
-    lost_with_model: (n: number, model: string) => `“${model}” was deleted, and ${count(n, "change", "changes")} with it.`,
-    discarded: (n: number) => `${count(n, "change", "changes")} of the person before you are kept in this browser until they come back to the model here.`,
+    lost_with_model: (n: number, model: string) =>
+      `“${model}” was deleted, and ${count(n, "change", "changes")} with it.`,
+    discarded: (n: number) =>
+      `${count(n, "change", "changes")} of the person before you are kept in this browser until they come back to the model here.`,
     taken_up: (n: number) => `${count(n, "change", "changes")} from earlier sent again`,
     taken_up_hint: "You made them here, and they were not saved when the page was closed.",
     not_kept: "This browser keeps nothing for this page",
@@ -440,7 +496,8 @@ export const texts = {
 
   connection: {
     part_missing: "A part of the page could not be loaded",
-    part_missing_hint: "The server may have been updated, or the connection was lost. Reload the page; what is not saved is kept.",
+    part_missing_hint:
+      "The server may have been updated, or the connection was lost. Reload the page; what is not saved is kept.",
     reload: "Reload",
     lost: "Connection lost. Trying again…",
     kept: (n: number) => `${count(n, "change is", "changes are")} kept here and will be sent.`,
@@ -466,8 +523,12 @@ export const texts = {
     lead: "Look with me",
     lead_hint: "asks the others to follow your view",
     stop_leading: "No longer ask to look with me",
-    leading: (n: number) => (n === 0 ? "You asked the others to look with you" : `${count(n, "person looks", "people look")} with you`),
-    followers: (n: number) => (n === 0 ? "nobody follows yet" : `${count(n, "person follows", "people follow")}`),
+    leading: (n: number) =>
+      n === 0
+        ? "You asked the others to look with you"
+        : `${count(n, "person looks", "people look")} with you`,
+    followers: (n: number) =>
+      n === 0 ? "nobody follows yet" : `${count(n, "person follows", "people follow")}`,
     invites: (name: string) => `${name} asks you to look with them`,
     accept: "Follow",
     left: (name: string) => `${name} left: the view is yours again.`,
@@ -489,7 +550,8 @@ export const texts = {
     square: "Square",
     slant: "Skip surfaces seen at a slant of more than",
     slant_degrees: "Largest angle between the surface and your view, in degrees",
-    slant_through: "What is hidden is seen at no angle: this does not go with painting what is hidden.",
+    slant_through:
+      "What is hidden is seen at no angle: this does not go with painting what is hidden.",
     pressure: "A pen that is pressed less paints a narrower line",
     value: "Value",
     class: "Class to paint",
@@ -498,8 +560,10 @@ export const texts = {
     no_layer: "Choose or create a layer first, then paint.",
     fill: "Fill the whole surface",
     fill_title: (layer: string) => `Fill all of “${layer}”?`,
-    fill_lead: (what: string) => `The whole surface gets ${what}. What is painted there now is replaced; you can undo it.`,
-    hidden_layer: (layer: string) => `“${layer}” is hidden: it was made visible so that you see what you paint.`,
+    fill_lead: (what: string) =>
+      `The whole surface gets ${what}. What is painted there now is replaced; you can undo it.`,
+    hidden_layer: (layer: string) =>
+      `“${layer}” is hidden: it was made visible so that you see what you paint.`,
     bad_value: "Give a number.",
     out_of_range: (min: string, max: string) => `Give a number from ${min} to ${max}.`,
     whole_number: "This layer holds whole numbers only.",
@@ -510,7 +574,8 @@ export const texts = {
     new_record: "New record",
     no_record: (n: number) => `The layer's table has no record ${n} yet.`,
     make_record: (n: number) => `Make record ${n}`,
-    new_record_hint: "Adds a record with the next number to the layer's table and paints that number",
+    new_record_hint:
+      "Adds a record with the next number to the layer's table and paints that number",
     viewer_only: "You may look at this model but not change it.",
   },
 
@@ -522,7 +587,8 @@ export const texts = {
     none_found: "No term is called that.",
     more_found: (n: number) => `and ${format_count(n)} more: write more of the word`,
     empty: "The list has no terms yet.",
-    more: (n: number, all: number) => `The first ${format_count(n)} of ${format_count(all)} terms. Search for the others.`,
+    more: (n: number, all: number) =>
+      `The first ${format_count(n)} of ${format_count(all)} terms. Search for the others.`,
   },
 
   templates: {
@@ -536,7 +602,8 @@ export const texts = {
     layer: "layer to paint on",
     terms: (n: number) => `list of ${count(n, "term", "terms")}`,
     columns: (n: number) => `table of ${count(n, "column", "columns")}`,
-    made: (tables: number, layers: number) => `${count(tables, "table", "tables")} and ${count(layers, "layer", "layers")} were made.`,
+    made: (tables: number, layers: number) =>
+      `${count(tables, "table", "tables")} and ${count(layers, "layer", "layers")} were made.`,
   },
 
   shapes: {
@@ -551,11 +618,13 @@ export const texts = {
     add: "Add shape",
     adding: "Adding…",
     empty: "Nothing of the picture is the shape: choose another part.",
-    unreadable: (file: string) => `“${file}” is not a picture that can be read: give a PNG or a JPEG.`,
+    unreadable: (file: string) =>
+      `“${file}” is not a picture that can be read: give a PNG or a JPEG.`,
     rename: "Rename",
     rename_title: (name: string) => `Rename “${name}”`,
     delete_title: (name: string) => `Delete the shape “${name}”?`,
-    delete_lead: "It goes for everyone on this site. What was painted with it stays, and can be undone as before.",
+    delete_lead:
+      "It goes for everyone on this site. What was painted with it stays, and can be undone as before.",
     gone: (name: string) => `The shape “${name}” was deleted. The brush is round now.`,
   },
 
@@ -601,7 +670,8 @@ export const texts = {
 
   areas: {
     how: {
-      polygon: "Click the corners; close with a click on the first one, or Enter. Backspace takes a corner back, Escape gives up.",
+      polygon:
+        "Click the corners; close with a click on the first one, or Enter. Backspace takes a corner back, Escape gives up.",
       lasso: "Draw around what is to be painted.",
       bucket: "Click a place: what is connected with it across the surface is filled.",
     },
@@ -639,25 +709,31 @@ export const texts = {
     title: (layer: string) => `Paint “${layer}” from a file`,
     lead: "Measured values (CSV), a map with areas (GeoJSON, shapefile), a raster (GeoTIFF), an orthophoto or a scanned map (TIFF, PNG, JPEG). You can undo it.",
     file: "File, or files that belong together",
-    file_hint: "A shapefile: its .shp and .dbf (and .prj, .cpg), or all in a zip. A picture: with its world file, if there is one.",
-    unknown: (file: string) => `“${file}” is none of these: .csv, .geojson, .shp with .dbf, .tif, .png, .jpg, .zip`,
+    file_hint:
+      "A shapefile: its .shp and .dbf (and .prj, .cpg), or all in a zip. A picture: with its world file, if there is one.",
+    unknown: (file: string) =>
+      `“${file}” is none of these: .csv, .geojson, .shp with .dbf, .tif, .png, .jpg, .zip`,
     looking: "Looking into it…",
     sending: (percent: number) => `Sending: ${percent} %`,
     polygons: (n: number) => count(n, "area", "areas"),
     columns: (n: number) => count(n, "attribute", "attributes"),
     bands: (n: number) => count(n, "band", "bands"),
-    bounds: (x0: string, x1: string, y0: string, y1: string) => `from ${x0} to ${x1}, and from ${y0} to ${y1}`,
-    readings_hint: "The first line names the columns x, y, z and value, in the model's coordinates and unit. What the discs do not reach stays.",
+    bounds: (x0: string, x1: string, y0: string, y1: string) =>
+      `from ${x0} to ${x1}, and from ${y0} to ${y1}`,
+    readings_hint:
+      "The first line names the columns x, y, z and value, in the model's coordinates and unit. What the discs do not reach stays.",
     radius: "Radius around each place",
     tolerance: "How far from the surface at most",
-    vertices_hint: "One number a line, in the order of the scan's vertices. The layer then holds these numbers and nothing else.",
+    vertices_hint:
+      "One number a line, in the order of the scan's vertices. The layer then holds these numbers and nothing else.",
     source: "Vertices of",
     attribute: "Each area gets",
     one_value: "the same value",
     attribute_number: (name: string) => `${name} (number)`,
     attribute_text: (name: string) => `${name} (name of a class)`,
     samples: (values: string) => `Such as ${values}`,
-    names_need_legend: "Names need a layer of classes: choose such a layer, or an attribute with numbers.",
+    names_need_legend:
+      "Names need a layer of classes: choose such a layer, or an attribute with numbers.",
     names_become: "Names that are classes of this layer stand for them; others become new classes.",
     names: "Names of the classes",
     no_names: "as they are",
@@ -666,7 +742,8 @@ export const texts = {
     mode_hints: {
       luminance: "The brightness of the picture there, 0 to 255.",
       band: "The number that the raster has there; nothing where it has none.",
-      colors: "What the colour there stands for. Colours that are left out stay as they are in the layer.",
+      colors:
+        "What the colour there stands for. Colours that are left out stay as they are in the layer.",
     },
     band: "Band",
     color: "Colour",
@@ -680,9 +757,11 @@ export const texts = {
     bad_tolerance: (least: number, most: number) => `Give a number from ${least} to ${most}.`,
     world: "The six numbers of its world file (.tfw, .pgw, .jgw)",
     world_known: "The file says where it lies.",
-    world_wrong: "Give the six numbers of the picture's world file: without them its place is not known.",
+    world_wrong:
+      "Give the six numbers of the picture's world file: without them its place is not known.",
     crs: {
-      question: (crs: string) => `The map lies in ${crs}, and this model has no coordinate system. Are the model's coordinates those of ${crs}?`,
+      question: (crs: string) =>
+        `The map lies in ${crs}, and this model has no coordinate system. Are the model's coordinates those of ${crs}?`,
       hint: "If they are not, the map lies in the wrong place. A curator can give the model its coordinate system; then the page does not ask again.",
       yes: "Yes, use the map",
       no: "No",
@@ -717,7 +796,8 @@ export const texts = {
     save_outlines: { geojson: "Save outlines as GeoJSON", gpkg: "Save outlines as GeoPackage" },
     import: "Replace from a raster…",
     title: (layer: string) => `Replace what “${layer}” holds?`,
-    lead: (file: string) => `The layer then holds what is in “${file}”: a file that was saved from a layer of this model, changed or not. You can undo it.`,
+    lead: (file: string) =>
+      `The layer then holds what is in “${file}”: a file that was saved from a layer of this model, changed or not. You can undo it.`,
     replace: "Replace",
     same: "The layer holds just that already.",
     unknown: (file: string) => `“${file}” is no raster that a layer can be read from`,
@@ -734,7 +814,11 @@ export const texts = {
     },
     of: (name: string) => `Who sees ${name}`,
     download: "The scan's files are for",
-    download_roles: { viewer: "everybody who sees the project", annotator: "annotators and curators", curator: "curators alone" },
+    download_roles: {
+      viewer: "everybody who sees the project",
+      annotator: "annotators and curators",
+      curator: "curators alone",
+    },
     no_download: "Not for download with your role.",
   },
 
@@ -746,7 +830,8 @@ export const texts = {
     new: "New layer",
     more: "More about layers",
     empty_title: "No layers yet",
-    empty_lead: "A layer holds one kind of knowledge about the surface: where the cracks are, which pieces it is made of, how moist it is.",
+    empty_lead:
+      "A layer holds one kind of knowledge about the surface: where the cracks are, which pieces it is made of, how moist it is.",
     show: (name: string) => `Show ${name}`,
     hide: (name: string) => `Hide ${name}`,
     select: (name: string) => `Paint on ${name}`,
@@ -765,18 +850,21 @@ export const texts = {
     unlock: "Unlock",
     unlock_computed: "Unlock to edit by hand",
     locked_computed: "Locked: its values were computed.",
-    computed_detail: (name: string) => `The values of ${name} were computed. A curator can unlock it to edit it by hand.`,
+    computed_detail: (name: string) =>
+      `The values of ${name} were computed. A curator can unlock it to edit it by hand.`,
     by_hand: "Edited by hand: its values need not be those that were computed.",
     by_hand_formula: "It is not computed again by itself.",
     overwrite_title: (name: string) => `Compute “${name}” again?`,
-    overwrite_lead: "This overwrites what was edited by hand. The layer is locked again afterwards.",
+    overwrite_lead:
+      "This overwrites what was edited by hand. The layer is locked again afterwards.",
     locked: "Layer locked",
     locked_detail: (name: string) => `The layer ${name} is locked: a curator can unlock it.`,
     locked_to_you: "Locked: a curator can unlock it.",
     locked_to_others: "Locked for annotators. You may still change it.",
     widen: "Room for more records…",
     widen_title: (layer: string) => `Room for more records in “${layer}”?`,
-    widen_lead: (highest: number) => `It holds keys up to ${format_count(highest)}. Afterwards it holds all keys and takes more memory; what is painted and its history stay.`,
+    widen_lead: (highest: number) =>
+      `It holds keys up to ${format_count(highest)}. Afterwards it holds all keys and takes more memory; what is painted and its history stay.`,
     widen_yes: "Make room",
     widened: "The layer now holds all keys.",
     saved_default: "What you see is now the default for everyone.",
@@ -819,7 +907,12 @@ export const texts = {
     shape_lead: "Computed: curvature, roughness, height, distances.",
     compute: "Compute layer",
     name: "Name",
-    name_hint: { presence: "Cracks", classes: "Materials", measurement: "Moisture", records: "Finds" },
+    name_hint: {
+      presence: "Cracks",
+      classes: "Materials",
+      measurement: "Moisture",
+      records: "Finds",
+    },
     description: "Description",
     description_hint: "Optional: how it was observed, by which rules",
     color: "Colour",
@@ -836,7 +929,8 @@ export const texts = {
     range_to: "to",
     stepped: "Show in steps",
     detail: "Smallest detail",
-    detail_hint: "Finer detail needs more memory on the server once it is painted. It cannot be changed later.",
+    detail_hint:
+      "Finer detail needs more memory on the server once it is painted. It cannot be changed later.",
     create: "Create layer",
     name_missing: "Give the layer a name.",
     range_wrong: "The second number must be larger than the first.",
@@ -848,20 +942,55 @@ export const texts = {
 
   shape: {
     kind: "What to compute",
-    groups: { form: "Form and relief", place: "Position and direction", distance: "Distances", file: "From the scan's file" },
+    groups: {
+      form: "Form and relief",
+      place: "Position and direction",
+      distance: "Distances",
+      file: "From the scan's file",
+    },
     kinds: {
-      mean_curvature: { title: "Curvature", lead: "Where the surface bulges (positive) or is hollow (negative): tool marks, reliefs, worn letters." },
-      gaussian_curvature: { title: "Gaussian curvature", lead: "Bumps and hollows (positive) against saddles (negative); 0 where the surface could be unrolled." },
-      max_curvature: { title: "Ridges", lead: "The largest curvature in any direction: high on edges and ridges." },
-      min_curvature: { title: "Grooves", lead: "The smallest curvature in any direction: low in grooves, joints and cracks." },
-      roughness: { title: "Roughness", lead: "Distance of the surface to the plane that fits it best: worn against fresh, smoothed against tooled." },
-      ambient_occlusion: { title: "Openness", lead: "Share of the light from all around that gets there: 1 in the open, 0 in deep cavities." },
+      mean_curvature: {
+        title: "Curvature",
+        lead: "Where the surface bulges (positive) or is hollow (negative): tool marks, reliefs, worn letters.",
+      },
+      gaussian_curvature: {
+        title: "Gaussian curvature",
+        lead: "Bumps and hollows (positive) against saddles (negative); 0 where the surface could be unrolled.",
+      },
+      max_curvature: {
+        title: "Ridges",
+        lead: "The largest curvature in any direction: high on edges and ridges.",
+      },
+      min_curvature: {
+        title: "Grooves",
+        lead: "The smallest curvature in any direction: low in grooves, joints and cracks.",
+      },
+      roughness: {
+        title: "Roughness",
+        lead: "Distance of the surface to the plane that fits it best: worn against fresh, smoothed against tooled.",
+      },
+      ambient_occlusion: {
+        title: "Openness",
+        lead: "Share of the light from all around that gets there: 1 in the open, 0 in deep cavities.",
+      },
       height: { title: "Height", lead: "Above the lowest point, along the direction that is up." },
       slope: { title: "Slope", lead: "0° lies flat, 90° is a vertical wall, more overhangs." },
-      azimuth: { title: "Facing direction", lead: "Degrees clockwise from north, seen from above." },
-      boundary_distance: { title: "Distance to the edge", lead: "To the nearest open edge of the mesh: the rim of a fragment, a hole." },
-      model_distance: { title: "Distance to another model", lead: "What was added (positive) or taken away (negative) since: two states of one excavation or object." },
-      vertex_property: { title: "Values from the scan's file", lead: "A number that the scanning program kept with each point: quality, confidence, intensity." },
+      azimuth: {
+        title: "Facing direction",
+        lead: "Degrees clockwise from north, seen from above.",
+      },
+      boundary_distance: {
+        title: "Distance to the edge",
+        lead: "To the nearest open edge of the mesh: the rim of a fragment, a hole.",
+      },
+      model_distance: {
+        title: "Distance to another model",
+        lead: "What was added (positive) or taken away (negative) since: two states of one excavation or object.",
+      },
+      vertex_property: {
+        title: "Values from the scan's file",
+        lead: "A number that the scanning program kept with each point: quality, confidence, intensity.",
+      },
     },
     radius: "Within a radius of",
     radius_hint: "4 edges of the mesh",
@@ -869,7 +998,8 @@ export const texts = {
     distance_hint: "suited to the size",
     rays: "Rays at each point",
     rays_hint: "More rays: smoother values, and more time",
-    bad_rays: (least: number, most: number) => `Give a whole number of rays from ${least} to ${most}.`,
+    bad_rays: (least: number, most: number) =>
+      `Give a whole number of rays from ${least} to ${most}.`,
     absolute: "As the coordinate of the site, not above the lowest point",
     model: "To the surface of",
     property: "Property",
@@ -906,7 +1036,12 @@ export const texts = {
     column: "Colour by",
     each_record: "Each record its own colour",
     method: "Classes",
-    methods: { quantile: "Equally many records", equal: "Equal intervals", smooth: "Smooth gradient", unique: "Each value" },
+    methods: {
+      quantile: "Equally many records",
+      equal: "Equal intervals",
+      smooth: "Smooth gradient",
+      unique: "Each value",
+    },
     count: "How many",
     ramp: "Colours from low to high",
     ramps: { viridis: "Blue to yellow", reds: "Light to dark red", blues: "Light to dark blue" },
@@ -914,7 +1049,8 @@ export const texts = {
     color_of: (name: string) => `Colour of ${name}`,
     pattern_of: (name: string) => `Pattern of ${name}`,
     patterned: "Patterns for all",
-    patterned_hint: "What lies below stays legible, and classes can be told apart in black and white.",
+    patterned_hint:
+      "What lies below stays legible, and classes can be told apart in black and white.",
     by: (column: string) => `By ${column}`,
     others: "Others, or no value",
     further: "Records that come later are each given a colour of their own.",
@@ -939,7 +1075,8 @@ export const texts = {
     by_column: "The names hold",
     into: "Put them into",
     pattern: "Pattern of the names",
-    pattern_hint: "Each {word} stands for some characters; the one called like the column says the record.",
+    pattern_hint:
+      "Each {word} stands for some characters; the one called like the column says the record.",
     matched: (n: number) => `${count(n, "file has", "files have")} a record`,
     unmatched: (n: number) => `${count(n, "file has", "files have")} none, and stay here`,
     duplicates: (n: number) => `${count(n, "file is", "files are")} there already`,
@@ -959,7 +1096,8 @@ export const texts = {
   measure: {
     title: "Measure",
     how: "Click or tap places on the surface. A drag turns the model, also between two places. Without a pointer, M sets one in the middle of the view.",
-    how_on: "A click or tap on the last place, or Enter, ends the line; Backspace takes a place back, Escape clears all.",
+    how_on:
+      "A click or tap on the last place, or Enter, ends the line; Backspace takes a place back, Escape clears all.",
     how_anew: "Ended. The next click or tap begins another line.",
     most: (n: number) => `These are ${format_count(n)} places, and no more can be set.`,
     set_in_middle: "Place in the middle",
@@ -972,13 +1110,17 @@ export const texts = {
     ends: "First to last place, straight",
     along: "Along the surface",
     along_parts: (n: number) => `Along the surface, in ${format_count(n)} parts`,
-    no_way: "The straight lines pass through the object, so that what is nearest to them is no way over its surface. Turn the model until all places are seen, then choose “What is seen”.",
+    no_way:
+      "The straight lines pass through the object, so that what is nearest to them is no way over its surface. Turn the model until all places are seen, then choose “What is seen”.",
     rise: (axis: string) => `Height difference (${axis})`,
     area: "Flat area of the polygon",
     perimeter: "Perimeter of the polygon",
-    area_hint: "The polygon is flat and goes through the places, from the last back to the first: it is not the area of the surface within it.",
-    off_plane: (length: string) => `The places lie up to ${length} off its plane; the area is that of their shadow on it.`,
-    gaps: (n: number) => `The line leaves the surface ${n === 1 ? "once" : `${format_count(n)} times`}; what lies between is not counted.`,
+    area_hint:
+      "The polygon is flat and goes through the places, from the last back to the first: it is not the area of the surface within it.",
+    off_plane: (length: string) =>
+      `The places lie up to ${length} off its plane; the area is that of their shadow on it.`,
+    gaps: (n: number) =>
+      `The line leaves the surface ${n === 1 ? "once" : `${format_count(n)} times`}; what lies between is not counted.`,
     busy: "…",
     unconfirmed: "Lengths and areas are as right as the unit that its file was taken to have.",
     profile: "Profile",
@@ -994,7 +1136,8 @@ export const texts = {
     ways: { seen: "What is seen", nearest: "What is nearest" },
     way_hints: {
       seen: "The surface that was seen under the straight lines. Choose it again to look from where you are now.",
-      nearest: "Of each step of the straight lines, the surface nearest to it. Good where the surface is nearly flat; taken where not all places are seen at once.",
+      nearest:
+        "Of each step of the straight lines, the surface nearest to it. Good where the surface is nearly flat; taken where not all places are seen at once.",
     },
     save_csv: "Save as CSV",
     save_svg: "Save as SVG",
@@ -1015,13 +1158,15 @@ export const texts = {
     into: "Column",
     no_column: {
       line: "Lines belong to records: choose a layer whose table has a column of lines, or add one to its table of records.",
-      point: "Points belong to records: choose a layer whose table has a column of points, or add one to its table of records.",
+      point:
+        "Points belong to records: choose a layer whose table has a column of points, or add one to its table of records.",
     },
     line_cut: (pieces: number) => `The line crossed an edge and was cut into ${pieces} pieces.`,
     line_drawn: (length: string, record: string) => `${length} drawn for “${record}”.`,
     point_set: (record: string) => `A point was set for “${record}”.`,
     missed: "There is no surface there.",
-    changed_since: "The table has changed since: take the line or point out in the record's form, or undo step by step in the table.",
+    changed_since:
+      "The table has changed since: take the line or point out in the record's form, or undo step by step in the table.",
   },
 
   comments: {
@@ -1043,7 +1188,8 @@ export const texts = {
     none_found: "None is like that.",
     more: (n: number) => `Show ${format_count(n)} more`,
     failed: "The comments could not be read.",
-    pin: (user: string, text: string, state: string) => [`Comment by ${user}`, state, text].filter(Boolean).join(": "),
+    pin: (user: string, text: string, state: string) =>
+      [`Comment by ${user}`, state, text].filter(Boolean).join(": "),
     pin_draft: "Your comment that is not sent yet",
     resolved: "resolved",
     replies: (n: number) => count(n, "reply", "replies"),
@@ -1102,7 +1248,13 @@ export const texts = {
     look: "Look at it as its author saw it",
     stroke: (what: string, name: string) => `${what}, ${name}`,
     more: (n: number) => `${format_count(n)} more are listed when these are decided.`,
-    ops: { stroke: "stroke", fill: "fill", polygon: "outline", import: "imported data", restore: "restored state" },
+    ops: {
+      stroke: "stroke",
+      fill: "fill",
+      polygon: "outline",
+      import: "imported data",
+      restore: "restored state",
+    },
     done: {
       accept: (n: number) => `${count(n, "edit", "edits")} accepted`,
       reject: (n: number) => `${count(n, "edit", "edits")} rejected`,
@@ -1111,7 +1263,8 @@ export const texts = {
     told: {
       accept: (user: string, layer: string) => `${user} accepted what you painted on ${layer}`,
       reject: (user: string, layer: string) => `${user} rejected what you painted on ${layer}`,
-      reopen: (user: string, layer: string) => `What you painted on ${layer} waits for review again (${user})`,
+      reopen: (user: string, layer: string) =>
+        `What you painted on ${layer} waits for review again (${user})`,
     },
   },
 
@@ -1231,7 +1384,8 @@ export const texts = {
     more: "More about the table",
     record: (key: number) => `Record ${key}`,
     records: (n: number) => count(n, "record", "records"),
-    records_of: (n: number, all: number) => `${format_count(n)} of ${count(all, "record", "records")}`,
+    records_of: (n: number, all: number) =>
+      `${format_count(n)} of ${count(all, "record", "records")}`,
     empty: "There is no record yet.",
     nothing_matches: "No record matches the filter.",
     on_model: "On the model",
@@ -1240,7 +1394,8 @@ export const texts = {
     isolate: "Hide all other records",
     fly: "Go to where they are",
     nothing_here: "None of them has an area, a line or a point on this model",
-    painted_of: (n: number, all: number) => `${format_count(n)} of ${count(all, "record", "records")} painted on this model`,
+    painted_of: (n: number, all: number) =>
+      `${format_count(n)} of ${count(all, "record", "records")} painted on this model`,
     sort: (column: string) => `Sort by ${column}; again turns the order round`,
     required: "Must have a value",
     yes: "yes",
@@ -1261,8 +1416,10 @@ export const texts = {
     save_next: "Save and next",
     undo: "Take back my last change of the table",
     redo: "Bring it back",
-    undone: (created: number, changed: number, deleted: number) => `Taken back: ${what_changed(created, changed, deleted) || "a column"}.`,
-    redone: (created: number, changed: number, deleted: number) => `Brought back: ${what_changed(created, changed, deleted) || "a column"}.`,
+    undone: (created: number, changed: number, deleted: number) =>
+      `Taken back: ${what_changed(created, changed, deleted) || "a column"}.`,
+    redone: (created: number, changed: number, deleted: number) =>
+      `Brought back: ${what_changed(created, changed, deleted) || "a column"}.`,
     key_is: (key: number) => `Key ${key}`,
     area_on: (area: string, layer: string) => `${area} on “${layer}”`,
     not_painted_on: (layer: string) => `not painted on “${layer}”`,
@@ -1279,21 +1436,27 @@ export const texts = {
     correct: "Correct it",
     give_up: "Give it up",
     somebody: "Somebody",
-    changed_by: (user: string, time: string) => `${user} changed this${time ? ` at ${time}` : ""} meanwhile:`,
+    changed_by: (user: string, time: string) =>
+      `${user} changed this${time ? ` at ${time}` : ""} meanwhile:`,
     yours: "Yours:",
     keep_theirs: "Keep theirs",
     take_mine: "Take mine",
     edited_by: (user: string) => `${user} is editing this.`,
     edited_elsewhere: "You are editing this in another window.",
-    taken_over: (user: string) => `${user} took this over. What you wrote is kept here to be copied; it is not saved.`,
-    taken_elsewhere: "You took this over in another window. What you wrote is kept here to be copied; it is not saved.",
+    taken_over: (user: string) =>
+      `${user} took this over. What you wrote is kept here to be copied; it is not saved.`,
+    taken_elsewhere:
+      "You took this over in another window. What you wrote is kept here to be copied; it is not saved.",
     written: "What you wrote",
     take_over: "Take over",
     take_over_title: (record: string) => `Take over “${record}”?`,
-    take_over_lead: (user: string) => `${user} is editing it. They are told, and what they have not saved stays with them to be copied.`,
-    take_over_own: "You are editing it in another window. What is not saved there stays there to be copied.",
+    take_over_lead: (user: string) =>
+      `${user} is editing it. They are told, and what they have not saved stays with them to be copied.`,
+    take_over_own:
+      "You are editing it in another window. What is not saved there stays there to be copied.",
     now_is: (value: string) => `Now: ${value}. Saving puts yours in its place.`,
-    changed_meanwhile: (user: string) => `${user} changed this record meanwhile. Look at it again, then save.`,
+    changed_meanwhile: (user: string) =>
+      `${user} changed this record meanwhile. Look at it again, then save.`,
     search_records: "Search records",
     none_found: "No record is called that.",
     take_out: (name: string) => `Take out ${name}`,
@@ -1311,7 +1474,8 @@ export const texts = {
     column_menu: (column: string) => `Options for the column ${column}`,
     change_column: "Change…",
     title_column: "Use as the title",
-    title_hint: "Records are called by what they have in this column: in legends, chips, notices and cards.",
+    title_hint:
+      "Records are called by what they have in this column: in legends, chips, notices and cards.",
     drop_column: "Drop…",
     drop_title: (column: string) => `Drop the column “${column}”?`,
     drop_lead: "Its values are no longer shown. Undo brings it back with all of them.",
@@ -1324,17 +1488,20 @@ export const texts = {
     csv_looking: "Looking into it…",
     csv_rows: "Rows",
     csv_import: "Import",
-    csv_done: (created: number, changed: number) => `${count(created, "record", "records")} made, ${format_count(changed)} changed.`,
+    csv_done: (created: number, changed: number) =>
+      `${count(created, "record", "records")} made, ${format_count(changed)} changed.`,
   },
 
   reports: {
     created: "New",
     changed: "Changed",
     unchanged: "As before",
-    left_out: (n: number) => `${count(n, "further label or broader term has", "further labels or broader terms have")} no place in a list and will be left out.`,
+    left_out: (n: number) =>
+      `${count(n, "further label or broader term has", "further labels or broader terms have")} no place in a list and will be left out.`,
     good: "All of it fits. Nothing has been written yet.",
     same: "The table holds all of that already.",
-    wrong: (n: number) => `${plural(n, "One of them does", `${format_count(n)} of them do`)} not fit, so none will be written. Mend the file and try it again.`,
+    wrong: (n: number) =>
+      `${plural(n, "One of them does", `${format_count(n)} of them do`)} not fit, so none will be written. Mend the file and try it again.`,
     line: "Line",
     term: "Term",
     column: "Column",
@@ -1355,16 +1522,19 @@ export const texts = {
     title: "A list of terms from a file",
     more_title: (list: string) => `Terms for “${list}”`,
     lead: "SKOS (Turtle, N-Triples or RDF/XML), as thesauri are published, or CSV with the columns code, parent, label, label-es (or another language), definition, uri, color and pattern; only code must be there.",
-    more_lead: "SKOS or CSV. Terms that the list has, by their address or code, are changed and keep what is painted with them; others are new. You can undo it.",
+    more_lead:
+      "SKOS or CSV. Terms that the list has, by their address or code, are changed and keep what is painted with them; others are new. You can undo it.",
     file: "File with terms",
     name: "Name of the list",
     name_missing: "Give the list a name.",
     with_layer: "Make a layer of it, to paint on",
     rows: "Terms",
     looking: "Looking into it…",
-    unknown: (file: string) => `“${file}” is no list of terms that can be read here. Take CSV (.csv) or SKOS as Turtle (.ttl), N-Triples (.nt) or RDF/XML (.rdf).`,
+    unknown: (file: string) =>
+      `“${file}” is no list of terms that can be read here. Take CSV (.csv) or SKOS as Turtle (.ttl), N-Triples (.nt) or RDF/XML (.rdf).`,
     import: "Import",
-    done: (created: number, changed: number) => `${count(created, "term", "terms")} made, ${format_count(changed)} changed.`,
+    done: (created: number, changed: number) =>
+      `${count(created, "term", "terms")} made, ${format_count(changed)} changed.`,
     no_layer: (list: string) => `“${list}” was made, but no layer of it`,
   },
 
@@ -1392,7 +1562,8 @@ export const texts = {
       line: "Lines on the surface, with their length",
       point: "Points on the surface",
     },
-    retype_hint: "Values that cannot be of the new kind are left out; you will see how many, and can take it back.",
+    retype_hint:
+      "Values that cannot be of the new kind are left out; you will see how many, and can take it back.",
     unit: "Unit",
     minimum: "At least",
     maximum: "At most",
@@ -1438,11 +1609,15 @@ export const texts = {
     comment: (comment: string) => `From the file itself: “${comment}”.`,
     comment_up: (comment: string) => `From the file itself: “${comment}”.`,
     coordinates: "The coordinates are those of a map: metres, with +Z up.",
-    size: (unit: string) => `The file does not say it. Guessed from the size: in ${unit} it is as large as such objects are.`,
+    size: (unit: string) =>
+      `The file does not say it. Guessed from the size: in ${unit} it is as large as such objects are.`,
     size_unsure: "The file does not say it, and the size fits more than one unit. Please choose.",
-    shape: (up: string) => `The file does not say it. Guessed from the shape: it would stand with ${up} up.`,
-    shape_unsure: (up: string) => `The file does not say it, and the shape leaves it open: ${up} is only a guess. Please choose.`,
-    until_then: (unit: string, up: string) => `“Decide later” keeps ${unit} and ${up} up, marked as not confirmed. You are asked again when you next open the model.`,
+    shape: (up: string) =>
+      `The file does not say it. Guessed from the shape: it would stand with ${up} up.`,
+    shape_unsure: (up: string) =>
+      `The file does not say it, and the shape leaves it open: ${up} is only a guess. Please choose.`,
+    until_then: (unit: string, up: string) =>
+      `“Decide later” keeps ${unit} and ${up} up, marked as not confirmed. You are asked again when you next open the model.`,
     unit: "The numbers in the file are",
     mm: "millimetres",
     cm: "centimetres",
@@ -1451,7 +1626,8 @@ export const texts = {
     yes: "Yes, that is right",
     later: "Decide later",
     saved: "Size and up direction are confirmed.",
-    changed: "Somebody changed this model meanwhile. The newest values are shown; check them again.",
+    changed:
+      "Somebody changed this model meanwhile. The newest values are shown; check them again.",
   },
 
   view: {
@@ -1482,7 +1658,8 @@ export const texts = {
     },
     light_direction: "Direction of the light",
     light_pad_hint: "Drag, or use the arrow keys. Near the rim the light only grazes the surface.",
-    light_from: (from: number, above: number) => `From ${Math.round(from / 30) % 12 || 12} o'clock, ${above}° high`,
+    light_from: (from: number, above: number) =>
+      `From ${Math.round(from / 30) % 12 || 12} o'clock, ${above}° high`,
     section: "Section",
     sections: { off: "Off", x: "X", y: "Y", z: "Z", box: "Box" },
     section_hints: {
@@ -1492,7 +1669,8 @@ export const texts = {
       z: "Cut across the Z axis",
       box: "Keep only what is inside a box",
     },
-    section_of_view: (planes: number) => `The view's own section, of ${count(planes, "plane", "planes")}`,
+    section_of_view: (planes: number) =>
+      `The view's own section, of ${count(planes, "plane", "planes")}`,
     section_remove: "Turn it off",
     cut_position: "Position of the cut",
     flip: "Keep the other side",
@@ -1503,7 +1681,8 @@ export const texts = {
     title: "Views",
     keep: "Keep this view…",
     none: "None is kept yet. A view keeps what you see now, with layers, light and section, under a name: to come back to, to show others, for a report or a tour.",
-    none_viewer: "None is kept yet. Annotators keep views: what is seen from one place, with its layers, light and section.",
+    none_viewer:
+      "None is kept yet. Annotators keep views: what is seen from one place, with its layers, light and section.",
     none_yet: "No view is kept yet.",
     failed: "The views could not be read.",
     more: (n: number) => `Show ${format_count(n)} more`,
@@ -1511,7 +1690,8 @@ export const texts = {
     shown: (name: string) => `View “${name}”`,
     back: "Back to what I saw",
     keep_title: "Keep this view",
-    keep_lead: "Camera, section, light, pictures and layers as you see them now, for everyone. What others paint later shows in it, too.",
+    keep_lead:
+      "Camera, section, light, pictures and layers as you see them now, for everyone. What others paint later shows in it, too.",
     keep_yes: "Keep",
     kept: (name: string) => `The view “${name}” is kept.`,
     name: "Name",
@@ -1523,7 +1703,8 @@ export const texts = {
     copy_by_hand: "Copy this link by hand:",
     describe: "Rename and describe…",
     describe_title: (name: string) => `The view “${name}”`,
-    changed: (name: string) => `Somebody else changed this view meanwhile; it is called “${name}” now. Save again to put yours in its place.`,
+    changed: (name: string) =>
+      `Somebody else changed this view meanwhile; it is called “${name}” now. Save again to put yours in its place.`,
     replace: "Show this instead",
     replaced: (name: string) => `“${name}” now shows what you see.`,
     undo: "Undo",
@@ -1551,14 +1732,16 @@ export const texts = {
     pick: "Pick the face…",
     pick_again: "Pick another face…",
     pick_title: "A face that is to be seen square",
-    pick_lead: "Click the face that is to be seen square. A drag turns the model; Escape leads back.",
+    pick_lead:
+      "Click the face that is to be seen square. A drag turns the model; Escape leads back.",
     pick_middle: "Take the middle",
     no_face: "Pick the face first that is to be seen square.",
     scale: "Scale",
     fits: "As fits",
     own_scale: "Another…",
     own_scale_label: "Scale, such as 1 : 40 or 2 : 1",
-    wrong_scale: "Write it as 1 : 40, as 2 : 1, or the 40 alone; from 100\u00a0:\u00a01 to 1\u00a0:\u00a01\u00a0000\u00a0000.",
+    wrong_scale:
+      "Write it as 1 : 40, as 2 : 1, or the 40 alone; from 100\u00a0:\u00a01 to 1\u00a0:\u00a01\u00a0000\u00a0000.",
     paper: "Paper",
     orientation: "Orientation",
     orientations: { portrait: "Portrait", landscape: "Landscape" },
@@ -1584,9 +1767,12 @@ export const texts = {
     labels: "Labels of records",
     no_labels: "None",
     column: "What they say",
-    no_columns: "This layer's table has no column that can be written out. Add one, or choose another layer.",
-    preview: (paper: string, from: string, scale: string) => `Preview of the sheet: ${paper}, seen from: ${from}, scale: ${scale}`,
-    preview_hint: "A coarse preview. All of the figure shows one state of the layers, also while others paint.",
+    no_columns:
+      "This layer's table has no column that can be written out. Add one, or choose another layer.",
+    preview: (paper: string, from: string, scale: string) =>
+      `Preview of the sheet: ${paper}, seen from: ${from}, scale: ${scale}`,
+    preview_hint:
+      "A coarse preview. All of the figure shows one state of the layers, also while others paint.",
     drawing: "Drawing…",
     see_field: "Something is wrong with what was chosen; it stands at its field.",
     unsure: "Nobody has confirmed the size of this model: the scale of the figure may be wrong.",
@@ -1608,7 +1794,8 @@ export const texts = {
     about: (stops: number, languages: string) => `${count(stops, "stop", "stops")} · ${languages}`,
     edit: "Edit…",
     delete_title: (name: string) => `Delete the tour “${name}”?`,
-    delete_lead: "It is deleted for everyone, and the links of kiosks that show it are worthless at once. This cannot be undone.",
+    delete_lead:
+      "It is deleted for everyone, and the links of kiosks that show it are worthless at once. This cannot be undone.",
     new_title: "New tour",
     edit_title: (name: string) => `The tour “${name}”`,
     name: "Name",
@@ -1627,7 +1814,8 @@ export const texts = {
     stops: "Stops",
     stops_lead: "What visitors see and read at a stop is written here, once there is one.",
     none_stops: "None yet. Each stop shows one of the kept views.",
-    no_views: "No view is kept yet. Close this, show on the model what visitors are to see, and keep it with “Keep this view…”.",
+    no_views:
+      "No view is kept yet. Close this, show on the model what visitors are to see, and keep it with “Keep this view…”.",
     add_view: "View of the new stop",
     add: "Add a stop",
     remove: "Remove the stop",
@@ -1656,7 +1844,8 @@ export const texts = {
     transition_takes: "The flight takes",
     swipe: "Layers to swipe between",
     swipe_hint: "Visitors draw one over the other with a finger. They see public layers only.",
-    layer_names: "Names of these layers, as visitors read them. They are saved with the layer at once.",
+    layer_names:
+      "Names of these layers, as visitors read them. They are saved with the layer at once.",
     layer_name: (layer: string, language: string) => `${layer} in ${language}`,
     layer_add: "Add a layer",
     records: "Records",
@@ -1669,7 +1858,8 @@ export const texts = {
     columns: "On the card",
     columns_of: (table: string) => `Columns of ${table} on the card`,
     column_add: "Add a column",
-    column_label: (column: string, language: string) => `What ${column} is called on the card, ${language}`,
+    column_label: (column: string, language: string) =>
+      `What ${column} is called on the card, ${language}`,
     column_label_hint: (language: string, name: string) => `${language}: ${name}`,
     wrong: {
       name_missing: "Give it a name.",
@@ -1678,8 +1868,10 @@ export const texts = {
       view_missing: "The view of this stop was deleted. Choose another one, or remove the stop.",
       title_missing: "Give the stop a title in the first language.",
     },
-    wrong_seconds: (least: number, most: number) => `Seconds from ${format_count(least)} to ${format_count(most)}.`,
-    conflict: "Somebody changed this tour meanwhile. Nothing that you wrote is lost: save again to put yours in the place of theirs.",
+    wrong_seconds: (least: number, most: number) =>
+      `Seconds from ${format_count(least)} to ${format_count(most)}.`,
+    conflict:
+      "Somebody changed this tour meanwhile. Nothing that you wrote is lost: save again to put yours in the place of theirs.",
     take_theirs: "Show theirs instead",
     theirs_title: "Show what they saved?",
     gone: "This tour was deleted meanwhile. Save again to make it anew.",
@@ -1702,7 +1894,8 @@ export const texts = {
     title: "Kiosks",
     title_of: (tour: string) => `Kiosks with “${tour}”`,
     lead: "Screens that show a tour by a link. New links are made at a tour of a model.",
-    lead_of: "Who opens such a link sees this tour and what is public of its model, without an account, and changes nothing.",
+    lead_of:
+      "Who opens such a link sees this tour and what is public of its model, without an account, and changes nothing.",
     none: "There are no links for kiosks.",
     none_of: "There is no link for this tour yet.",
     new: "New link",
@@ -1713,12 +1906,20 @@ export const texts = {
     days_unit: "days",
     days_hint: "no end",
     days_lead: "Without a number of days the link is good until it is revoked.",
-    days_wrong: (least: number, most: number) => `A whole number of days from ${format_count(least)} to ${format_count(most)}, or nothing.`,
+    days_wrong: (least: number, most: number) =>
+      `A whole number of days from ${format_count(least)} to ${format_count(most)}, or nothing.`,
     make: "Make link",
     link: (name: string) => `Link for “${name}”`,
-    link_lead: "Open it once in the browser of the screen. It is shown only now; a lost link is revoked, and a new one made.",
+    link_lead:
+      "Open it once in the browser of the screen. It is shown only now; a lost link is revoked, and a new one made.",
     link_done: "Done",
-    states: { running: "running", silent: "silent", unopened: "not opened yet", revoked: "revoked", expired: "expired" },
+    states: {
+      running: "running",
+      silent: "silent",
+      unopened: "not opened yet",
+      revoked: "revoked",
+      expired: "expired",
+    },
     asked: "asked to reload",
     seen: (when: string) => `Last seen ${when}`,
     never_seen: "Never seen",
@@ -1732,7 +1933,8 @@ export const texts = {
     revoke: "Revoke…",
     revoke_of: (name: string) => `Revoke the link of ${name}`,
     revoke_title: (name: string) => `Revoke the link of “${name}”?`,
-    revoke_lead: "The screen shows nothing more at once, and the link is worthless. This cannot be undone.",
+    revoke_lead:
+      "The screen shows nothing more at once, and the link is worthless. This cannot be undone.",
     revoke_yes: "Revoke",
   },
 
@@ -1777,7 +1979,8 @@ export const texts = {
     nothing: (layer: string) => `not in ${layer}`,
     empty: "Nothing is painted in either layer.",
     sum: "All",
-    cut: (n: number) => `The first ${format_count(n)} rows and columns are shown. Copy and files have all.`,
+    cut: (n: number) =>
+      `The first ${format_count(n)} rows and columns are shown. Copy and files have all.`,
   },
 
   column_filter: {
@@ -1785,13 +1988,20 @@ export const texts = {
     open: (column: string) => `Filter by ${column}`,
     open_on: (column: string) => `Filter by ${column} (is on)`,
     show: "Show records",
-    kinds: { one_of: "with one of these values", range: "in a range", contains: "whose text contains", filled: "with any value", empty: "without a value" },
+    kinds: {
+      one_of: "with one of these values",
+      range: "in a range",
+      contains: "whose text contains",
+      filled: "with any value",
+      empty: "without a value",
+    },
     remove: "Remove",
     apply: "Filter",
     search: "Search values",
     no_value: "without a value",
     more: (n: number) => `${format_count(n)} more values: search for them.`,
-    counted: (n: number, all: number) => `Counted in the first ${format_count(n)} of ${format_count(all)} records.`,
+    counted: (n: number, all: number) =>
+      `Counted in the first ${format_count(n)} of ${format_count(all)} records.`,
     from: "From",
     to: "To",
     contains: "Text",
@@ -1804,7 +2014,10 @@ export const texts = {
     keys: "Keys",
     mouse_rows: [
       ["Left drag", "the chosen tool"],
-      ["Rest while turning or moving", "the record that lies there, at a glance; Escape puts it away"],
+      [
+        "Rest while turning or moving",
+        "the record that lies there, at a glance; Escape puts it away",
+      ],
       ["Click while turning or moving", "the record that lies there"],
       ["Right drag, or Space + left", "turn the model"],
       ["Middle drag, or Shift + right", "move the model"],
@@ -1822,13 +2035,22 @@ export const texts = {
       ["B · E · I", "brush · eraser · pick a value"],
       ["A · L · G", "polygon · lasso · fill connected"],
       ["D · S", "line, with its length while you draw · point, for the record that is painted"],
-      ["Enter · Backspace · Escape", "close the polygon, end the line · take a corner back · give up"],
+      [
+        "Enter · Backspace · Escape",
+        "close the polygon, end the line · take a corner back · give up",
+      ],
       ["V · H", "turn · move"],
       ["C, then a click", "a comment there; Enter: in the middle of the view"],
       ["Ctrl + Enter · Escape", "send · put away the comment that you write; it is kept"],
-      ["M, then clicks", "measure: straight, along the surface, areas, profile; M again: a place in the middle; Enter ends, Escape clears"],
+      [
+        "M, then clicks",
+        "measure: straight, along the surface, areas, profile; M again: a place in the middle; Enter ends, Escape clears",
+      ],
       ["[ · ]", "narrower · wider brush"],
-      ["Ctrl + Z · Ctrl + Shift + Z", "undo · redo your strokes; with the tools for lines and points, what you drew"],
+      [
+        "Ctrl + Z · Ctrl + Shift + Z",
+        "undo · redo your strokes; with the tools for lines and points, what you drew",
+      ],
       ["Arrows", "turn (with Shift: move)"],
       ["+ · −", "nearer · farther"],
       ["Home", "whole model"],
@@ -1840,26 +2062,50 @@ export const texts = {
       ["T", "table of the layer's records, open or closed"],
       ["F", "a measured figure: what you see as a drawing to scale, as PDF, SVG, PNG or TIFF"],
       ["Escape", "stop following somebody's view; any move of your own stops it, too"],
-      ["I, then a click", "on a layer with records: the card of the record there, and the brush paints it"],
+      [
+        "I, then a click",
+        "on a layer with records: the card of the record there, and the brush paints it",
+      ],
       ["?", "this sheet"],
     ],
     table: "In the table of records",
     table_rows: [
       ["Arrows · Page · Home · End", "from cell to cell; with Ctrl: first, last"],
       ["Enter, F2, or click again", "write into the cell; on the key: the record's form"],
-      ["Letters and digits", "written into cells of text; digits also into numbers, dates and times; everywhere else the keys of the page, such as T, D and V; after Escape these always"],
-      ["A column's funnel", "shows only records with some values, in a range, with a text, or without a value; the condition stands in the filter field"],
-      ["Enter · Tab · Escape", "down · next cell · as it was, while you write; Shift + Enter: next line"],
+      [
+        "Letters and digits",
+        "written into cells of text; digits also into numbers, dates and times; everywhere else the keys of the page, such as T, D and V; after Escape these always",
+      ],
+      [
+        "A column's funnel",
+        "shows only records with some values, in a range, with a text, or without a value; the condition stands in the filter field",
+      ],
+      [
+        "Enter · Tab · Escape",
+        "down · next cell · as it was, while you write; Shift + Enter: next line",
+      ],
       ["Delete", "empty the cell"],
       ["Space, or click a key", "choose the row; with Ctrl: more, with Shift: all between"],
       ["Ctrl + Z · Ctrl + Shift + Z", "undo · redo your changes of the table"],
-      ["A column's ⋯ → Change", "what it is called, also in other languages: each person sees the name in the language of their browser"],
-      ["Drop a CSV", "tells what it would change, line by line, then imports it; on a list of terms CSV and SKOS are terms for it"],
+      [
+        "A column's ⋯ → Change",
+        "what it is called, also in other languages: each person sees the name in the language of their browser",
+      ],
+      [
+        "Drop a CSV",
+        "tells what it would change, line by line, then imports it; on a list of terms CSV and SKOS are terms for it",
+      ],
     ],
     brush: "What the brush reaches",
     brush_rows: [
-      ["Shape", "round, square, or any picture: + or drop a PNG or JPEG beside the shapes; all people of the site share them"],
-      ["Skip surfaces seen at a slant", "leaves out what you look at too flatly to see well; zoom in or turn, and paint it then"],
+      [
+        "Shape",
+        "round, square, or any picture: + or drop a PNG or JPEG beside the shapes; all people of the site share them",
+      ],
+      [
+        "Skip surfaces seen at a slant",
+        "leaves out what you look at too flatly to see well; zoom in or turn, and paint it then",
+      ],
       ["Also what is hidden behind", "paints through the object"],
     ],
     terms: "In a list of terms",
@@ -1872,15 +2118,39 @@ export const texts = {
     ],
     layers: "Layers without a brush",
     layer_rows: [
-      ["Layers ⋯ → From a template", "lists of terms, tables and layers for stone, wall painting, excavation and treatment"],
-      ["Layers ⋯ → A list of terms from a file", "CSV or SKOS (Turtle, RDF/XML), with what it would do before it is written; again into a list, and out of it, in its table's ⋯"],
-      ["A layer's ⋯ → Paint from a file", "readings, maps, shapefiles, GeoTIFF and scanned maps; numbers for the vertices of the scan"],
+      [
+        "Layers ⋯ → From a template",
+        "lists of terms, tables and layers for stone, wall painting, excavation and treatment",
+      ],
+      [
+        "Layers ⋯ → A list of terms from a file",
+        "CSV or SKOS (Turtle, RDF/XML), with what it would do before it is written; again into a list, and out of it, in its table's ⋯",
+      ],
+      [
+        "A layer's ⋯ → Paint from a file",
+        "readings, maps, shapefiles, GeoTIFF and scanned maps; numbers for the vertices of the scan",
+      ],
       ["View → Looks → Add an orthophoto", "a picture laid onto the surface along an axis"],
-      ["A layer's ⋯ → Areas", "of measurements a histogram, with handles (or arrow keys) for the range of the colours"],
-      ["New layer → From an expression", "values computed from other layers, their records and the surface; completes names while you write"],
-      ["New layer → From the shape", "values computed from the mesh; they can be undone like strokes"],
-      ["Layers ⋯ → Bring layers over", "what was painted on an earlier scan of the object, with a report of what was lost"],
-      ["View → Tours", "stops of kept views with texts in several languages, for a screen in an exhibition; links for such screens in a tour's ⋯"],
+      [
+        "A layer's ⋯ → Areas",
+        "of measurements a histogram, with handles (or arrow keys) for the range of the colours",
+      ],
+      [
+        "New layer → From an expression",
+        "values computed from other layers, their records and the surface; completes names while you write",
+      ],
+      [
+        "New layer → From the shape",
+        "values computed from the mesh; they can be undone like strokes",
+      ],
+      [
+        "Layers ⋯ → Bring layers over",
+        "what was painted on an earlier scan of the object, with a report of what was lost",
+      ],
+      [
+        "View → Tours",
+        "stops of kept views with texts in several languages, for a screen in an exhibition; links for such screens in a tour's ⋯",
+      ],
     ],
   },
 
@@ -1894,29 +2164,37 @@ export const texts = {
     steps: {
       turn: {
         title: "Turn the model",
-        mouse: "Drag with the right mouse button; while Turn is chosen, with the left one, too. The wheel comes nearer.",
+        mouse:
+          "Drag with the right mouse button; while Turn is chosen, with the left one, too. The wheel comes nearer.",
         touch: "Drag it with a finger. Two fingers move it, come nearer and twist it.",
       },
       layers: {
         title: "Layers",
         way: "This button brings them.",
-        paint: "What is known lies on the surface in layers. Choose the one to paint on; its eye shows and hides it.",
+        paint:
+          "What is known lies on the surface in layers. Choose the one to paint on; its eye shows and hides it.",
         look: "What is known lies on the surface in layers. Choose one to see its legend; its eye shows and hides it.",
       },
       brush: {
         title: "Paint",
-        mouse: "Take the brush (B) and drag over the model. [ and ] make it narrower and wider. Each stroke is saved at once, and others see it while you draw.",
-        touch: "Take the brush and draw on the model with a finger or a pen; two fingers still move it. Each stroke is saved at once, and others see it while you draw.",
+        mouse:
+          "Take the brush (B) and drag over the model. [ and ] make it narrower and wider. Each stroke is saved at once, and others see it while you draw.",
+        touch:
+          "Take the brush and draw on the model with a finger or a pen; two fingers still move it. Each stroke is saved at once, and others see it while you draw.",
       },
       undo: {
         title: "Take it back",
-        mouse: "Undo (Ctrl + Z) takes back your own last stroke on the layer, also tomorrow. What others painted stays.",
-        touch: "Undo takes back your own last stroke on the layer, also tomorrow. What others painted stays.",
+        mouse:
+          "Undo (Ctrl + Z) takes back your own last stroke on the layer, also tomorrow. What others painted stays.",
+        touch:
+          "Undo takes back your own last stroke on the layer, also tomorrow. What others painted stays.",
       },
       values: {
         title: "What is here?",
-        mouse: "Rest the mouse on the model: at the lower right you read what the layers hold there. With this tool (I), or by a click while turning, a record shows its card.",
-        touch: "Take this tool and tap the model: you are told what the chosen layer holds there, and a record shows its card.",
+        mouse:
+          "Rest the mouse on the model: at the lower right you read what the layers hold there. With this tool (I), or by a click while turning, a record shows its card.",
+        touch:
+          "Take this tool and tap the model: you are told what the chosen layer holds there, and a record shows its card.",
       },
       share: {
         title: "Show others, find help",
@@ -1933,17 +2211,24 @@ export const texts = {
     theme: "Theme",
     themes: { system: "As the system", light: "Light", dark: "Dark", contrast: "High contrast" },
     reload_title: "Change the language now?",
-    reload_lead: (n: number) => `The page is loaded anew. ${count(n, "change is", "changes are")} not saved yet, kept in this browser and sent again after it.`,
+    reload_lead: (n: number) =>
+      `The page is loaded anew. ${count(n, "change is", "changes are")} not saved yet, kept in this browser and sent again after it.`,
     reload: "Change the language",
   },
 
   calls: {
-    unreachable: ["The server cannot be reached", "Check that the server runs and that you are connected to its network, then try again."],
+    unreachable: [
+      "The server cannot be reached",
+      "Check that the server runs and that you are connected to its network, then try again.",
+    ],
     statuses: {
       401: ["Not signed in", "Sign in again."],
       403: ["Not allowed", "Your account may not do this. Ask the owner of the site."],
       404: ["Not found", "It may have been deleted. Reload the page."],
-      412: ["Changed by someone else", "Somebody changed this at the same time. Look at it again, then repeat your change."],
+      412: [
+        "Changed by someone else",
+        "Somebody changed this at the same time. Look at it again, then repeat your change.",
+      ],
       413: ["Too large", "The file or message is larger than the server accepts."],
       429: ["Too fast", "The server asks for a pause. Try again in a moment."],
       502: ["Unexpected answer", "The server's answer could not be read. Reload the page."],
@@ -1952,7 +2237,8 @@ export const texts = {
     other_status: (status: number) => `The server answered ${status}`,
     other_status_detail: "Try again; if it stays, tell whoever runs the server.",
     unreadable: "The server sent something this page cannot read",
-    unreadable_detail: (what: string) => `${what}. Reload the page; if it stays, the page and the server are of different versions.`,
+    unreadable_detail: (what: string) =>
+      `${what}. Reload the page; if it stays, the page and the server are of different versions.`,
   },
 
   problems: {

@@ -1,5 +1,6 @@
-// Spanish, as it is written in archaeology and conservation, understood on both sides of the Atlantic. Orders are infinitives where that reads
-// naturally («Elegir un archivo»), else in the form of "usted".
+// Spanish, as it is written in archaeology and conservation, understood on both sides of the
+// Atlantic. Orders are infinitives where that reads naturally («Elegir un archivo»), else in the
+// form of "usted".
 //
 // Words of the field:
 //   model modelo · scan escaneo · surface superficie · layer capa · look imagen de la superficie · raking light luz rasante · section sección
@@ -14,7 +15,8 @@ import type { Texts } from "./index";
 import { count as count_of, plural } from "./count";
 
 /** Whole millions take "de": "1.000.000 de capas". */
-const count = (n: number, one: string, other: string): string => count_of(n, one, other, `de ${other}`);
+const count = (n: number, one: string, other: string): string =>
+  count_of(n, one, other, `de ${other}`);
 
 const what_changed = (created: number, changed: number, deleted: number): string =>
   (
@@ -50,19 +52,22 @@ export const texts = {
     button: "Iniciar sesión",
     empty: "Indique su nombre y su contraseña.",
     wrong: "El nombre o la contraseña no es correcto. En la contraseña cuentan las mayúsculas.",
-    forgotten: "¿Olvidó la contraseña? La administración de este servidor puede enviarle un enlace nuevo.",
+    forgotten:
+      "¿Olvidó la contraseña? La administración de este servidor puede enviarle un enlace nuevo.",
     otherwise: "Con un enlace o token",
     otherwise_lead: "Pegue el enlace que el servidor mostró al arrancar, o un token.",
     token: "Enlace o token",
     token_hint: "El enlace tiene esta forma:",
     token_empty: "Pegue primero un enlace o un token.",
-    token_wrong: "Este enlace o token no se conoce aquí. Cópielo entero, sin espacios, e inténtelo de nuevo.",
+    token_wrong:
+      "Este enlace o token no se conoce aquí. Cópielo entero, sin espacios, e inténtelo de nuevo.",
   },
 
   password: {
     show: "Mostrar la contraseña",
     hide: "Ocultar la contraseña",
-    hint: (least) => `Al menos ${least} caracteres. Varias palabras son fáciles de recordar y difíciles de adivinar.`,
+    hint: (least) =>
+      `Al menos ${least} caracteres. Varias palabras son fáciles de recordar y difíciles de adivinar.`,
     too_short: (least) => `Use al menos ${least} caracteres.`,
     is_the_name: "La contraseña no puede ser el nombre.",
     differs: "Las dos no coinciden. Escríbala otra vez.",
@@ -70,9 +75,11 @@ export const texts = {
 
   join: {
     greeting: (name) => `Le damos la bienvenida, ${name}`,
-    lead: (role) => `Tiene una invitación a este servidor con el papel «${role}». Elija una contraseña: con ella y su nombre iniciará sesión en adelante.`,
+    lead: (role) =>
+      `Tiene una invitación a este servidor con el papel «${role}». Elija una contraseña: con ella y su nombre iniciará sesión en adelante.`,
     groups: (groups) => `Forma parte de: ${groups}.`,
-    lead_again: "Elija una contraseña nueva: con ella y su nombre iniciará sesión en adelante. Hasta entonces vale la anterior.",
+    lead_again:
+      "Elija una contraseña nueva: con ella y su nombre iniciará sesión en adelante. Hasta entonces vale la anterior.",
     user: "Nombre para iniciar sesión",
     full_name: "Nombre completo",
     password: "Contraseña",
@@ -80,7 +87,8 @@ export const texts = {
     button: "Elegir contraseña e iniciar sesión",
     looking: "Comprobando la invitación…",
     useless_title: "Este enlace ya no sirve",
-    useless_lead: "Ya se usó, es demasiado antiguo o uno más nuevo ocupa su lugar. Pida otro a quien le invitó.",
+    useless_lead:
+      "Ya se usó, es demasiado antiguo o uno más nuevo ocupa su lugar. Pida otro a quien le invitó.",
     incomplete_title: "Este enlace no está completo",
     incomplete_lead: "Cópielo entero, hasta el final, en la barra de direcciones del navegador.",
     to_sign_in: "Ir al inicio de sesión",
@@ -112,7 +120,8 @@ export const texts = {
     people: "Personas…",
     sign_out: "Cerrar sesión",
     sign_out_title: "¿Cerrar la sesión ahora?",
-    sign_out_lead: (n) => `${changes(n)} todavía sin guardar. Lo que no se pueda guardar antes se conserva en este navegador hasta que vuelva aquí al modelo.`,
+    sign_out_lead: (n) =>
+      `${changes(n)} todavía sin guardar. Lo que no se pueda guardar antes se conserva en este navegador hasta que vuelva aquí al modelo.`,
     title: "Su cuenta",
     about: (user, role) => `Nombre para iniciar sesión: ${user} · Papel: ${role}`,
     in_projects: "Sus papeles en proyectos",
@@ -131,7 +140,10 @@ export const texts = {
     no_password: "Elija una contraseña",
     no_password_why: "para poder volver sin el enlace.",
     sessions: "Dónde tiene la sesión abierta",
-    browser: (browser, system) => (browser && system ? `${browser} en ${system}` : browser || system || "Un navegador que no dice su nombre"),
+    browser: (browser, system) =>
+      browser && system
+        ? `${browser} en ${system}`
+        : browser || system || "Un navegador que no dice su nombre",
     this_browser: "este navegador",
     last_used: (when) => `usado ${when}`,
     since: (when) => `sesión abierta ${when}`,
@@ -139,7 +151,8 @@ export const texts = {
     sign_out_others: "Cerrar sesión en todos los demás sitios",
     signed_out_others: "La sesión está cerrada en todos los demás sitios.",
     tokens: "Tokens para scripts",
-    tokens_lead: "Un script envía su token en lugar de una contraseña y puede hacer lo que permite el papel del token.",
+    tokens_lead:
+      "Un script envía su token en lugar de una contraseña y puede hacer lo que permite el papel del token.",
     no_tokens: "No tiene ninguno.",
     token_new: "Token nuevo",
     token_name: "Para qué es",
@@ -159,14 +172,16 @@ export const texts = {
     token_make: "Crear token",
     token_made: (name) => `El token «${name}». Cópielo ahora: no se mostrará otra vez.`,
     token_example: "Por ejemplo",
-    token_line: (role, where, until, used) => [role, where, until, used].filter(Boolean).join(" · "),
+    token_line: (role, where, until, used) =>
+      [role, where, until, used].filter(Boolean).join(" · "),
     token_until: (when) => `hasta ${when}`,
     token_expired: (when) => `caducó ${when}`,
     token_used: (when) => `usado ${when}`,
     token_unused: "nunca usado",
     token_revoke: (name) => `Revocar ${name}`,
     token_revoke_title: (name) => `¿Revocar el token «${name}»?`,
-    token_revoke_lead: "Los scripts que lo usan serán rechazados desde ahora. Esto no se puede deshacer.",
+    token_revoke_lead:
+      "Los scripts que lo usan serán rechazados desde ahora. Esto no se puede deshacer.",
     revoke: "Revocar",
   },
 
@@ -193,7 +208,11 @@ export const texts = {
     states: { invited: "con invitación", active: "con acceso", disabled: "sin acceso" },
     no_password: "sin contraseña",
     no_password_hint: "Entra con el enlace que muestra el servidor",
-    state_hints: { invited: "Todavía no se eligió contraseña", active: "Puede iniciar sesión", disabled: "No puede iniciar sesión" },
+    state_hints: {
+      invited: "Todavía no se eligió contraseña",
+      active: "Puede iniciar sesión",
+      disabled: "No puede iniciar sesión",
+    },
     last_seen: "Última visita",
     never: "nunca",
     you: "usted",
@@ -203,24 +222,29 @@ export const texts = {
     invite_user: "Nombre para iniciar sesión",
     invite_user_hint: "ada",
     user_missing: "Indique un nombre para iniciar sesión.",
-    user_wrong: "Solo letras sin acentos, cifras y . _ - @, primero una letra o cifra, 64 como máximo.",
+    user_wrong:
+      "Solo letras sin acentos, cifras y . _ - @, primero una letra o cifra, 64 como máximo.",
     invite_button: "Crear enlace",
     link: (name) => `Enlace para ${name}`,
-    link_lead: (until) => `Envíelo solo a esa persona: quien lo tenga puede elegir la contraseña. Se muestra solo ahora, vale una vez y hasta ${until}.`,
+    link_lead: (until) =>
+      `Envíelo solo a esa persona: quien lo tenga puede elegir la contraseña. Se muestra solo ahora, vale una vez y hasta ${until}.`,
     link_done: "Listo",
     new_link: "Enlace nuevo…",
     new_link_title: (name) => `¿Enlace nuevo para ${name}?`,
-    new_link_lead: "Con él se elige una contraseña nueva. Los enlaces anteriores dejan de valer; la contraseña que haya sigue valiendo hasta entonces.",
+    new_link_lead:
+      "Con él se elige una contraseña nueva. Los enlaces anteriores dejan de valer; la contraseña que haya sigue valiendo hasta entonces.",
     new_link_button: "Crear enlace",
     disable: "Quitar el acceso…",
     disable_title: (name) => `¿Quitar el acceso a la cuenta de ${name}?`,
-    disable_lead: "Se cierra su sesión en todas partes, sus tokens dejan de funcionar y no puede iniciar sesión hasta que se le devuelva el acceso.",
+    disable_lead:
+      "Se cierra su sesión en todas partes, sus tokens dejan de funcionar y no puede iniciar sesión hasta que se le devuelva el acceso.",
     disable_button: "Quitar el acceso",
     enable: "Devolver el acceso",
     projects: "Papeles en proyectos…",
     delete: "Eliminar…",
     delete_title: (name) => `¿Eliminar la cuenta de ${name}?`,
-    delete_lead: "Se cierra su sesión y no puede volver. Lo que pintó y escribió queda en el historial, con un nombre que no dice quién es. Esto no se puede deshacer.",
+    delete_lead:
+      "Se cierra su sesión y no puede volver. Lo que pintó y escribió queda en el historial, con un nombre que no dice quién es. Esto no se puede deshacer.",
     role_changed: (role) => `Su papel es ahora «${role}».`,
     disabled: "Ya no puede iniciar sesión.",
     enabled: "Puede iniciar sesión de nuevo.",
@@ -235,12 +259,14 @@ export const texts = {
     name_empty: "Dé un nombre al grupo.",
     make: "Crear grupo",
     none: "Todavía no hay grupos.",
-    about: (people, projects) => `${count(people, "persona", "personas")} · ${projects === 0 ? "sin papel en ningún proyecto" : `con papel en ${count(projects, "proyecto", "proyectos")}`}`,
+    about: (people, projects) =>
+      `${count(people, "persona", "personas")} · ${projects === 0 ? "sin papel en ningún proyecto" : `con papel en ${count(projects, "proyecto", "proyectos")}`}`,
     options: (name) => `Opciones para el grupo ${name}`,
     of: (name) => `Grupos de ${name}`,
     members: "Quién está en él…",
     members_of: (name) => `Quién está en «${name}»`,
-    inside: (n) => `${count(n, "persona está", "personas están")} en él. Cada cambio vale enseguida.`,
+    inside: (n) =>
+      `${count(n, "persona está", "personas están")} en él. Cada cambio vale enseguida.`,
     find_hint: "Nombre",
     put_in: "Ya está en él.",
     taken_out: "Ya no está en él.",
@@ -270,7 +296,8 @@ export const texts = {
   projects: {
     new: "Nuevo proyecto",
     new_title: "Nuevo proyecto",
-    new_lead: "Un proyecto es un sitio o una colección: sus modelos, las tablas de estos y las personas que trabajan en ellos.",
+    new_lead:
+      "Un proyecto es un sitio o una colección: sus modelos, las tablas de estos y las personas que trabajan en ellos.",
     name: "Nombre",
     name_hint: "Villa Giulia",
     name_empty: "Póngale un nombre.",
@@ -278,27 +305,38 @@ export const texts = {
     text_hint: "Qué se documenta aquí, cuándo y quién lo hace",
     create: "Crear el proyecto",
     made: (name) => `El proyecto «${name}» está creado.`,
-    made_next: "Importe aquí sus escaneos. Quién puede trabajar en él se dice en el menú de la cuenta, en «Personas».",
+    made_next:
+      "Importe aquí sus escaneos. Quién puede trabajar en él se dice en el menú de la cuenta, en «Personas».",
     describe: "Cambiar nombre y descripción…",
     describe_title: (name) => `El proyecto «${name}»`,
-    describe_lead: (path) => `Su dirección queda como está, ${path}, para que los enlaces sigan trayendo aquí.`,
+    describe_lead: (path) =>
+      `Su dirección queda como está, ${path}, para que los enlaces sigan trayendo aquí.`,
     require_version: "Los programas deben indicar la versión que cambian",
-    require_version_hint: "Así, los scripts y otros programas no pueden sobrescribir lo que otra persona cambió entretanto: sin la versión que han leído, el servidor rechaza su cambio (HTTP If-Match, 428). El trabajo en esta página no cambia.",
-    changed: (name) => `Otra persona cambió este proyecto entretanto; ahora se llama «${name}». Guarde otra vez para poner lo suyo en su lugar.`,
+    require_version_hint:
+      "Así, los scripts y otros programas no pueden sobrescribir lo que otra persona cambió entretanto: sin la versión que han leído, el servidor rechaza su cambio (HTTP If-Match, 428). El trabajo en esta página no cambia.",
+    changed: (name) =>
+      `Otra persona cambió este proyecto entretanto; ahora se llama «${name}». Guarde otra vez para poner lo suyo en su lugar.`,
     delete_title: (name) => `¿Eliminar el proyecto «${name}»?`,
-    delete_lead: "También se eliminan los papeles que las personas tienen en él y su actividad. Los enlaces a él no llevan a ninguna parte. Esto no se puede deshacer.",
-    delete_tables_lead: (n) => (n === 1 ? "Su tabla se elimina con él, con todos los registros y su historial:" : `Sus ${count(n, "tabla", "tablas")} se eliminan con él, con todos los registros y su historial:`),
+    delete_lead:
+      "También se eliminan los papeles que las personas tienen en él y su actividad. Los enlaces a él no llevan a ninguna parte. Esto no se puede deshacer.",
+    delete_tables_lead: (n) =>
+      n === 1
+        ? "Su tabla se elimina con él, con todos los registros y su historial:"
+        : `Sus ${count(n, "tabla", "tablas")} se eliminan con él, con todos los registros y su historial:`,
     type_name: (name) => `Escriba «${name}» para eliminarlo todo`,
     kept_title: (name) => `«${name}» todavía tiene modelos`,
-    kept_lead: (n) => `Un proyecto se elimina cuando está vacío, para que ningún escaneo se pierda por descuido. Elimine antes ${n === 1 ? "su modelo, desde su menú" : `sus ${count(n, "modelo", "modelos")}, desde el menú de cada uno`}.`,
+    kept_lead: (n) =>
+      `Un proyecto se elimina cuando está vacío, para que ningún escaneo se pierda por descuido. Elimine antes ${n === 1 ? "su modelo, desde su menú" : `sus ${count(n, "modelo", "modelos")}, desde el menú de cada uno`}.`,
     kept_by_bin_title: (name) => `Hay modelos de «${name}» en la papelera`,
-    kept_by_bin_lead: "Un proyecto se elimina cuando está vacío, para que ningún escaneo se pierda por descuido. Restaure lo que hay en su papelera, o elimínelo allí para siempre.",
+    kept_by_bin_lead:
+      "Un proyecto se elimina cuando está vacío, para que ningún escaneo se pierda por descuido. Restaure lo que hay en su papelera, o elimínelo allí para siempre.",
   },
 
   bin: {
     open: "Papelera…",
     title_of: (project) => `Papelera de «${project}»`,
-    lead: (days) => `Lo que se elimina en este proyecto queda aquí ${count(days, "día", "días")} y se puede restaurar tal como estaba.`,
+    lead: (days) =>
+      `Lo que se elimina en este proyecto queda aquí ${count(days, "día", "días")} y se puede restaurar tal como estaba.`,
     not_kept_lead: "Este servidor borra enseguida lo que se elimina.",
     none: "La papelera está vacía.",
     more: "Mostrar lo anterior",
@@ -307,19 +345,24 @@ export const texts = {
       layer: (model) => `Capa de ${model}`,
       record: (table) => `Registro de ${table}`,
     },
-    deleted_when: (ago, user) => (user === undefined ? `se eliminó ${ago}` : `lo eliminó ${user} ${ago}`),
+    deleted_when: (ago, user) =>
+      user === undefined ? `se eliminó ${ago}` : `lo eliminó ${user} ${ago}`,
     erased_on: (date) => `se borra el ${date}`,
     restore: "Restaurar",
     restore_of: (name) => `Restaurar ${name}`,
     restored: (name) => `«${name}» está de vuelta.`,
-    restored_as: (name, before, now) => `«${name}» está de vuelta. Su nombre corto es ahora ${now}, porque entretanto otra cosa se llama ${before}.`,
+    restored_as: (name, before, now) =>
+      `«${name}» está de vuelta. Su nombre corto es ahora ${now}, porque entretanto otra cosa se llama ${before}.`,
     erase: "Eliminar para siempre",
     erase_of: (name) => `Eliminar ${name} para siempre`,
     erase_title: (name) => `¿Eliminar «${name}» para siempre?`,
     erase_lead: "Se borra todo lo pintado en él y su historial. No se puede deshacer.",
     erase_yes: "Eliminar para siempre",
     erased: (name) => `«${name}» se eliminó para siempre.`,
-    kept: (days) => (days === null ? "Va a la papelera del proyecto." : `Durante ${count(days, "día", "días")} se puede restaurar desde la papelera del proyecto.`),
+    kept: (days) =>
+      days === null
+        ? "Va a la papelera del proyecto."
+        : `Durante ${count(days, "día", "días")} se puede restaurar desde la papelera del proyecto.`,
     not_kept: "No se puede deshacer.",
     deleted: {
       layer: (name) => `La capa «${name}» se eliminó.`,
@@ -335,14 +378,16 @@ export const texts = {
     count_projects: (n) => count(n, "proyecto", "proyectos"),
     changed: (day) => `último cambio: ${day}`,
     missing_title: "Este proyecto no está aquí",
-    missing_lead: "Puede que se haya eliminado, o que usted no tenga un papel en él. Pregunte a quien le envió el enlace.",
+    missing_lead:
+      "Puede que se haya eliminado, o que usted no tenga un papel en él. Pregunte a quien le envió el enlace.",
     no_projects: "Ningún proyecto todavía",
     import: "Importar un escaneo",
     into: "Importar en",
     drop_title: "Suelte aquí para importar",
     drop_lead: "PLY, OBJ, STL, glTF o zip, con sus imágenes o como carpeta",
     empty_title: "Todavía no hay modelos",
-    empty_lead: "Arrastre un escaneo (PLY, OBJ, STL, glTF; con sus archivos de material e imagen, como carpeta o en un zip) a esta página, o elija sus archivos. Se queda en su propio servidor.",
+    empty_lead:
+      "Arrastre un escaneo (PLY, OBJ, STL, glTF; con sus archivos de material e imagen, como carpeta o en un zip) a esta página, o elija sus archivos. Se queda en su propio servidor.",
     choose_file: "Elegir un archivo",
     open: (name) => `Abrir ${name}`,
     options: (name) => `Opciones para ${name}`,
@@ -350,8 +395,10 @@ export const texts = {
     delete_lead: "El escaneo se elimina con todas sus capas y su historial.",
     deleted: (name) => `«${name}» se eliminó.`,
     triangles: (n) => count(n, "triángulo", "triángulos"),
-    empty_viewer: "Todavía nadie importó un escaneo. Lo hace la curaduría del proyecto: pídaselo, y aparecerá aquí.",
-    empty_guest: "Ve los modelos de los proyectos en los que tiene un papel. Pida uno a quien le invitó.",
+    empty_viewer:
+      "Todavía nadie importó un escaneo. Lo hace la curaduría del proyecto: pídaselo, y aparecerá aquí.",
+    empty_guest:
+      "Ve los modelos de los proyectos en los que tiene un papel. Pida uno a quien le invitó.",
     count: (n) => count(n, "modelo", "modelos"),
     no_picture: "Sin imagen",
     scale_open: "Tamaño sin confirmar",
@@ -372,8 +419,12 @@ export const texts = {
     repeat_named: (name) => `Importar ${name} de nuevo`,
     dismiss: (name) => `Quitar el aviso sobre ${name}`,
     open: "Abrir",
-    wrong_kind: (name) => `«${name}» no es un escaneo que se pueda leer aquí: PLY, OBJ, STL, glTF, GLB o un zip de uno. Expórtelo en uno de estos formatos y suéltelo aquí.`,
-    left_out: (n, name) => (n === 1 ? `Se omitió «${name}».` : `Se omitieron «${name}» y ${count(n - 1, "archivo más", "archivos más")}.`),
+    wrong_kind: (name) =>
+      `«${name}» no es un escaneo que se pueda leer aquí: PLY, OBJ, STL, glTF, GLB o un zip de uno. Expórtelo en uno de estos formatos y suéltelo aquí.`,
+    left_out: (n, name) =>
+      n === 1
+        ? `Se omitió «${name}».`
+        : `Se omitieron «${name}» y ${count(n - 1, "archivo más", "archivos más")}.`,
     empty_file: (name) => `«${name}» está vacío.`,
     ready: (name) => `«${name}» está listo.`,
   },
@@ -381,7 +432,8 @@ export const texts = {
   model: {
     back: "Todos los modelos",
     tools: "Herramientas",
-    stage: "Vista del modelo. Arrastre para usar la herramienta, con el botón derecho para girar, y use la rueda para acercarse.",
+    stage:
+      "Vista del modelo. Arrastre para usar la herramienta, con el botón derecho para girar, y use la rueda para acercarse.",
     undo: "Deshacer",
     redo: "Rehacer",
     help: "Ayuda",
@@ -446,12 +498,15 @@ export const texts = {
     saved: "Todo guardado",
     saving: "Guardando…",
     not_saved: (n) => `${changes(n)} sin guardar`,
-    not_saved_hint: "Se conservan en este navegador y se reenvían solos. Mantenga la página abierta o vuelva aquí al modelo más tarde.",
+    not_saved_hint:
+      "Se conservan en este navegador y se reenvían solos. Mantenga la página abierta o vuelva aquí al modelo más tarde.",
     left_behind: (n, model) => `${changes(n)} de «${model}» todavía sin guardar`,
-    left_behind_hint: "Se conservan en este navegador y se envían en cuanto el servidor los acepte. Mantenga la página abierta o vuelva aquí al modelo más tarde.",
+    left_behind_hint:
+      "Se conservan en este navegador y se envían en cuanto el servidor los acepte. Mantenga la página abierta o vuelva aquí al modelo más tarde.",
     left_saved: (model) => `Todos los cambios de «${model}» están guardados.`,
     lost_with_model: (n, model) => `«${model}» se eliminó, y con él ${changes(n)}.`,
-    discarded: (n) => `${changes(n)} de la persona anterior ${plural(n, "se conserva", "se conservan")} en este navegador hasta que vuelva aquí al modelo.`,
+    discarded: (n) =>
+      `${changes(n)} de la persona anterior ${plural(n, "se conserva", "se conservan")} en este navegador hasta que vuelva aquí al modelo.`,
     taken_up: (n) => `${changes(n)} de antes, ${plural(n, "reenviado", "reenviados")}`,
     taken_up_hint: "Los hizo usted aquí, y no estaban guardados cuando se cerró la página.",
     not_kept: "Este navegador no conserva nada para esta página",
@@ -460,10 +515,12 @@ export const texts = {
 
   connection: {
     part_missing: "No se pudo cargar una parte de la página",
-    part_missing_hint: "Quizá se actualizó el servidor o se perdió la conexión. Vuelva a cargar la página; lo que no está guardado se conserva.",
+    part_missing_hint:
+      "Quizá se actualizó el servidor o se perdió la conexión. Vuelva a cargar la página; lo que no está guardado se conserva.",
     reload: "Recargar",
     lost: "Se perdió la conexión. Intentando de nuevo…",
-    kept: (n) => `${changes(n)} ${plural(n, "se conserva aquí y se enviará", "se conservan aquí y se enviarán")}.`,
+    kept: (n) =>
+      `${changes(n)} ${plural(n, "se conserva aquí y se enviará", "se conservan aquí y se enviarán")}.`,
     retry: "Intentar ahora",
     back: "Conexión restablecida.",
   },
@@ -486,8 +543,14 @@ export const texts = {
     lead: "Invitar a mirar juntos",
     lead_hint: "pide a los demás que sigan su vista",
     stop_leading: "Dejar de invitar a mirar juntos",
-    leading: (n) => (n === 0 ? "Invitó a los demás a mirar juntos" : `${count(n, "persona mira", "personas miran")} con usted`),
-    followers: (n) => (n === 0 ? "todavía no le sigue nadie" : `le ${plural(n, "sigue", "siguen")} ${count(n, "persona", "personas")}`),
+    leading: (n) =>
+      n === 0
+        ? "Invitó a los demás a mirar juntos"
+        : `${count(n, "persona mira", "personas miran")} con usted`,
+    followers: (n) =>
+      n === 0
+        ? "todavía no le sigue nadie"
+        : `le ${plural(n, "sigue", "siguen")} ${count(n, "persona", "personas")}`,
     invites: (name) => `${name} invita a mirar juntos`,
     accept: "Seguir",
     left: (name) => `${name} se fue: la vista vuelve a ser suya.`,
@@ -509,7 +572,8 @@ export const texts = {
     square: "Cuadrada",
     slant: "Omitir superficies vistas con una inclinación mayor que",
     slant_degrees: "Ángulo máximo entre la superficie y su mirada, en grados",
-    slant_through: "Lo oculto no se ve desde ningún ángulo: esto no es compatible con pintar lo oculto.",
+    slant_through:
+      "Lo oculto no se ve desde ningún ángulo: esto no es compatible con pintar lo oculto.",
     pressure: "Con menos presión, el lápiz pinta más fino",
     value: "Valor",
     class: "Clase que se pinta",
@@ -518,31 +582,36 @@ export const texts = {
     no_layer: "Elija o cree primero una capa y después pinte.",
     fill: "Rellenar toda la superficie",
     fill_title: (layer) => `¿Rellenar toda «${layer}»?`,
-    fill_lead: (what) => `Toda la superficie recibe ${what}. Lo pintado ahora se sustituye; se puede deshacer.`,
+    fill_lead: (what) =>
+      `Toda la superficie recibe ${what}. Lo pintado ahora se sustituye; se puede deshacer.`,
     hidden_layer: (layer) => `«${layer}» estaba oculta: se hizo visible para que vea lo que pinta.`,
     bad_value: "Indique un número, sin separador de millares.",
     out_of_range: (min, max) => `Indique un número de ${min} a ${max}.`,
     whole_number: "Esta capa solo admite números enteros.",
     not_connected: "Sin conexión: se podrá pintar cuando vuelva el servidor.",
-    too_much_waits: "Hay demasiado sin guardar: se podrá pintar cuando el servidor se ponga al día.",
+    too_much_waits:
+      "Hay demasiado sin guardar: se podrá pintar cuando el servidor se ponga al día.",
     record: "Número del registro",
     find_record: "Registro que se pinta, por su nombre",
     new_record: "Registro nuevo",
     no_record: (n) => `La tabla de la capa todavía no tiene un registro ${n}.`,
     make_record: (n) => `Crear el registro ${n}`,
-    new_record_hint: "Añade un registro con el número siguiente a la tabla de la capa y pinta ese número",
+    new_record_hint:
+      "Añade un registro con el número siguiente a la tabla de la capa y pinta ese número",
     viewer_only: "Puede mirar este modelo, pero no cambiarlo.",
   },
 
   terms: {
-    choose: "Término que se pinta: escriba para buscar, flechas para recorrer la lista, Entrar para elegir",
+    choose:
+      "Término que se pinta: escriba para buscar, flechas para recorrer la lista, Entrar para elegir",
     search: "Buscar términos",
     show_all: "Mostrar todos los términos",
     tree: "Términos",
     none_found: "Ningún término se llama así.",
     more_found: (n) => `y ${format_count(n)} más: escriba más de la palabra`,
     empty: "La lista todavía no tiene términos.",
-    more: (n, all) => `Los primeros ${format_count(n)} de ${count(all, "término", "términos")}. Busque los demás.`,
+    more: (n, all) =>
+      `Los primeros ${format_count(n)} de ${count(all, "término", "términos")}. Busque los demás.`,
   },
 
   templates: {
@@ -556,7 +625,8 @@ export const texts = {
     layer: "capa para pintar",
     terms: (n) => `lista de ${count(n, "término", "términos")}`,
     columns: (n) => `tabla de ${count(n, "columna", "columnas")}`,
-    made: (tables, layers) => `Se crearon ${count(tables, "tabla", "tablas")} y ${count(layers, "capa", "capas")}.`,
+    made: (tables, layers) =>
+      `Se crearon ${count(tables, "tabla", "tablas")} y ${count(layers, "capa", "capas")}.`,
   },
 
   shapes: {
@@ -575,7 +645,8 @@ export const texts = {
     rename: "Cambiar el nombre",
     rename_title: (name) => `Cambiar el nombre de «${name}»`,
     delete_title: (name) => `¿Eliminar la forma «${name}»?`,
-    delete_lead: "Desaparece para todas las personas de este servidor. Lo que se pintó con ella queda y se puede deshacer como antes.",
+    delete_lead:
+      "Desaparece para todas las personas de este servidor. Lo que se pintó con ella queda y se puede deshacer como antes.",
     gone: (name) => `La forma «${name}» se eliminó. El pincel es ahora redondo.`,
   },
 
@@ -621,7 +692,8 @@ export const texts = {
 
   areas: {
     how: {
-      polygon: "Haga clic en los vértices; cierre con un clic en el primero o con Entrar. Retroceso quita un vértice, Escape abandona.",
+      polygon:
+        "Haga clic en los vértices; cierre con un clic en el primero o con Entrar. Retroceso quita un vértice, Escape abandona.",
       lasso: "Rodee lo que se va a pintar.",
       bucket: "Haga clic en un lugar: se rellena lo que está conectado con él por la superficie.",
     },
@@ -659,26 +731,32 @@ export const texts = {
     title: (layer) => `Pintar «${layer}» de un archivo`,
     lead: "Lecturas (CSV), un mapa con áreas (GeoJSON, shapefile), un ráster (GeoTIFF), una ortofoto o un plano escaneado (TIFF, PNG, JPEG). Se puede deshacer.",
     file: "Archivo, o archivos que van juntos",
-    file_hint: "Un shapefile: su .shp y .dbf (y .prj, .cpg), o todo en un zip. Una imagen: con su archivo de georreferencia, si lo hay.",
-    unknown: (file) => `«${file}» no es nada de esto: .csv, .geojson, .shp con .dbf, .tif, .png, .jpg, .zip`,
+    file_hint:
+      "Un shapefile: su .shp y .dbf (y .prj, .cpg), o todo en un zip. Una imagen: con su archivo de georreferencia, si lo hay.",
+    unknown: (file) =>
+      `«${file}» no es nada de esto: .csv, .geojson, .shp con .dbf, .tif, .png, .jpg, .zip`,
     looking: "Examinando…",
     sending: (percent) => `Enviando: ${percent} %`,
     polygons: (n) => count(n, "área", "áreas"),
     columns: (n) => count(n, "atributo", "atributos"),
     bands: (n) => count(n, "banda", "bandas"),
     bounds: (x0, x1, y0, y1) => `de ${x0} a ${x1}, y de ${y0} a ${y1}`,
-    readings_hint: "La primera línea nombra las columnas x, y, z y value, en las coordenadas y la unidad del modelo. Lo que los discos no alcanzan queda como está.",
+    readings_hint:
+      "La primera línea nombra las columnas x, y, z y value, en las coordenadas y la unidad del modelo. Lo que los discos no alcanzan queda como está.",
     radius: "Radio alrededor de cada lugar",
     tolerance: "Distancia máxima a la superficie",
-    vertices_hint: "Un número por línea, en el orden de los vértices del escaneo. La capa tendrá después estos números y nada más.",
+    vertices_hint:
+      "Un número por línea, en el orden de los vértices del escaneo. La capa tendrá después estos números y nada más.",
     source: "Vértices de",
     attribute: "Cada área recibe",
     one_value: "el mismo valor",
     attribute_number: (name) => `${name} (número)`,
     attribute_text: (name) => `${name} (nombre de una clase)`,
     samples: (values) => `Por ejemplo ${values}`,
-    names_need_legend: "Los nombres necesitan una capa de clases: elija una capa así o un atributo con números.",
-    names_become: "Los nombres que son clases de esta capa las representan; los demás serán clases nuevas.",
+    names_need_legend:
+      "Los nombres necesitan una capa de clases: elija una capa así o un atributo con números.",
+    names_become:
+      "Los nombres que son clases de esta capa las representan; los demás serán clases nuevas.",
     names: "Nombres de las clases",
     no_names: "tal como están",
     picture_gives: "Cada lugar recibe",
@@ -695,14 +773,17 @@ export const texts = {
     left_out: "omitido",
     value_of: (color) => `Valor de ${color}`,
     color_tolerance: "Los colores cuentan como uno dentro de",
-    color_tolerance_hint: "Mayor para escaneos desvaídos o con ruido, menor donde los colores se parecen.",
+    color_tolerance_hint:
+      "Mayor para escaneos desvaídos o con ruido, menor donde los colores se parecen.",
     colors_wrong: "Dé un número a cada color que se usa, y use al menos uno.",
     bad_tolerance: (least, most) => `Indique un número de ${least} a ${most}.`,
     world: "Los seis números de su archivo de georreferencia (.tfw, .pgw, .jgw)",
     world_known: "El archivo dice dónde está.",
-    world_wrong: "Indique los seis números del archivo de georreferencia: sin ellos no se conoce su lugar.",
+    world_wrong:
+      "Indique los seis números del archivo de georreferencia: sin ellos no se conoce su lugar.",
     crs: {
-      question: (crs: string) => `El mapa está en ${crs} y este modelo no tiene sistema de coordenadas. ¿Son las coordenadas del modelo las de ${crs}?`,
+      question: (crs: string) =>
+        `El mapa está en ${crs} y este modelo no tiene sistema de coordenadas. ¿Son las coordenadas del modelo las de ${crs}?`,
       hint: "Si no lo son, el mapa queda en un lugar equivocado. Un conservador puede dar al modelo su sistema de coordenadas; entonces ya no se pregunta.",
       yes: "Sí, usar el mapa",
       no: "No",
@@ -734,10 +815,14 @@ export const texts = {
 
   rasters: {
     save: { tif: "Guardar como GeoTIFF", png: "Guardar como PNG", npy: "Guardar para NumPy" },
-    save_outlines: { geojson: "Guardar contornos como GeoJSON", gpkg: "Guardar contornos como GeoPackage" },
+    save_outlines: {
+      geojson: "Guardar contornos como GeoJSON",
+      gpkg: "Guardar contornos como GeoPackage",
+    },
     import: "Sustituir por un ráster…",
     title: (layer) => `¿Sustituir lo que contiene «${layer}»?`,
-    lead: (file) => `La capa tendrá después lo que hay en «${file}»: un archivo guardado de una capa de este modelo, modificado o no. Se puede deshacer.`,
+    lead: (file) =>
+      `La capa tendrá después lo que hay en «${file}»: un archivo guardado de una capa de este modelo, modificado o no. Se puede deshacer.`,
     replace: "Sustituir",
     same: "La capa ya contiene exactamente eso.",
     unknown: (file) => `«${file}» no es un ráster del que se pueda leer una capa`,
@@ -754,7 +839,11 @@ export const texts = {
     },
     of: (name) => `Quién ve ${name}`,
     download: "Los archivos del escaneo son para",
-    download_roles: { viewer: "todas las personas que ven el proyecto", annotator: "quienes anotan y la curaduría", curator: "solo la curaduría" },
+    download_roles: {
+      viewer: "todas las personas que ven el proyecto",
+      annotator: "quienes anotan y la curaduría",
+      curator: "solo la curaduría",
+    },
     no_download: "Con su papel no se pueden descargar.",
   },
 
@@ -766,7 +855,8 @@ export const texts = {
     new: "Capa nueva",
     more: "Más sobre las capas",
     empty_title: "Todavía no hay capas",
-    empty_lead: "Una capa guarda un tipo de conocimiento sobre la superficie: dónde están las grietas, de qué piezas se compone, qué humedad tiene.",
+    empty_lead:
+      "Una capa guarda un tipo de conocimiento sobre la superficie: dónde están las grietas, de qué piezas se compone, qué humedad tiene.",
     show: (name) => `Mostrar ${name}`,
     hide: (name) => `Ocultar ${name}`,
     select: (name) => `Pintar en ${name}`,
@@ -785,7 +875,8 @@ export const texts = {
     unlock: "Desbloquear",
     unlock_computed: "Desbloquear para editar a mano",
     locked_computed: "Bloqueada: sus valores fueron calculados.",
-    computed_detail: (name) => `Los valores de «${name}» fueron calculados. La curaduría puede desbloquear la capa para editarla a mano.`,
+    computed_detail: (name) =>
+      `Los valores de «${name}» fueron calculados. La curaduría puede desbloquear la capa para editarla a mano.`,
     by_hand: "Editada a mano: sus valores pueden no ser los calculados.",
     by_hand_formula: "Ya no se vuelve a calcular sola.",
     overwrite_title: (name) => `¿Volver a calcular «${name}»?`,
@@ -796,7 +887,8 @@ export const texts = {
     locked_to_others: "Bloqueada para la anotación. Usted puede seguir cambiándola.",
     widen: "Sitio para más registros…",
     widen_title: (layer) => `¿Sitio para más registros en «${layer}»?`,
-    widen_lead: (highest) => `Admite claves hasta ${format_count(highest)}. Después admitirá todas las claves y ocupará más memoria; lo pintado y su historial quedan.`,
+    widen_lead: (highest) =>
+      `Admite claves hasta ${format_count(highest)}. Después admitirá todas las claves y ocupará más memoria; lo pintado y su historial quedan.`,
     widen_yes: "Hacer sitio",
     widened: "La capa admite ahora todas las claves.",
     saved_default: "Lo que ve es ahora la vista inicial para todos.",
@@ -823,13 +915,15 @@ export const texts = {
     measurement: "Medición",
     measurement_lead: "Un número en cada lugar: humedad, profundidad, cambio de color.",
     records: "Elementos con registros",
-    records_lead: "Elementos singulares, cada uno con el número de su registro: unidades, hallazgos, muestras.",
+    records_lead:
+      "Elementos singulares, cada uno con el número de su registro: unidades, hallazgos, muestras.",
     table: "Registros de",
     own_table: "una tabla nueva con el nombre de la capa",
     table_of_terms: (table, n) => `${table} (${count(n, "término", "términos")})`,
     table_of_records: (table, n) => `${table} (${records(n)})`,
     formula: "De una expresión",
-    formula_lead: "Calculada de otras capas, sus registros y la superficie: riesgo = humedad × sal.",
+    formula_lead:
+      "Calculada de otras capas, sus registros y la superficie: riesgo = humedad × sal.",
     formula_hint: "Riesgo",
     formula_example: "if(valid(grietas), 2, 1) * humedad",
     expression: "Expresión: un número o una condición (pintada donde se cumple)",
@@ -839,7 +933,12 @@ export const texts = {
     shape_lead: "Calculada: curvatura, rugosidad, altura, distancias.",
     compute: "Calcular capa",
     name: "Nombre",
-    name_hint: { presence: "Grietas", classes: "Materiales", measurement: "Humedad", records: "Hallazgos" },
+    name_hint: {
+      presence: "Grietas",
+      classes: "Materiales",
+      measurement: "Humedad",
+      records: "Hallazgos",
+    },
     description: "Descripción",
     description_hint: "Opcional: cómo se observó, con qué reglas",
     color: "Color",
@@ -856,7 +955,8 @@ export const texts = {
     range_to: "a",
     stepped: "Mostrar en escalones",
     detail: "Detalle mínimo",
-    detail_hint: "Un detalle más fino ocupa más memoria en el servidor una vez pintado. No se puede cambiar después.",
+    detail_hint:
+      "Un detalle más fino ocupa más memoria en el servidor una vez pintado. No se puede cambiar después.",
     create: "Crear capa",
     name_missing: "Dé un nombre a la capa.",
     range_wrong: "El segundo número debe ser mayor que el primero.",
@@ -868,20 +968,58 @@ export const texts = {
 
   shape: {
     kind: "Qué se calcula",
-    groups: { form: "Forma y relieve", place: "Posición y dirección", distance: "Distancias", file: "Del archivo del escaneo" },
+    groups: {
+      form: "Forma y relieve",
+      place: "Posición y dirección",
+      distance: "Distancias",
+      file: "Del archivo del escaneo",
+    },
     kinds: {
-      mean_curvature: { title: "Curvatura", lead: "Dónde la superficie sobresale (positiva) o es cóncava (negativa): huellas de herramienta, relieves, letras gastadas." },
-      gaussian_curvature: { title: "Curvatura gaussiana", lead: "Bultos y huecos (positiva) frente a sillas (negativa); 0 donde la superficie podría desenrollarse." },
-      max_curvature: { title: "Crestas", lead: "La curvatura mayor en cualquier dirección: alta en aristas y crestas." },
-      min_curvature: { title: "Surcos", lead: "La curvatura menor en cualquier dirección: baja en surcos, juntas y grietas." },
-      roughness: { title: "Rugosidad", lead: "Distancia de la superficie al plano que mejor se le ajusta: desgastado frente a fresco, alisado frente a labrado." },
-      ambient_occlusion: { title: "Apertura", lead: "Parte de la luz del entorno que llega: 1 al descubierto, 0 en cavidades profundas." },
+      mean_curvature: {
+        title: "Curvatura",
+        lead: "Dónde la superficie sobresale (positiva) o es cóncava (negativa): huellas de herramienta, relieves, letras gastadas.",
+      },
+      gaussian_curvature: {
+        title: "Curvatura gaussiana",
+        lead: "Bultos y huecos (positiva) frente a sillas (negativa); 0 donde la superficie podría desenrollarse.",
+      },
+      max_curvature: {
+        title: "Crestas",
+        lead: "La curvatura mayor en cualquier dirección: alta en aristas y crestas.",
+      },
+      min_curvature: {
+        title: "Surcos",
+        lead: "La curvatura menor en cualquier dirección: baja en surcos, juntas y grietas.",
+      },
+      roughness: {
+        title: "Rugosidad",
+        lead: "Distancia de la superficie al plano que mejor se le ajusta: desgastado frente a fresco, alisado frente a labrado.",
+      },
+      ambient_occlusion: {
+        title: "Apertura",
+        lead: "Parte de la luz del entorno que llega: 1 al descubierto, 0 en cavidades profundas.",
+      },
       height: { title: "Altura", lead: "Sobre el punto más bajo, en la dirección de arriba." },
-      slope: { title: "Pendiente", lead: "0° es plano, 90° un muro vertical, más está en voladizo." },
-      azimuth: { title: "Orientación", lead: "Grados desde el norte en sentido horario, visto desde arriba." },
-      boundary_distance: { title: "Distancia al borde", lead: "Al borde abierto más cercano de la malla: el canto de un fragmento, un agujero." },
-      model_distance: { title: "Distancia a otro modelo", lead: "Lo añadido (positivo) o retirado (negativo) desde entonces: dos estados de una excavación o de un objeto." },
-      vertex_property: { title: "Valores del archivo del escaneo", lead: "Un número que el programa de escaneo guardó con cada punto: calidad, confianza, intensidad." },
+      slope: {
+        title: "Pendiente",
+        lead: "0° es plano, 90° un muro vertical, más está en voladizo.",
+      },
+      azimuth: {
+        title: "Orientación",
+        lead: "Grados desde el norte en sentido horario, visto desde arriba.",
+      },
+      boundary_distance: {
+        title: "Distancia al borde",
+        lead: "Al borde abierto más cercano de la malla: el canto de un fragmento, un agujero.",
+      },
+      model_distance: {
+        title: "Distancia a otro modelo",
+        lead: "Lo añadido (positivo) o retirado (negativo) desde entonces: dos estados de una excavación o de un objeto.",
+      },
+      vertex_property: {
+        title: "Valores del archivo del escaneo",
+        lead: "Un número que el programa de escaneo guardó con cada punto: calidad, confianza, intensidad.",
+      },
     },
     radius: "En un radio de",
     radius_hint: "4 aristas de la malla",
@@ -926,15 +1064,25 @@ export const texts = {
     column: "Colorear por",
     each_record: "Cada registro su propio color",
     method: "Clases",
-    methods: { quantile: "Igual número de registros", equal: "Intervalos iguales", smooth: "Gradiente continuo", unique: "Cada valor" },
+    methods: {
+      quantile: "Igual número de registros",
+      equal: "Intervalos iguales",
+      smooth: "Gradiente continuo",
+      unique: "Cada valor",
+    },
     count: "Cuántas",
     ramp: "Colores de bajo a alto",
-    ramps: { viridis: "De azul a amarillo", reds: "De rojo claro a oscuro", blues: "De azul claro a oscuro" },
+    ramps: {
+      viridis: "De azul a amarillo",
+      reds: "De rojo claro a oscuro",
+      blues: "De azul claro a oscuro",
+    },
     patterns: { solid: "Liso", hatch: "Tramado", dots: "Puntos", outline: "Contorno" },
     color_of: (name) => `Color de ${name}`,
     pattern_of: (name) => `Trama de ${name}`,
     patterned: "Tramas para todas",
-    patterned_hint: "Lo de debajo sigue legible y las clases se distinguen también en blanco y negro.",
+    patterned_hint:
+      "Lo de debajo sigue legible y las clases se distinguen también en blanco y negro.",
     by: (column) => `Por ${column}`,
     others: "Otros, o sin valor",
     further: "Cada registro que se añada después recibe un color propio.",
@@ -959,7 +1107,8 @@ export const texts = {
     by_column: "Los nombres contienen",
     into: "Ponerlos en",
     pattern: "Patrón de los nombres",
-    pattern_hint: "Cada {palabra} representa algunos caracteres; la que se llama como la columna dice el registro.",
+    pattern_hint:
+      "Cada {palabra} representa algunos caracteres; la que se llama como la columna dice el registro.",
     matched: (n) => `${files(n)} con registro`,
     unmatched: (n) => `${files(n)} sin ninguno; ${plural(n, "queda", "quedan")} aquí`,
     duplicates: (n) => `${files(n)} ya ${plural(n, "está", "están")}`,
@@ -973,13 +1122,15 @@ export const texts = {
     more: (n) => `y ${format_count(n)} más`,
     send: (n) => (n === 0 ? "Enviar" : `Enviar ${files(n)}`),
     sending: (n, of) => `Enviando ${Math.min(n, of)} de ${of}…`,
-    sent: (n) => `${files(n)} ${plural(n, "se añadió a su registro", "se añadieron a sus registros")}.`,
+    sent: (n) =>
+      `${files(n)} ${plural(n, "se añadió a su registro", "se añadieron a sus registros")}.`,
     add_menu: "Añadir fotos por sus nombres…",
   },
   measure: {
     title: "Medir",
     how: "Haga clic o toque lugares de la superficie. Arrastrar gira el modelo, también entre dos lugares. Sin puntero, M pone uno en el centro de la vista.",
-    how_on: "Un clic o toque en el último lugar, o Entrar, termina la línea; Retroceso quita un lugar, Escape lo borra todo.",
+    how_on:
+      "Un clic o toque en el último lugar, o Entrar, termina la línea; Retroceso quita un lugar, Escape lo borra todo.",
     how_anew: "Terminada. El clic o toque siguiente empieza otra línea.",
     most: (n) => `Son ${format_count(n)} lugares y no se pueden poner más.`,
     set_in_middle: "Lugar en el centro",
@@ -992,15 +1143,20 @@ export const texts = {
     ends: "Del primero al último, en línea recta",
     along: "Por la superficie",
     along_parts: (n) => `Por la superficie, en ${format_count(n)} partes`,
-    no_way: "Las líneas rectas atraviesan el objeto, y lo más próximo a ellas no es un camino por su superficie. Gire el modelo hasta que se vean todos los lugares y elija «Lo visto».",
+    no_way:
+      "Las líneas rectas atraviesan el objeto, y lo más próximo a ellas no es un camino por su superficie. Gire el modelo hasta que se vean todos los lugares y elija «Lo visto».",
     rise: (axis) => `Diferencia de altura (${axis})`,
     area: "Área plana del polígono",
     perimeter: "Perímetro del polígono",
-    area_hint: "El polígono es plano y pasa por los lugares, del último de vuelta al primero: no es el área de la superficie que encierra.",
-    off_plane: (length) => `Los lugares se apartan hasta ${length} de su plano; el área es la de su proyección en él.`,
-    gaps: (n) => `La línea sale de la superficie ${n === 1 ? "una vez" : `${format_count(n)} veces`}; lo que queda en medio no se cuenta.`,
+    area_hint:
+      "El polígono es plano y pasa por los lugares, del último de vuelta al primero: no es el área de la superficie que encierra.",
+    off_plane: (length) =>
+      `Los lugares se apartan hasta ${length} de su plano; el área es la de su proyección en él.`,
+    gaps: (n) =>
+      `La línea sale de la superficie ${n === 1 ? "una vez" : `${format_count(n)} veces`}; lo que queda en medio no se cuenta.`,
     busy: "…",
-    unconfirmed: "Las longitudes y áreas son tan correctas como la unidad que se supuso para su archivo.",
+    unconfirmed:
+      "Las longitudes y áreas son tan correctas como la unidad que se supuso para su archivo.",
     profile: "Perfil",
     plot: "Lugar a lo largo del perfil",
     plot_hint: "Apunte a la curva o use las flechas: el lugar se señala en el modelo.",
@@ -1014,7 +1170,8 @@ export const texts = {
     ways: { seen: "Lo visto", nearest: "Lo más próximo" },
     way_hints: {
       seen: "La superficie que se veía bajo las líneas rectas. Elegido otra vez, se mira desde la vista de ahora.",
-      nearest: "De cada paso de las líneas rectas, la superficie más próxima. Sirve donde es casi plana; se toma donde no se ven todos los lugares a la vez.",
+      nearest:
+        "De cada paso de las líneas rectas, la superficie más próxima. Sirve donde es casi plana; se toma donde no se ven todos los lugares a la vez.",
     },
     save_csv: "Guardar como CSV",
     save_svg: "Guardar como SVG",
@@ -1035,13 +1192,15 @@ export const texts = {
     into: "Columna",
     no_column: {
       line: "Las líneas son de registros: elija una capa cuya tabla tenga una columna de líneas, o añada una a su tabla.",
-      point: "Los puntos son de registros: elija una capa cuya tabla tenga una columna de puntos, o añada una a su tabla.",
+      point:
+        "Los puntos son de registros: elija una capa cuya tabla tenga una columna de puntos, o añada una a su tabla.",
     },
     line_cut: (pieces) => `La línea cruzó un borde y se cortó en ${pieces} partes.`,
     line_drawn: (length, record) => `${length} para «${record}».`,
     point_set: (record) => `Se puso un punto para «${record}».`,
     missed: "Allí no hay superficie.",
-    changed_since: "La tabla cambió desde entonces: quite la línea o el punto en el formulario del registro, o deshaga paso a paso en la tabla.",
+    changed_since:
+      "La tabla cambió desde entonces: quite la línea o el punto en el formulario del registro, o deshaga paso a paso en la tabla.",
   },
 
   comments: {
@@ -1122,7 +1281,13 @@ export const texts = {
     look: "Verlo como lo vio quien lo pintó",
     stroke: (what, name) => `${what}, ${name}`,
     more: (n) => `${format_count(n)} más se muestran cuando estos estén decididos.`,
-    ops: { stroke: "trazo", fill: "relleno", polygon: "contorno", import: "datos importados", restore: "estado anterior" },
+    ops: {
+      stroke: "trazo",
+      fill: "relleno",
+      polygon: "contorno",
+      import: "datos importados",
+      restore: "estado anterior",
+    },
     done: {
       accept: (n) => `${count(n, "cambio aceptado", "cambios aceptados")}`,
       reject: (n) => `${count(n, "cambio rechazado", "cambios rechazados")}`,
@@ -1260,7 +1425,8 @@ export const texts = {
     isolate: "Ocultar todos los demás registros",
     fly: "Ir adonde están",
     nothing_here: "Ninguno tiene un área, una línea ni un punto en este modelo",
-    painted_of: (n, all) => `${format_count(n)} de ${records(all)} ${plural(n, "pintado", "pintados")} en este modelo`,
+    painted_of: (n, all) =>
+      `${format_count(n)} de ${records(all)} ${plural(n, "pintado", "pintados")} en este modelo`,
     sort: (column) => `Ordenar por ${column}; otra vez invierte el orden`,
     required: "Debe tener un valor",
     yes: "sí",
@@ -1281,8 +1447,10 @@ export const texts = {
     save_next: "Guardar y otro",
     undo: "Deshacer mi último cambio de la tabla",
     redo: "Rehacerlo",
-    undone: (created, changed, deleted) => `Deshecho: ${what_changed(created, changed, deleted) || "una columna"}.`,
-    redone: (created, changed, deleted) => `Rehecho: ${what_changed(created, changed, deleted) || "una columna"}.`,
+    undone: (created, changed, deleted) =>
+      `Deshecho: ${what_changed(created, changed, deleted) || "una columna"}.`,
+    redone: (created, changed, deleted) =>
+      `Rehecho: ${what_changed(created, changed, deleted) || "una columna"}.`,
     key_is: (key) => `Clave ${key}`,
     area_on: (area, layer) => `${area} en «${layer}»`,
     not_painted_on: (layer) => `sin pintar en «${layer}»`,
@@ -1305,15 +1473,20 @@ export const texts = {
     take_mine: "Poner lo mío",
     edited_by: (user) => `${user} está editando esto.`,
     edited_elsewhere: "Usted está editando esto en otra ventana.",
-    taken_over: (user) => `${user} se hizo cargo de esto. Lo que usted escribió se conserva aquí para copiarlo; no está guardado.`,
-    taken_elsewhere: "Usted se hizo cargo de esto en otra ventana. Lo que escribió se conserva aquí para copiarlo; no está guardado.",
+    taken_over: (user) =>
+      `${user} se hizo cargo de esto. Lo que usted escribió se conserva aquí para copiarlo; no está guardado.`,
+    taken_elsewhere:
+      "Usted se hizo cargo de esto en otra ventana. Lo que escribió se conserva aquí para copiarlo; no está guardado.",
     written: "Lo que escribió",
     take_over: "Hacerse cargo",
     take_over_title: (record) => `¿Hacerse cargo de «${record}»?`,
-    take_over_lead: (user) => `${user} lo está editando y recibirá un aviso; lo que no haya guardado se conserva allí para copiarlo.`,
-    take_over_own: "Usted lo está editando en otra ventana. Lo que no esté guardado allí se conserva allí para copiarlo.",
+    take_over_lead: (user) =>
+      `${user} lo está editando y recibirá un aviso; lo que no haya guardado se conserva allí para copiarlo.`,
+    take_over_own:
+      "Usted lo está editando en otra ventana. Lo que no esté guardado allí se conserva allí para copiarlo.",
     now_is: (value) => `Ahora: ${value}. Al guardar, lo suyo ocupa su lugar.`,
-    changed_meanwhile: (user) => `${user} cambió este registro entretanto. Mírelo otra vez y guarde.`,
+    changed_meanwhile: (user) =>
+      `${user} cambió este registro entretanto. Mírelo otra vez y guarde.`,
     search_records: "Buscar registros",
     none_found: "Ningún registro se llama así.",
     take_out: (name) => `Quitar ${name}`,
@@ -1331,7 +1504,8 @@ export const texts = {
     column_menu: (column) => `Opciones para la columna ${column}`,
     change_column: "Cambiar…",
     title_column: "Usar como título",
-    title_hint: "Los registros se llaman por lo que tienen en esta columna: en leyendas, etiquetas, avisos y tarjetas.",
+    title_hint:
+      "Los registros se llaman por lo que tienen en esta columna: en leyendas, etiquetas, avisos y tarjetas.",
     drop_column: "Quitar…",
     drop_title: (column) => `¿Quitar la columna «${column}»?`,
     drop_lead: "Sus valores dejan de mostrarse. Deshacer la devuelve con todos ellos.",
@@ -1344,7 +1518,8 @@ export const texts = {
     csv_looking: "Examinando…",
     csv_rows: "Filas",
     csv_import: "Importar",
-    csv_done: (created, changed) => `${records(created)} ${plural(created, "creado", "creados")}, ${format_count(changed)} ${plural(changed, "cambiado", "cambiados")}.`,
+    csv_done: (created, changed) =>
+      `${records(created)} ${plural(created, "creado", "creados")}, ${format_count(changed)} ${plural(changed, "cambiado", "cambiados")}.`,
   },
 
   reports: {
@@ -1355,7 +1530,8 @@ export const texts = {
       `${count(n, "nombre o término superior más no cabe", "nombres o términos superiores más no caben")} en una lista y se ${plural(n, "omitirá", "omitirán")}.`,
     good: "Todo es correcto. Todavía no se ha escrito nada.",
     same: "La tabla ya contiene todo eso.",
-    wrong: (n) => `${plural(n, "Uno de ellos no es correcto", `${format_count(n)} de ellos no son correctos`)}, así que no se escribe ninguno. Corrija el archivo e inténtelo de nuevo.`,
+    wrong: (n) =>
+      `${plural(n, "Uno de ellos no es correcto", `${format_count(n)} de ellos no son correctos`)}, así que no se escribe ninguno. Corrija el archivo e inténtelo de nuevo.`,
     line: "Línea",
     term: "Término",
     column: "Columna",
@@ -1376,16 +1552,19 @@ export const texts = {
     title: "Una lista de términos de un archivo",
     more_title: (list) => `Términos para «${list}»`,
     lead: "SKOS (Turtle, N-Triples o RDF/XML), como se publican los tesauros, o CSV con las columnas code, parent, label, label-es (u otro idioma), definition, uri, color y pattern; solo code es obligatoria.",
-    more_lead: "SKOS o CSV. Los términos que la lista ya tiene, por su dirección o código, se cambian y conservan lo pintado con ellos; los demás son nuevos. Se puede deshacer.",
+    more_lead:
+      "SKOS o CSV. Los términos que la lista ya tiene, por su dirección o código, se cambian y conservan lo pintado con ellos; los demás son nuevos. Se puede deshacer.",
     file: "Archivo con términos",
     name: "Nombre de la lista",
     name_missing: "Dé un nombre a la lista.",
     with_layer: "Hacer con ella una capa para pintar",
     rows: "Términos",
     looking: "Examinando…",
-    unknown: (file) => `«${file}» no es una lista de términos que se pueda leer aquí. Use CSV (.csv) o SKOS en Turtle (.ttl), N-Triples (.nt) o RDF/XML (.rdf).`,
+    unknown: (file) =>
+      `«${file}» no es una lista de términos que se pueda leer aquí. Use CSV (.csv) o SKOS en Turtle (.ttl), N-Triples (.nt) o RDF/XML (.rdf).`,
     import: "Importar",
-    done: (created, changed) => `${count(created, "término", "términos")} ${plural(created, "creado", "creados")}, ${format_count(changed)} ${plural(changed, "cambiado", "cambiados")}.`,
+    done: (created, changed) =>
+      `${count(created, "término", "términos")} ${plural(created, "creado", "creados")}, ${format_count(changed)} ${plural(changed, "cambiado", "cambiados")}.`,
     no_layer: (list) => `«${list}» se creó, pero ninguna capa con ella`,
   },
 
@@ -1413,7 +1592,8 @@ export const texts = {
       line: "Líneas en la superficie, con su longitud",
       point: "Puntos en la superficie",
     },
-    retype_hint: "Los valores que no pueden ser del tipo nuevo se omiten; verá cuántos y podrá deshacerlo.",
+    retype_hint:
+      "Los valores que no pueden ser del tipo nuevo se omiten; verá cuántos y podrá deshacerlo.",
     unit: "Unidad",
     minimum: "Como mínimo",
     maximum: "Como máximo",
@@ -1459,11 +1639,15 @@ export const texts = {
     comment: (comment) => `Del propio archivo: «${comment}».`,
     comment_up: (comment) => `Del propio archivo: «${comment}».`,
     coordinates: "Las coordenadas son las de un mapa: metros, con +Z arriba.",
-    size: (unit) => `El archivo no lo dice. Estimado por el tamaño: en ${unit} mide lo que suelen medir estos objetos.`,
-    size_unsure: "El archivo no lo dice y el tamaño encaja con más de una unidad. Elija, por favor.",
+    size: (unit) =>
+      `El archivo no lo dice. Estimado por el tamaño: en ${unit} mide lo que suelen medir estos objetos.`,
+    size_unsure:
+      "El archivo no lo dice y el tamaño encaja con más de una unidad. Elija, por favor.",
     shape: (up) => `El archivo no lo dice. Estimado por la forma: se sostiene con ${up} arriba.`,
-    shape_unsure: (up) => `El archivo no lo dice y la forma no lo aclara: ${up} es solo una suposición. Elija, por favor.`,
-    until_then: (unit, up) => `«Decidir después» conserva ${unit} y ${up} arriba, sin confirmar. Se preguntará otra vez al abrir el modelo.`,
+    shape_unsure: (up) =>
+      `El archivo no lo dice y la forma no lo aclara: ${up} es solo una suposición. Elija, por favor.`,
+    until_then: (unit, up) =>
+      `«Decidir después» conserva ${unit} y ${up} arriba, sin confirmar. Se preguntará otra vez al abrir el modelo.`,
     unit: "Los números del archivo son",
     mm: "milímetros",
     cm: "centímetros",
@@ -1472,7 +1656,8 @@ export const texts = {
     yes: "Sí, es correcto",
     later: "Decidir después",
     saved: "El tamaño y la dirección de arriba están confirmados.",
-    changed: "Alguien cambió este modelo entretanto. Se muestran los valores más recientes; compruébelos otra vez.",
+    changed:
+      "Alguien cambió este modelo entretanto. Se muestran los valores más recientes; compruébelos otra vez.",
   },
 
   view: {
@@ -1492,7 +1677,8 @@ export const texts = {
     no_looks: "Este modelo no tiene imágenes de su superficie.",
     no_looks_curator:
       "Una imagen de la superficie está sobre la textura del modelo: sus colores, o la misma superficie con luz ultravioleta o en infrarrojo. Añada un JPEG, PNG, TIFF, WebP, BMP o TGA.",
-    too_many_looks: (n) => `Una vista muestra como máximo ${n} imágenes de la superficie. Oculte una primero.`,
+    too_many_looks: (n) =>
+      `Una vista muestra como máximo ${n} imágenes de la superficie. Oculte una primero.`,
     light: "Luz",
     lights: { museum: "Museo", headlight: "Frontal", raking: "Rasante", unlit: "Sin luz" },
     light_hints: {
@@ -1503,7 +1689,8 @@ export const texts = {
     },
     light_direction: "Dirección de la luz",
     light_pad_hint: "Arrastre o use las flechas. Cerca del borde, la luz solo roza la superficie.",
-    light_from: (from, above) => `Desde las ${Math.round(from / 30) % 12 || 12} del reloj, a ${above}° de altura`,
+    light_from: (from, above) =>
+      `Desde las ${Math.round(from / 30) % 12 || 12} del reloj, a ${above}° de altura`,
     section: "Sección",
     sections: { off: "Sin", x: "X", y: "Y", z: "Z", box: "Caja" },
     section_hints: {
@@ -1513,7 +1700,8 @@ export const texts = {
       z: "Cortar perpendicular al eje Z",
       box: "Conservar solo lo que está dentro de una caja",
     },
-    section_of_view: (planes) => `Sección propia de la vista, de ${count_of(planes, "plano", "planos")}`,
+    section_of_view: (planes) =>
+      `Sección propia de la vista, de ${count_of(planes, "plano", "planos")}`,
     section_remove: "Quitarla",
     cut_position: "Posición del corte",
     flip: "Conservar el otro lado",
@@ -1524,7 +1712,8 @@ export const texts = {
     title: "Vistas",
     keep: "Guardar esta vista…",
     none: "Aún no hay ninguna guardada. Una vista guarda con un nombre lo que ve ahora, con capas, luz y sección: para volver a ella, mostrarla a otros, o para un informe o una visita.",
-    none_viewer: "Aún no hay ninguna guardada. Quienes anotan guardan vistas: lo que se ve desde un lugar, con sus capas, luz y sección.",
+    none_viewer:
+      "Aún no hay ninguna guardada. Quienes anotan guardan vistas: lo que se ve desde un lugar, con sus capas, luz y sección.",
     none_yet: "Aún no hay ninguna vista guardada.",
     failed: "No se pudieron leer las vistas.",
     more: (n) => `Mostrar ${format_count(n)} más`,
@@ -1532,7 +1721,8 @@ export const texts = {
     shown: (name) => `Vista «${name}»`,
     back: "Volver a lo que veía",
     keep_title: "Guardar esta vista",
-    keep_lead: "Cámara, sección, luz, imágenes y capas tal como las ve ahora, para todos. Lo que otros pinten después también aparece en ella.",
+    keep_lead:
+      "Cámara, sección, luz, imágenes y capas tal como las ve ahora, para todos. Lo que otros pinten después también aparece en ella.",
     keep_yes: "Guardar",
     kept: (name) => `La vista «${name}» está guardada.`,
     name: "Nombre",
@@ -1544,12 +1734,14 @@ export const texts = {
     copy_by_hand: "Copie este enlace a mano:",
     describe: "Cambiar nombre y descripción…",
     describe_title: (name) => `La vista «${name}»`,
-    changed: (name) => `Alguien cambió esta vista mientras tanto; ahora se llama «${name}». Guarde otra vez para poner la suya en su lugar.`,
+    changed: (name) =>
+      `Alguien cambió esta vista mientras tanto; ahora se llama «${name}». Guarde otra vez para poner la suya en su lugar.`,
     replace: "Mostrar esto en su lugar",
     replaced: (name) => `«${name}» muestra ahora lo que usted ve.`,
     undo: "Deshacer",
     delete_title: (name) => `¿Eliminar la vista «${name}»?`,
-    delete_lead: "Se elimina para todos, y los enlaces a ella no llevan a ninguna parte. Esto no se puede deshacer.",
+    delete_lead:
+      "Se elimina para todos, y los enlaces a ella no llevan a ninguna parte. Esto no se puede deshacer.",
   },
 
   figures: {
@@ -1572,14 +1764,16 @@ export const texts = {
     pick: "Elegir la cara…",
     pick_again: "Elegir otra cara…",
     pick_title: "Cara que se verá de frente",
-    pick_lead: "Haga clic en la cara que se verá de frente. Arrastrar gira el modelo; Escape vuelve.",
+    pick_lead:
+      "Haga clic en la cara que se verá de frente. Arrastrar gira el modelo; Escape vuelve.",
     pick_middle: "Tomar el centro",
     no_face: "Elija primero la cara que se verá de frente.",
     scale: "Escala",
     fits: "La que quepa",
     own_scale: "Otra…",
     own_scale_label: "Escala, como 1 : 40 o 2 : 1",
-    wrong_scale: "Escríbala como 1 : 40, como 2 : 1 o solo el 40; de 100\u00a0:\u00a01 a 1\u00a0:\u00a01\u00a0000\u00a0000.",
+    wrong_scale:
+      "Escríbala como 1 : 40, como 2 : 1 o solo el 40; de 100\u00a0:\u00a01 a 1\u00a0:\u00a01\u00a0000\u00a0000.",
     paper: "Papel",
     orientation: "Orientación",
     orientations: { portrait: "Vertical", landscape: "Horizontal" },
@@ -1605,12 +1799,16 @@ export const texts = {
     labels: "Rótulos de registros",
     no_labels: "Ninguno",
     column: "Qué dicen",
-    no_columns: "La tabla de esta capa no tiene ninguna columna que se pueda escribir. Añada una o elija otra capa.",
-    preview: (paper: string, from: string, scale: string) => `Vista previa de la hoja: ${paper}, vista desde: ${from}, escala: ${scale}`,
-    preview_hint: "Una vista previa aproximada. Toda la figura muestra un mismo estado de las capas, también mientras otros pintan.",
+    no_columns:
+      "La tabla de esta capa no tiene ninguna columna que se pueda escribir. Añada una o elija otra capa.",
+    preview: (paper: string, from: string, scale: string) =>
+      `Vista previa de la hoja: ${paper}, vista desde: ${from}, escala: ${scale}`,
+    preview_hint:
+      "Una vista previa aproximada. Toda la figura muestra un mismo estado de las capas, también mientras otros pintan.",
     drawing: "Dibujando…",
     see_field: "Algo de lo elegido no es correcto; se indica en su campo.",
-    unsure: "Nadie ha confirmado el tamaño de este modelo: la escala de la figura puede ser errónea.",
+    unsure:
+      "Nadie ha confirmado el tamaño de este modelo: la escala de la figura puede ser errónea.",
     unsure_ask: "Pida a la curaduría que lo compruebe.",
     make: "Hacer la figura",
     making: "Se está haciendo la figura",
@@ -1629,7 +1827,8 @@ export const texts = {
     about: (stops, languages) => `${count(stops, "parada", "paradas")} · ${languages}`,
     edit: "Editar…",
     delete_title: (name) => `¿Eliminar la visita «${name}»?`,
-    delete_lead: "Se elimina para todos, y los enlaces de los quioscos que la muestran dejan de valer de inmediato. Esto no se puede deshacer.",
+    delete_lead:
+      "Se elimina para todos, y los enlaces de los quioscos que la muestran dejan de valer de inmediato. Esto no se puede deshacer.",
     new_title: "Nueva visita",
     edit_title: (name) => `La visita «${name}»`,
     name: "Nombre",
@@ -1643,12 +1842,14 @@ export const texts = {
     make_first: (language) => `Mostrar ${language} al principio`,
     language_remove: (language) => `Quitar ${language}`,
     language_remove_title: (language) => `¿Quitar ${language} de la visita?`,
-    language_remove_lead: "Lo que está escrito en ese idioma, en todas las paradas, se quita también.",
+    language_remove_lead:
+      "Lo que está escrito en ese idioma, en todas las paradas, se quita también.",
     language_remove_yes: "Quitar",
     stops: "Paradas",
     stops_lead: "Aquí se escribe lo que se ve y se lee en una parada, en cuanto haya una.",
     none_stops: "Aún no hay ninguna. Cada parada muestra una de las vistas guardadas.",
-    no_views: "Aún no hay ninguna vista guardada. Cierre esto, muestre en el modelo lo que se ha de ver y guárdelo con «Guardar esta vista…».",
+    no_views:
+      "Aún no hay ninguna vista guardada. Cierre esto, muestre en el modelo lo que se ha de ver y guárdelo con «Guardar esta vista…».",
     add_view: "Vista de la nueva parada",
     add: "Añadir una parada",
     remove: "Quitar la parada",
@@ -1677,7 +1878,8 @@ export const texts = {
     transition_takes: "El vuelo dura",
     swipe: "Capas para comparar",
     swipe_hint: "Con el dedo se pasa una sobre otra. Solo se ven las capas públicas.",
-    layer_names: "Nombres de estas capas, como los leen los visitantes. Se guardan en el acto con la capa.",
+    layer_names:
+      "Nombres de estas capas, como los leen los visitantes. Se guardan en el acto con la capa.",
     layer_name: (layer, language) => `${layer} en ${language}`,
     layer_add: "Añadir una capa",
     records: "Registros",
@@ -1700,7 +1902,8 @@ export const texts = {
       title_missing: "Dé a la parada un título en el primer idioma.",
     },
     wrong_seconds: (least, most) => `Segundos de ${format_count(least)} a ${format_count(most)}.`,
-    conflict: "Alguien cambió esta visita mientras tanto. No se pierde nada de lo que escribió: guarde otra vez para poner lo suyo en su lugar.",
+    conflict:
+      "Alguien cambió esta visita mientras tanto. No se pierde nada de lo que escribió: guarde otra vez para poner lo suyo en su lugar.",
     take_theirs: "Mostrar lo otro en su lugar",
     theirs_title: "¿Mostrar lo que se guardó?",
     gone: "Esta visita fue eliminada mientras tanto. Guarde otra vez para crearla de nuevo.",
@@ -1723,7 +1926,8 @@ export const texts = {
     title: "Quioscos",
     title_of: (tour) => `Quioscos con «${tour}»`,
     lead: "Pantallas que muestran una visita mediante un enlace. Los enlaces nuevos se crean en la visita de un modelo.",
-    lead_of: "Quien abre un enlace así ve esta visita y lo que es público de su modelo, sin cuenta, y no cambia nada.",
+    lead_of:
+      "Quien abre un enlace así ve esta visita y lo que es público de su modelo, sin cuenta, y no cambia nada.",
     none: "No hay enlaces para quioscos.",
     none_of: "Aún no hay ningún enlace para esta visita.",
     new: "Nuevo enlace",
@@ -1734,12 +1938,20 @@ export const texts = {
     days_unit: "días",
     days_hint: "sin fin",
     days_lead: "Sin un número de días el enlace vale hasta que se revoque.",
-    days_wrong: (least, most) => `Un número entero de días de ${format_count(least)} a ${format_count(most)}, o nada.`,
+    days_wrong: (least, most) =>
+      `Un número entero de días de ${format_count(least)} a ${format_count(most)}, o nada.`,
     make: "Crear enlace",
     link: (name) => `Enlace para «${name}»`,
-    link_lead: "Ábralo una vez en el navegador de la pantalla. Solo se muestra ahora; si se pierde, se revoca y se crea otro.",
+    link_lead:
+      "Ábralo una vez en el navegador de la pantalla. Solo se muestra ahora; si se pierde, se revoca y se crea otro.",
     link_done: "Hecho",
-    states: { running: "en marcha", silent: "en silencio", unopened: "aún sin abrir", revoked: "revocado", expired: "caducado" },
+    states: {
+      running: "en marcha",
+      silent: "en silencio",
+      unopened: "aún sin abrir",
+      revoked: "revocado",
+      expired: "caducado",
+    },
     asked: "debe recargar",
     seen: (when) => `Última señal: ${when}`,
     never_seen: "Nunca dio señal",
@@ -1753,7 +1965,8 @@ export const texts = {
     revoke: "Revocar…",
     revoke_of: (name) => `Revocar el enlace de ${name}`,
     revoke_title: (name) => `¿Revocar el enlace de «${name}»?`,
-    revoke_lead: "La pantalla deja de mostrar nada de inmediato, y el enlace ya no vale. Esto no se puede deshacer.",
+    revoke_lead:
+      "La pantalla deja de mostrar nada de inmediato, y el enlace ya no vale. Esto no se puede deshacer.",
     revoke_yes: "Revocar",
   },
 
@@ -1798,7 +2011,8 @@ export const texts = {
     nothing: (layer) => `fuera de ${layer}`,
     empty: "No hay nada pintado en ninguna de las dos capas.",
     sum: "Todo",
-    cut: (n) => `Se muestran las primeras ${format_count(n)} filas y columnas. La copia y los archivos las tienen todas.`,
+    cut: (n) =>
+      `Se muestran las primeras ${format_count(n)} filas y columnas. La copia y los archivos las tienen todas.`,
   },
 
   column_filter: {
@@ -1806,13 +2020,20 @@ export const texts = {
     open: (column) => `Filtrar por ${column}`,
     open_on: (column) => `Filtrar por ${column} (activo)`,
     show: "Mostrar registros",
-    kinds: { one_of: "con uno de estos valores", range: "en un intervalo", contains: "cuyo texto contiene", filled: "con algún valor", empty: "sin valor" },
+    kinds: {
+      one_of: "con uno de estos valores",
+      range: "en un intervalo",
+      contains: "cuyo texto contiene",
+      filled: "con algún valor",
+      empty: "sin valor",
+    },
     remove: "Quitar",
     apply: "Filtrar",
     search: "Buscar valores",
     no_value: "sin valor",
     more: (n) => `${format_count(n)} valores más: búsquelos.`,
-    counted: (n, all) => `Contado en los primeros ${format_count(n)} de ${format_count(all)} registros.`,
+    counted: (n, all) =>
+      `Contado en los primeros ${format_count(n)} de ${format_count(all)} registros.`,
     from: "Desde",
     to: "Hasta",
     contains: "Texto",
@@ -1836,20 +2057,32 @@ export const texts = {
       ["Tocar al girar o mover", "el registro que hay allí"],
       ["Dos dedos", "mover, separar para acercarse, torcer para girar"],
       ["Tocar con Medir", "un lugar desde o hasta el que se mide; arrastrar gira el modelo"],
-      ["Lápiz", "la herramienta elegida; mientras toca o está cerca, la mano y los dedos no hacen nada"],
+      [
+        "Lápiz",
+        "la herramienta elegida; mientras toca o está cerca, la mano y los dedos no hacen nada",
+      ],
       ["Un dedo, una vez usado un lápiz", "gira el modelo, aunque la herramienta pinte o dibuje"],
     ],
     key_rows: [
       ["B · E · I", "pincel · borrador · tomar un valor"],
       ["A · L · G", "polígono · lazo · rellenar lo conectado"],
       ["D · S", "línea, con su longitud al dibujar · punto, para el registro que se pinta"],
-      ["Entrar · Retroceso · Escape", "cerrar el polígono, terminar la línea · quitar un vértice · abandonar"],
+      [
+        "Entrar · Retroceso · Escape",
+        "cerrar el polígono, terminar la línea · quitar un vértice · abandonar",
+      ],
       ["V · H", "girar · mover"],
       ["C y después un clic", "un comentario allí; Entrar: en el centro de la vista"],
       ["Ctrl + Entrar · Escape", "enviar · apartar el comentario que escribe; se conserva"],
-      ["M y después clics", "medir: en línea recta, por la superficie, áreas, perfil; otra vez M: un lugar en el centro; Entrar termina, Escape borra"],
+      [
+        "M y después clics",
+        "medir: en línea recta, por la superficie, áreas, perfil; otra vez M: un lugar en el centro; Entrar termina, Escape borra",
+      ],
       ["[ · ]", "pincel más estrecho · más ancho"],
-      ["Ctrl + Z · Ctrl + Mayús + Z", "deshacer · rehacer sus trazos; con las herramientas de líneas y puntos, lo que dibujó"],
+      [
+        "Ctrl + Z · Ctrl + Mayús + Z",
+        "deshacer · rehacer sus trazos; con las herramientas de líneas y puntos, lo que dibujó",
+      ],
       ["Flechas", "girar (con Mayús: mover)"],
       ["+ · −", "más cerca · más lejos"],
       ["Inicio", "modelo entero"],
@@ -1860,27 +2093,57 @@ export const texts = {
       ["N · Mayús + N", "siguiente · anterior de las vistas guardadas"],
       ["T", "tabla de registros de la capa, abrir o cerrar"],
       ["F", "figura a escala: lo que ve, como dibujo en PDF, SVG, PNG o TIFF"],
-      ["Escape", "dejar de seguir la vista de alguien; también lo termina cualquier movimiento propio"],
-      ["I y después un clic", "en una capa con registros: la ficha del registro de allí, y el pincel lo pinta"],
+      [
+        "Escape",
+        "dejar de seguir la vista de alguien; también lo termina cualquier movimiento propio",
+      ],
+      [
+        "I y después un clic",
+        "en una capa con registros: la ficha del registro de allí, y el pincel lo pinta",
+      ],
       ["?", "esta ayuda"],
     ],
     table: "En la tabla de registros",
     table_rows: [
       ["Flechas · Página · Inicio · Fin", "de celda en celda; con Ctrl: primera, última"],
       ["Entrar, F2 u otro clic", "escribir en la celda; en la clave: el formulario del registro"],
-      ["Letras y cifras", "se escriben en celdas de texto; las cifras, también en números, fechas y horas; en las demás son las teclas de la página, como T, D y V; después de Escape, siempre"],
-      ["El embudo de una columna", "muestra solo registros con ciertos valores, en un intervalo, con un texto o sin valor; la condición queda en el campo del filtro"],
-      ["Entrar · Tab · Escape", "al escribir: abajo · celda siguiente · como estaba; Mayús + Entrar: línea siguiente"],
+      [
+        "Letras y cifras",
+        "se escriben en celdas de texto; las cifras, también en números, fechas y horas; en las demás son las teclas de la página, como T, D y V; después de Escape, siempre",
+      ],
+      [
+        "El embudo de una columna",
+        "muestra solo registros con ciertos valores, en un intervalo, con un texto o sin valor; la condición queda en el campo del filtro",
+      ],
+      [
+        "Entrar · Tab · Escape",
+        "al escribir: abajo · celda siguiente · como estaba; Mayús + Entrar: línea siguiente",
+      ],
       ["Supr", "vaciar la celda"],
-      ["Espacio, o clic en una clave", "elegir la fila; con Ctrl: más, con Mayús: todas las intermedias"],
+      [
+        "Espacio, o clic en una clave",
+        "elegir la fila; con Ctrl: más, con Mayús: todas las intermedias",
+      ],
       ["Ctrl + Z · Ctrl + Mayús + Z", "deshacer · rehacer sus cambios de la tabla"],
-      ["⋯ de una columna → Cambiar", "cómo se llama, también en otros idiomas: cada persona ve el nombre en su idioma"],
-      ["Soltar un CSV", "dice línea por línea qué cambiaría y después lo importa; en una lista de términos, CSV y SKOS son términos para ella"],
+      [
+        "⋯ de una columna → Cambiar",
+        "cómo se llama, también en otros idiomas: cada persona ve el nombre en su idioma",
+      ],
+      [
+        "Soltar un CSV",
+        "dice línea por línea qué cambiaría y después lo importa; en una lista de términos, CSV y SKOS son términos para ella",
+      ],
     ],
     brush: "Qué alcanza el pincel",
     brush_rows: [
-      ["Forma", "redonda, cuadrada o cualquier imagen: + o soltar un PNG o JPEG junto a las formas; todas las personas del servidor las comparten"],
-      ["Omitir superficies inclinadas", "deja fuera lo que se mira demasiado de lado para verlo bien; acérquese o gire y píntelo entonces"],
+      [
+        "Forma",
+        "redonda, cuadrada o cualquier imagen: + o soltar un PNG o JPEG junto a las formas; todas las personas del servidor las comparten",
+      ],
+      [
+        "Omitir superficies inclinadas",
+        "deja fuera lo que se mira demasiado de lado para verlo bien; acérquese o gire y píntelo entonces",
+      ],
       ["También lo oculto detrás", "pinta a través del objeto"],
     ],
     terms: "En una lista de términos",
@@ -1893,15 +2156,42 @@ export const texts = {
     ],
     layers: "Capas sin pincel",
     layer_rows: [
-      ["Capas ⋯ → De una plantilla", "listas de términos, tablas y capas para piedra, pintura mural, excavación y tratamiento"],
-      ["Capas ⋯ → Una lista de términos de un archivo", "CSV o SKOS (Turtle, RDF/XML), con lo que haría antes de escribirse; otra vez hacia una lista, o de ella, en el ⋯ de su tabla"],
-      ["⋯ de una capa → Pintar de un archivo", "lecturas, mapas, shapefiles, GeoTIFF y planos escaneados; números para los vértices del escaneo"],
-      ["Vista → Imágenes de la superficie → Añadir una ortofoto", "una imagen colocada sobre la superficie a lo largo de un eje"],
-      ["⋯ de una capa → Áreas", "de mediciones, un histograma, con tiradores (o flechas) para el rango de los colores"],
-      ["Capa nueva → De una expresión", "valores calculados de otras capas, sus registros y la superficie; completa nombres al escribir"],
-      ["Capa nueva → De la geometría", "valores calculados de la malla; se deshacen como los trazos"],
-      ["Capas ⋯ → Traer capas", "lo pintado en un escaneo anterior del objeto, con un informe de lo perdido"],
-      ["Vista → Visitas", "paradas de vistas guardadas con textos en varios idiomas, para una pantalla de una exposición; enlaces para esas pantallas en ⋯ de la visita"],
+      [
+        "Capas ⋯ → De una plantilla",
+        "listas de términos, tablas y capas para piedra, pintura mural, excavación y tratamiento",
+      ],
+      [
+        "Capas ⋯ → Una lista de términos de un archivo",
+        "CSV o SKOS (Turtle, RDF/XML), con lo que haría antes de escribirse; otra vez hacia una lista, o de ella, en el ⋯ de su tabla",
+      ],
+      [
+        "⋯ de una capa → Pintar de un archivo",
+        "lecturas, mapas, shapefiles, GeoTIFF y planos escaneados; números para los vértices del escaneo",
+      ],
+      [
+        "Vista → Imágenes de la superficie → Añadir una ortofoto",
+        "una imagen colocada sobre la superficie a lo largo de un eje",
+      ],
+      [
+        "⋯ de una capa → Áreas",
+        "de mediciones, un histograma, con tiradores (o flechas) para el rango de los colores",
+      ],
+      [
+        "Capa nueva → De una expresión",
+        "valores calculados de otras capas, sus registros y la superficie; completa nombres al escribir",
+      ],
+      [
+        "Capa nueva → De la geometría",
+        "valores calculados de la malla; se deshacen como los trazos",
+      ],
+      [
+        "Capas ⋯ → Traer capas",
+        "lo pintado en un escaneo anterior del objeto, con un informe de lo perdido",
+      ],
+      [
+        "Vista → Visitas",
+        "paradas de vistas guardadas con textos en varios idiomas, para una pantalla de una exposición; enlaces para esas pantallas en ⋯ de la visita",
+      ],
     ],
   },
 
@@ -1915,29 +2205,37 @@ export const texts = {
     steps: {
       turn: {
         title: "Girar el modelo",
-        mouse: "Arrastre con el botón derecho del ratón; mientras esté elegida la herramienta Girar, también con el izquierdo. La rueda acerca.",
+        mouse:
+          "Arrastre con el botón derecho del ratón; mientras esté elegida la herramienta Girar, también con el izquierdo. La rueda acerca.",
         touch: "Arrastre con un dedo. Con dos dedos se mueve, se acerca y se rota.",
       },
       layers: {
         title: "Capas",
         way: "Este botón las muestra.",
-        paint: "Lo que se sabe está sobre la superficie, en capas. Elija aquella en la que va a pintar; su ojo la muestra y la oculta.",
+        paint:
+          "Lo que se sabe está sobre la superficie, en capas. Elija aquella en la que va a pintar; su ojo la muestra y la oculta.",
         look: "Lo que se sabe está sobre la superficie, en capas. Elija una para ver su leyenda; su ojo la muestra y la oculta.",
       },
       brush: {
         title: "Pintar",
-        mouse: "Tome el pincel (B) y arrastre sobre el modelo. [ y ] lo hacen más estrecho y más ancho. Cada trazo se guarda en el acto, y los demás lo ven mientras usted pinta.",
-        touch: "Tome el pincel y pinte sobre el modelo con un dedo o un lápiz; dos dedos siguen moviéndolo. Cada trazo se guarda en el acto, y los demás lo ven mientras usted pinta.",
+        mouse:
+          "Tome el pincel (B) y arrastre sobre el modelo. [ y ] lo hacen más estrecho y más ancho. Cada trazo se guarda en el acto, y los demás lo ven mientras usted pinta.",
+        touch:
+          "Tome el pincel y pinte sobre el modelo con un dedo o un lápiz; dos dedos siguen moviéndolo. Cada trazo se guarda en el acto, y los demás lo ven mientras usted pinta.",
       },
       undo: {
         title: "Deshacer",
-        mouse: "Deshacer (Ctrl + Z) retira su propio último trazo en la capa, también mañana. Lo que pintaron los demás se queda.",
-        touch: "Deshacer retira su propio último trazo en la capa, también mañana. Lo que pintaron los demás se queda.",
+        mouse:
+          "Deshacer (Ctrl + Z) retira su propio último trazo en la capa, también mañana. Lo que pintaron los demás se queda.",
+        touch:
+          "Deshacer retira su propio último trazo en la capa, también mañana. Lo que pintaron los demás se queda.",
       },
       values: {
         title: "¿Qué hay aquí?",
-        mouse: "Deje el ratón quieto sobre el modelo: abajo a la derecha se lee lo que las capas contienen allí. Con esta herramienta (I), o con un clic al girar, un registro muestra su ficha.",
-        touch: "Tome esta herramienta y toque el modelo: se le dice lo que la capa elegida contiene allí, y un registro muestra su ficha.",
+        mouse:
+          "Deje el ratón quieto sobre el modelo: abajo a la derecha se lee lo que las capas contienen allí. Con esta herramienta (I), o con un clic al girar, un registro muestra su ficha.",
+        touch:
+          "Tome esta herramienta y toque el modelo: se le dice lo que la capa elegida contiene allí, y un registro muestra su ficha.",
       },
       share: {
         title: "Mostrar a otros, encontrar ayuda",
@@ -1952,28 +2250,47 @@ export const texts = {
     language: "Idioma",
     as_browser: "Como el navegador",
     theme: "Tema",
-    themes: { system: "Como el sistema", light: "Claro", dark: "Oscuro", contrast: "Alto contraste" },
+    themes: {
+      system: "Como el sistema",
+      light: "Claro",
+      dark: "Oscuro",
+      contrast: "Alto contraste",
+    },
     reload_title: "¿Cambiar el idioma ahora?",
-    reload_lead: (n) => `La página se carga de nuevo. ${changes(n)} todavía sin guardar ${plural(n, "se conserva en este navegador y se reenvía", "se conservan en este navegador y se reenvían")} después.`,
+    reload_lead: (n) =>
+      `La página se carga de nuevo. ${changes(n)} todavía sin guardar ${plural(n, "se conserva en este navegador y se reenvía", "se conservan en este navegador y se reenvían")} después.`,
     reload: "Cambiar el idioma",
   },
 
   calls: {
-    unreachable: ["No se puede llegar al servidor", "Compruebe que el servidor funciona y que usted está en su red, e inténtelo de nuevo."],
+    unreachable: [
+      "No se puede llegar al servidor",
+      "Compruebe que el servidor funciona y que usted está en su red, e inténtelo de nuevo.",
+    ],
     statuses: {
       401: ["Sin sesión", "Inicie sesión de nuevo."],
       403: ["No permitido", "Su cuenta no puede hacer esto. Consulte a quien posee el servidor."],
       404: ["No encontrado", "Puede que se haya eliminado. Vuelva a cargar la página."],
-      412: ["Cambiado por otra persona", "Alguien cambió esto al mismo tiempo. Mírelo otra vez y repita su cambio."],
+      412: [
+        "Cambiado por otra persona",
+        "Alguien cambió esto al mismo tiempo. Mírelo otra vez y repita su cambio.",
+      ],
       413: ["Demasiado grande", "El archivo o mensaje es mayor de lo que el servidor acepta."],
       429: ["Demasiado rápido", "El servidor pide una pausa. Inténtelo de nuevo en un momento."],
-      502: ["Respuesta inesperada", "No se pudo leer la respuesta del servidor. Vuelva a cargar la página."],
-      503: ["El servidor no está listo", "Está arrancando o le falta su base de datos. Inténtelo de nuevo en un momento."],
+      502: [
+        "Respuesta inesperada",
+        "No se pudo leer la respuesta del servidor. Vuelva a cargar la página.",
+      ],
+      503: [
+        "El servidor no está listo",
+        "Está arrancando o le falta su base de datos. Inténtelo de nuevo en un momento.",
+      ],
     },
     other_status: (status) => `El servidor respondió ${status}`,
     other_status_detail: "Inténtelo de nuevo; si sigue así, avise a quien administra el servidor.",
     unreadable: "El servidor envió algo que esta página no puede leer",
-    unreadable_detail: (what) => `${what}. Vuelva a cargar la página; si sigue así, la página y el servidor son de versiones distintas.`,
+    unreadable_detail: (what) =>
+      `${what}. Vuelva a cargar la página; si sigue así, la página y el servidor son de versiones distintas.`,
   },
 
   problems: {
