@@ -428,7 +428,7 @@ describe("a face that is asked for", () => {
     });
     const host = {
       ...navigator,
-      tap: (sample: { x: number; y: number }) => void pick.take_at(sample as never),
+      tap: (sample: { x: number; y: number }) => void pick.take_at(sample),
       take_in_middle: () => pick.take_in_middle(),
       give_up: () => pick.give_up(),
     };
@@ -442,7 +442,7 @@ describe("a face that is asked for", () => {
     );
   });
   const tap = (x: number, y: number): void => {
-    tools.down({ x, y } as never);
+    tools.down({ x, y });
     tools.up();
   };
 
@@ -470,8 +470,8 @@ describe("a face that is asked for", () => {
   it("is looked for with drags, which turn the model, and taken from the middle by a key", async () => {
     surface([0, -1, 0]);
     const found = pick.ask();
-    tools.down({ x: 100, y: 100 } as never);
-    tools.move([{ x: 160, y: 100 } as never]);
+    tools.down({ x: 100, y: 100 });
+    tools.move([{ x: 160, y: 100 }]);
     tools.up();
     expect([turned, calls.length, tools.active]).toEqual([1, 0, "face"]);
     expect(tools.key("Enter")).toBe(true);

@@ -7,8 +7,13 @@ const scan: Scan = {
   files: [{ file: new File(["ply"], "mesh.ply"), path: "mesh.ply" }],
   name: "a/mesh",
 };
-const job = (state: Job["state"], more: Partial<Job> = {}): Job =>
-  ({ id: 7, state, progress: 0, message: "", ...more }) as Job;
+const job = (state: Job["state"], more: Partial<Job> = {}): Job => ({
+  id: 7,
+  state,
+  progress: 0,
+  message: "",
+  ...more,
+});
 const problem = (status: number): NonNullable<Job["problem"]> => ({
   status,
   title: "Server was restarted",

@@ -2,8 +2,11 @@ import { describe, expect, it } from "vitest";
 import { crs_in_doubt, crs_query, kNotAsked } from "../src/app/map-crs";
 import type { MapContents, Model } from "../src/core/types";
 
-const map = (crs?: string): MapContents =>
-  ({ kind: "polygons", format: "geojson", ...(crs ? { crs } : {}) }) as MapContents;
+const map = (crs?: string): MapContents => ({
+  kind: "polygons",
+  format: "geojson",
+  ...(crs ? { crs } : {}),
+});
 const model = (crs: string): Model => ({ crs }) as Model;
 
 describe("the coordinate system of a map", () => {

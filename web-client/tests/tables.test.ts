@@ -555,7 +555,7 @@ describe("the card of a record", () => {
       values: { finds: { valid: false } },
     } as unknown as Picked);
     expect(tables.card).toBeNull();
-    tables.show_card({ ...layer, table: undefined } as unknown as Layer, picked(3));
+    tables.show_card({ ...layer, table: undefined }, picked(3));
     expect(tables.card).toBeNull();
   });
 });

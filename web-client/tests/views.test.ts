@@ -387,7 +387,7 @@ function expect_same({ camera, ...rest }: ViewContent, then: ViewContent | View)
 const sent = (): ViewContent["layers"] =>
   [...(socket().of("layers").at(-1)?.layers ?? [])].sort(
     (a, b) => Number(a.layer) - Number(b.layer),
-  ) as never;
+  );
 
 describe("going to a view", () => {
   it("shows what was kept, whatever was set up before, and leads back to that", async () => {

@@ -63,7 +63,7 @@ export function column_changes(column: Column, wanted: ColumnWanted): ColumnPatc
       ? !same_labels(wanted.labels, column.labels)
       : !same_value(value as CellValue, (now[member] ?? null) as CellValue),
   );
-  return Object.fromEntries(entries) as ColumnPatch;
+  return Object.fromEntries(entries);
 }
 
 /** In whatever order. */

@@ -136,15 +136,14 @@ export class StrataColumnFilter extends LitElement {
   override connectedCallback(): void {
     super.connectedCallback();
     this.take(
-      chosen_in(this.filter, this.column) ??
-        ({
-          is: filter_kinds(this.column)[0]!,
-          values: [],
-          empty: false,
-          from: "",
-          to: "",
-          text: "",
-        } as ColumnFilter),
+      chosen_in(this.filter, this.column) ?? {
+        is: filter_kinds(this.column)[0]!,
+        values: [],
+        empty: false,
+        from: "",
+        to: "",
+        text: "",
+      },
     );
     void this.count();
   }

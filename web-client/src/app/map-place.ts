@@ -49,7 +49,7 @@ export function found_line(contents: MapContents): TemplateResult {
     ${parts.join(" · ")}${
       bounds
         ? html`<br /><span class="hint numeric"
-            >${words.bounds(number(bounds[0]!), number(bounds[2]!), number(bounds[1]!), number(bounds[3]!))}</span
+            >${words.bounds(number(bounds[0]), number(bounds[2]), number(bounds[1]), number(bounds[3]))}</span
           >`
         : nothing
     }

@@ -127,7 +127,7 @@ export class MarkDrawing {
     const seen_by = this.host_.view.camera.message();
     this.queue(async () => {
       const { hit, position } = await this.api_.pick(`${target.model.id}`, seen_by, [x, y]);
-      await this.add(target, hit && position ? [[position as MarkPlace]] : [], words.point_set);
+      await this.add(target, hit && position ? [[position]] : [], words.point_set);
     });
   }
 
@@ -178,9 +178,7 @@ export class MarkDrawing {
       step_mm: step * metres_per(unit) * 1000,
       layers: [],
     });
-    return samples.map(({ point }) =>
-      point.hit && point.position ? (point.position as MarkPlace) : null,
-    );
+    return samples.map(({ point }) => (point.hit && point.position ? point.position : null));
   }
   private measures(): Measures {
     return {

@@ -414,9 +414,7 @@ export class Measuring {
 
   private async look_along(path: readonly Point[]): Promise<readonly (MarkPlace | null)[]> {
     const { samples } = await this.api_.profile(this.host_.model()!.id, this.seen_by_!, path);
-    return samples.map(({ point }) =>
-      point.hit && point.position ? (point.position as MarkPlace) : null,
-    );
+    return samples.map(({ point }) => (point.hit && point.position ? point.position : null));
   }
 
   private metres_along(places: readonly (MarkPlace | null)[]): number {

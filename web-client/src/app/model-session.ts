@@ -7,7 +7,7 @@
 // `figures` what is drawn to scale, `face` the one that is asked for. Elements subscribe and draw
 // themselves from their state; they change it only through their methods.
 
-import { Api, ApiError, type Versioned } from "../core/api";
+import { type Api, ApiError, type Versioned } from "../core/api";
 import {
   Connection,
   type ConnectionState,

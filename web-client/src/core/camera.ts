@@ -3,17 +3,7 @@
 // left, y down.
 
 import type { Plane } from "./protocol.gen";
-import {
-  add,
-  cross,
-  dot,
-  length,
-  scale,
-  subtract,
-  transform,
-  type Mat4,
-  type Vec3,
-} from "./vector";
+import { add, cross, dot, length, scale, subtract, transform, type Vec3 } from "./vector";
 
 export type UpAxis = "x" | "y" | "z" | "-x" | "-y" | "-z";
 export type StandardView = "front" | "back" | "left" | "right" | "top" | "bottom";
@@ -346,7 +336,7 @@ export class OrbitCamera {
   /** Window position of a world point, or null behind the eye. */
   project(point: Vec3): { x: number; y: number; depth: number } | null {
     const seen = transform(this.view_matrix(), [point[0], point[1], point[2], 1]);
-    const clip = transform(this.projection_matrix() as Mat4, seen);
+    const clip = transform(this.projection_matrix(), seen);
     if (clip[3] <= 0) return null;
     return {
       x: (clip[0] / clip[3] / 2 + 0.5) * this.width,

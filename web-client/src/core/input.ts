@@ -124,7 +124,7 @@ export class StageInput {
     options?: AddEventListenerOptions,
   ): void {
     this.element_.addEventListener(name, listener as EventListener, options);
-    this.listeners_.push([name, listener as (event: never) => void, options]);
+    this.listeners_.push([name, listener, options]);
   }
 
   private css_position(event: { clientX: number; clientY: number }): PointerSample {

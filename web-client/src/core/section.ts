@@ -103,7 +103,7 @@ export function with_box_side(
   axis: number,
   share: number,
 ): SectionChoice {
-  const box = { min: [...choice.box.min], max: [...choice.box.max] } as SectionChoice["box"];
+  const box: SectionChoice["box"] = { min: [...choice.box.min], max: [...choice.box.max] };
   box[side][axis] =
     side === "min"
       ? Math.max(0, Math.min(share, box.max[axis]! - kThinnestBox))

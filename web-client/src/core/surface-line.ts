@@ -58,7 +58,7 @@ export function steps_along(path: readonly Point[], samples: readonly ProfileSam
   });
   return samples.map(({ point: { hit, position, normal } }, index) => ({
     at: at[Math.min(index, at.length - 1)]!,
-    place: hit && position ? (position as MarkPlace) : null,
+    place: hit && position ? position : null,
     normal: hit && normal ? normal : null,
   }));
 }

@@ -25,7 +25,7 @@ const values_in_cell = (value: CellValue | undefined): FilterValue[] =>
     ? []
     : Array.isArray(value)
       ? value.filter((each): each is number => typeof each === "number")
-      : [value as FilterValue];
+      : [value];
 
 export async function count_values(
   ask: (query: RecordQuery) => Promise<RecordList>,

@@ -2,7 +2,7 @@
 // record, and whether somebody is there. Elements subscribe and draw themselves from its state;
 // they change it only through its methods.
 
-import { Api, ApiError } from "../core/api";
+import { type Api, ApiError } from "../core/api";
 import type { SocketLike } from "../core/connection";
 import type { KioskSelf, Picked, Tour, View } from "../core/protocol.gen";
 import { AttractLoop } from "./attract";
