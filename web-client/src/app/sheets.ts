@@ -1,7 +1,7 @@
 // Two sheets that only tell: help, and what is known about the model.
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
-import { customElement, property, query } from "lit/decorators.js";
+import { customElement, property, query, state } from "lit/decorators.js";
 import { up_name } from "../core/camera";
 import { format_count } from "../core/locale";
 import {
@@ -12,6 +12,7 @@ import {
   format_size,
   metres_per,
 } from "../core/measure";
+import type { ServerVersion } from "../core/protocol.gen";
 import { may_download, type Model, type Role } from "../core/types";
 import "./dialog";
 import type { StrataDialog } from "./dialog";
@@ -54,6 +55,10 @@ const sheet_styles = css`
     padding-bottom: 0.4375rem;
     break-inside: avoid;
   }
+  .version {
+    margin: 1.25rem 0 0;
+    color: var(--ink-soft);
+  }
   .keys dt {
     color: var(--ink);
     font-weight: 600;
@@ -78,6 +83,23 @@ export class StrataHelpSheet extends LitElement {
 
   static override styles = [shared_styles, sheet_styles];
 
+  /** Of the server, which brings the page. Empty until it has answered. */
+  @state() private version_ = "";
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    void this.read_version();
+  }
+
+  private async read_version(): Promise<void> {
+    try {
+      const answer = await fetch("/api/v1/version");
+      if (answer.ok) this.version_ = ((await answer.json()) as ServerVersion).version;
+    } catch {
+      // The help is useful without it.
+    }
+  }
+
   override render(): TemplateResult {
     const words = texts.help;
     const part = (title: string, rows: readonly (readonly [string, string])[]): TemplateResult =>
@@ -90,6 +112,7 @@ export class StrataHelpSheet extends LitElement {
         ${has_fingers_only() ? nothing : part(words.mouse, words.mouse_rows)} ${part(words.touch, words.touch_rows)} ${part(words.keys, words.key_rows)}
         ${part(words.brush, words.brush_rows)} ${part(words.terms, words.terms_rows)} ${part(words.table, words.table_rows)} ${part(words.layers, words.layer_rows)}
       </div>
+      ${this.version_ ? html`<p class="version">Strata ${this.version_}</p>` : nothing}
       <button slot="actions" @click=${this.show_tour}>${texts.tour.again}</button>
     </strata-dialog>`;
   }
