@@ -17,6 +17,14 @@ Response readiness(const RouteContext& context) {
   return json_response({{"ready", ready}, {"reasons", reasons}}, ready ? 200 : 503);
 }
 
+// With the tag of its bytes; 304 to a client that has them.
+Response revalidated(Response response, const Request& request) {
+  const auto tag = tag_of_body(response).value_or("");
+  response.with("ETag", tag).with("Cache-Control", "no-cache");
+  return names_tag(request.header("if-none-match"), tag) ? not_modified(std::move(response))
+                                                         : std::move(response);
+}
+
 Result<Response> contract(const RouteContext& context, const Request& request) {
   std::ifstream file(context.options.protocol_dir / "openapi.json", std::ios::binary);
   if (!file)
@@ -24,12 +32,7 @@ Result<Response> contract(const RouteContext& context, const Request& request) {
                 "openapi.json is not part of this installation.");
   std::ostringstream text;
   text << file.rdbuf();
-  Response response = text_response(std::move(text).str(), "application/json");
-  const auto tag = tag_of_body(response);
-  response.with("ETag", tag.value_or("")).with("Cache-Control", "no-cache");
-  return names_tag(request.header("if-none-match"), tag.value_or(""))
-             ? not_modified(std::move(response))
-             : response;
+  return revalidated(text_response(std::move(text).str(), "application/json"), request);
 }
 
 }  // namespace
@@ -45,8 +48,8 @@ void add_system_routes(Router& router, const RouteContext& context) {
     return text_response("ok\n", "text/plain; charset=utf-8");
   });
   open("/readyz", [&context](const Request&) -> Result<Response> { return readiness(context); });
-  open("/api/v1/version", [](const Request&) -> Result<Response> {
-    return json_response({{"version", version()}});
+  open("/api/v1/version", [](const Request& request) -> Result<Response> {
+    return revalidated(json_response({{"version", version()}}), request);
   });
   open("/metrics", [&context](const Request&) -> Result<Response> {
     return text_response(

@@ -3,6 +3,7 @@
 import concurrent.futures
 import json
 import os
+import subprocess
 import sys
 import uuid
 
@@ -626,8 +627,16 @@ def check_sign_in(server):
             assert answer.status in (401, 431) and (
                 answer.status == 401 or len(str(token)) > 4000
             ), (method, path, answer)
-    for path in ("//livez", "//readyz", "//api/v1/openapi.json", "//"):
+    for path in ("//livez", "//readyz", "//api/v1/openapi.json", "//problems", "//"):
         assert server.get(path, token=False).status == 200, path
+    version = server.get("/version", token=False)
+    told = subprocess.run(
+        [os.environ["STRATA_BINARY"], "--version"], capture_output=True, text=True, check=True
+    )
+    assert told.stdout == f"strata {version.json()['version']}\n", (told.stdout, version)
+    missing = server.get("/models/nowhere").json()
+    page = server.get("//problems", token=False).body.decode()
+    assert missing["type"] == "/problems#not_found" and 'id="not_found"' in page, missing
     # The cookie is for this server's own page only.
     login = server.post(
         "/login", {"token": server.token}, token=False, headers={"Origin": server.url}
