@@ -28,8 +28,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   demand(facts.orientation >= 1 && facts.orientation <= 8);
   const auto small = strata::make_thumbnail(bytes, kSide, kLimits);
   if (!small) {
-    demand(small.error().code == ErrorCode::unsupported ||
-           small.error().code == ErrorCode::invalid);
+    demand(small.error().code == strata::ErrorCode::unsupported ||
+           small.error().code == strata::ErrorCode::invalid);
     return 0;
   }
   demand(type == "image/jpeg" || type == "image/png");

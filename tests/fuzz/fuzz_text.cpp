@@ -11,6 +11,7 @@
 #include "core/uuid.h"
 #include "net/http_types.h"
 #include "net/origin.h"
+#include "net/page.h"
 #include "net/point_text.h"
 #include "query/color_keys.h"
 #include "query/readings.h"
