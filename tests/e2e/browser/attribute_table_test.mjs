@@ -109,6 +109,15 @@ try {
     table: "units",
     resolution: 2048,
   });
+  // The names of the records to choose from come only after something was typed.
+  let let_names_go;
+  const typed = new Promise((resolve) => (let_names_go = resolve));
+  const are_names = (url) =>
+    url.pathname.endsWith("/records") && url.searchParams.get("limit") === "1000";
+  await page.route(are_names, async (route) => {
+    await typed;
+    await route.continue();
+  });
   await page.goto(server.link);
   await page.getByRole("link", { name: /Demo pot/ }).click();
   await browser.drawn();
@@ -148,6 +157,7 @@ try {
   await stored(1, "depth", 2.5);
   await write(1, "Note", "Charcoal", "Tab"); // on to the next cell, which is a relation
   await page.keyboard.type("SU 9999");
+  let_names_go();
   await panel.getByRole("option", { name: /SU 9999/ }).waitFor();
   await shot("table-relation");
   await page.keyboard.press("Enter");
@@ -157,6 +167,7 @@ try {
   await page.keyboard.press("Enter");
   await stored(1, "note", "Charcoal");
   await stored(1, "above", [3, 9999]);
+  await page.unroute(are_names);
   await cell(1, "Above").getByText("SU 3, SU 9999").waitFor();
   await write(1, "Dug", "02292024");
   await stored(1, "dug", "2024-02-29");

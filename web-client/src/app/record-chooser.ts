@@ -182,6 +182,12 @@ export class StrataRecordChooser extends LitElement {
     return found.filter(({ key }) => key !== this.without);
   }
 
+  /** Records may come after what was typed: then Enter takes the first that fits. */
+  override willUpdate(): void {
+    if (this.open_ && this.text_ !== "" && this.at_ < 0)
+      this.at_ = this.found.findIndex(({ match }) => match);
+  }
+
   override render(): TemplateResult {
     const words = texts.tables;
     const found = this.open_ ? this.found : [];
