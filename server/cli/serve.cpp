@@ -11,7 +11,7 @@
 #include "cli/open_database.h"
 #include "core/log.h"
 #include "jobs/job_queue.h"
-#include "net/server.h"
+#include "net/transport/server.h"
 #include "render/renderer.h"
 #include "room/room.h"
 #include "stream/jpeg_pool.h"

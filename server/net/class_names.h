@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "net/routes.h"
+#include "net/api/routes.h"
 
 // What the values of layers are called in tables that people read.
 namespace strata::net {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "net/layer_jobs.h"
+#include "net/api/layers/layer_jobs.h"
 
 namespace strata::net {
 

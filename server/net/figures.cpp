@@ -9,10 +9,10 @@
 #include "core/compass.h"
 #include "core/number_text.h"
 #include "core/uuid.h"
-#include "net/as_of.h"
-#include "net/at_field.h"
 #include "net/figure_legend.h"
-#include "net/view_wire.h"
+#include "net/serialization/as_of.h"
+#include "net/serialization/at_field.h"
+#include "net/serialization/view_wire.h"
 #include "store/named_parts.h"
 
 namespace strata::net {

@@ -3,9 +3,9 @@
 #include "figure/files.h"
 #include "figure/layout.h"
 #include "jobs/job_queue.h"
+#include "net/api/routes.h"
 #include "net/byte_budget.h"
-#include "net/routes.h"
-#include "net/wire.h"
+#include "net/serialization/wire.h"
 
 namespace strata::net {
 

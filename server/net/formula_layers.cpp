@@ -4,8 +4,8 @@
 #include <tuple>
 
 #include "jobs/shape_layer.h"
-#include "net/answer_book.h"
-#include "net/layer_jobs.h"
+#include "net/api/layers/layer_jobs.h"
+#include "net/http/answer_book.h"
 #include "query/expression_parser.h"
 #include "room/await.h"
 #include "room/expression_binding.h"

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/progress.h"
-#include "net/job_book.h"
-#include "net/routes.h"
+#include "net/api/routes.h"
+#include "net/http/job_book.h"
 
 namespace strata::net {
 

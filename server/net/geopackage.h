@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "net/feature_set.h"
-#include "net/http_types.h"
+#include "net/http/http_types.h"
 
 namespace strata::net {
 

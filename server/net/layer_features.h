@@ -1,7 +1,7 @@
 #pragma once
 
+#include "net/api/routes.h"
 #include "net/feature_set.h"
-#include "net/routes.h"
 #include "query/plane_outlines.h"
 
 namespace strata::net {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "net/api/routes.h"
 #include "net/byte_budget.h"
-#include "net/routes.h"
 
 namespace strata::net {
 

@@ -6,8 +6,8 @@
 
 #include "core/picture.h"
 #include "mesh/unpack.h"
-#include "net/digest.h"
-#include "net/upload.h"
+#include "net/http/digest.h"
+#include "net/http/upload.h"
 #include "query/map_tiff.h"
 #include "query/shapefile.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mesh/input_files.h"
-#include "net/http_types.h"
+#include "net/http/http_types.h"
 
 namespace strata::net {
 

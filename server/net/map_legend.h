@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "net/routes.h"
+#include "net/api/routes.h"
 #include "query/key_names.h"
 
 namespace strata::net {

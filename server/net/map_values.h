@@ -4,7 +4,7 @@
 #include <set>
 
 #include "net/byte_budget.h"
-#include "net/map_query.h"
+#include "net/serialization/map_query.h"
 #include "query/key_names.h"
 #include "query/map_features.h"
 #include "room/room.h"

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "jobs/transfer_marks.h"
-#include "net/table_events.h"
+#include "net/live/table_events.h"
 
 namespace strata::net {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "jobs/transfer.h"
-#include "net/routes.h"
+#include "net/api/routes.h"
 
 namespace strata::net {
 

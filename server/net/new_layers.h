@@ -1,6 +1,6 @@
 #pragma once
 
-#include "net/routes.h"
+#include "net/api/routes.h"
 
 namespace strata::net {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "net/live/table_events.h"
 #include "net/readable_area.h"
-#include "net/table_events.h"
 #include "room/await.h"
 
 namespace strata::net {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "net/routes.h"
+#include "net/api/routes.h"
 
 // What the keys of a table are on the surfaces of its project. Everything here may open rooms, and
 // blocks.

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "core/progress.h"
-#include "net/routes.h"
+#include "net/api/routes.h"
 
 namespace strata::net {
 

@@ -6,7 +6,7 @@
 
 #include "core/column_value.h"
 #include "core/csv.h"
-#include "net/http_types.h"
+#include "net/http/http_types.h"
 
 namespace strata::net {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "net/record_place.h"
+#include "net/serialization/record_place.h"
 #include "query/key_areas.h"
 
 namespace strata::net {

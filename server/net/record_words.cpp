@@ -5,7 +5,7 @@
 #include "core/column_value.h"
 #include "core/slug.h"
 #include "core/term_list.h"
-#include "net/http_types.h"
+#include "net/http/http_types.h"
 
 namespace strata::net {
 namespace {

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "net/http_types.h"
+#include "net/http/http_types.h"
 
 // Tables that people take into a spreadsheet.
 namespace strata::net {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "net/routes.h"
+#include "net/api/routes.h"
 
 // Who sees a layer or a column must see all that it is made of and coloured by, or what few people
 // see would show through. All of it blocks.

@@ -6,7 +6,7 @@
 
 #include "core/model.h"
 #include "core/table.h"
-#include "net/http_types.h"
+#include "net/http/http_types.h"
 #include "query/texel_samples.h"
 
 namespace strata::net {

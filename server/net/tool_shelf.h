@@ -3,7 +3,7 @@
 #include <map>
 #include <mutex>
 
-#include "net/wire.h"
+#include "net/serialization/wire.h"
 #include "store/store.h"
 
 namespace strata::net {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "net/routes.h"
+#include "net/api/routes.h"
 #include "query/vertex_colors.h"
 
 namespace strata::net {

@@ -12,7 +12,7 @@
 #include "bench/http_client.h"
 #include "jobs/import_job.h"
 #include "jobs/job_queue.h"
-#include "net/server.h"
+#include "net/transport/server.h"
 #include "query/expression_parser.h"
 #include "strata_dirs.h"
 

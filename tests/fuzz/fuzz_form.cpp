@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "core/utf8.h"
-#include "net/form_files.h"
+#include "net/http/form_files.h"
 
 namespace {
 

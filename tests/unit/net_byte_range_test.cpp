@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "net/byte_range.h"
+#include "net/http/byte_range.h"
 
 namespace strata::net {
 namespace {

@@ -1,5 +1,5 @@
 // Content codings: what clients may ask for, and that every coded answer decodes to what it was.
-#include "net/compression.h"
+#include "net/http/compression.h"
 
 #include <brotli/decode.h>
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "net/compression.h"
-#include "net/entity_tags.h"
+#include "net/http/compression.h"
+#include "net/http/entity_tags.h"
 
 namespace strata::net {
 namespace {

@@ -8,19 +8,19 @@
 #include <thread>
 
 #include "core/uuid.h"
-#include "net/accept.h"
+#include "net/api/docs_page.h"
+#include "net/api/metrics.h"
 #include "net/byte_budget.h"
-#include "net/digest.h"
-#include "net/docs_page.h"
-#include "net/form_files.h"
-#include "net/http_types.h"
-#include "net/metrics.h"
-#include "net/origin.h"
-#include "net/point_text.h"
-#include "net/static_files.h"
-#include "net/token_bucket.h"
-#include "net/upload.h"
-#include "net/worker_pool.h"
+#include "net/http/accept.h"
+#include "net/http/digest.h"
+#include "net/http/form_files.h"
+#include "net/http/http_types.h"
+#include "net/http/origin.h"
+#include "net/http/static_files.h"
+#include "net/http/token_bucket.h"
+#include "net/http/upload.h"
+#include "net/http/worker_pool.h"
+#include "net/serialization/point_text.h"
 
 namespace strata::net {
 namespace {

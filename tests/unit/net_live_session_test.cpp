@@ -1,11 +1,11 @@
-#include "net/live_session.h"
+#include "net/live/live_session.h"
 
 #include <gtest/gtest.h>
 
 #include <deque>
 
-#include "net/auth.h"
-#include "net/live_sockets.h"
+#include "net/auth/auth.h"
+#include "net/live/live_sockets.h"
 #include "support/shapes.h"
 
 namespace strata::net {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "net/page.h"
+#include "net/http/page.h"
 
 namespace strata::net {
 namespace {

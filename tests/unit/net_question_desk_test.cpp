@@ -1,5 +1,5 @@
 // Where questions wait: few of one person at once, in turns, up to a bound.
-#include "net/question_desk.h"
+#include "net/http/question_desk.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "net/sign_in_gate.h"
+#include "net/auth/sign_in_gate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "net/wire.h"
+#include "net/serialization/wire.h"
 
 #include <gtest/gtest.h>
 

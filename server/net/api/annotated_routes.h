@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "net/api/routes.h"
+
+namespace strata::net {
+
+// Adds routes of things that everybody reads and annotators write, or a higher role: bodies are
+// JSON, and answers to changes are kept for repeats.
+class AnnotatedRoutes {
+ public:
+  using Answer = Result<Response> (*)(const RouteContext&, const Request&);
+
+  AnnotatedRoutes(Router& router, const RouteContext& context, Role least = Role::annotator)
+      : router_(router), context_(context), least_(least) {}
+
+  void read(std::string pattern, Answer answer, std::vector<std::string> query = {},
+            StateOf state = {}) {
+    router_.add({.method = Method::get,
+                 .pattern = std::move(pattern),
+                 .handler = handler(answer),
+                 .query = std::move(query),
+                 .state = std::move(state)});
+  }
+  void change(Method method, std::string pattern, Answer answer) {
+    const bool has_body = method != Method::remove;
+    router_.add({.method = method,
+                 .pattern = std::move(pattern),
+                 .handler = handler(answer),
+                 .role = least_,
+                 .body = has_body ? BodyKind::memory : BodyKind::none,
+                 .max_body = has_body ? context_.options.max_json_bytes : 0,
+                 .keeps_answer = true,
+                 .needs_version = method == Method::patch || method == Method::remove});
+  }
+
+ private:
+  Handler handler(Answer answer) const {
+    return answering(
+        [&context = context_, answer](const Request& request) { return answer(context, request); });
+  }
+
+  Router& router_;
+  const RouteContext& context_;
+  const Role least_;
+};
+
+}  // namespace strata::net

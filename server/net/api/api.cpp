@@ -1,0 +1,379 @@
+#include "net/api/api.h"
+
+#include <exception>
+
+#include "core/log.h"
+#include "core/no_such.h"
+#include "net/api/models/personal_view.h"
+#include "net/auth/kiosk_gate.h"
+#include "net/auth/project_gate.h"
+#include "net/auth/still_welcome.h"
+#include "net/http/accept.h"
+#include "net/http/compression.h"
+#include "net/http/entity_tags.h"
+#include "net/http/origin.h"
+#include "net/http/precondition.h"
+#include "net/serialization/people_wire.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::size_t kMaxKey = 255;
+constexpr std::size_t kMaxWaitingQueries = 256;
+
+bool changes(Method method) {
+  return method != Method::get && method != Method::head && method != Method::options;
+}
+
+Result<void> check_record(store::Store& store, std::int64_t project_id,
+                          const EditorBook::Record& record) {
+  const auto table = store.table(std::to_string(record.table), Role::viewer);
+  if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
+  if (!table || table->project_id != project_id)
+    return no_such("table", std::to_string(record.table), "table");
+  const auto missing = STRATA_TRY(store.missing_records(record.table, std::vector{record.key}));
+  if (!missing.empty()) return no_such("record", std::to_string(record.key), "key");
+  return {};
+}
+
+std::shared_ptr<LiveShared> make_shared_state(const ServerOptions& options, store::Store& store,
+                                              const std::shared_ptr<ToolShelf>& tools) {
+  auto shared = std::make_shared<LiveShared>();
+  shared->metrics = std::make_shared<Metrics>();
+  shared->strokes = std::make_shared<StrokeBook>();
+  shared->queries = std::make_shared<WorkerPool>(options.query_threads, kMaxWaitingQueries);
+  shared->sockets = std::make_shared<LiveSockets>();
+  shared->editors = std::make_shared<EditorBook>();
+  shared->store = &store;
+  shared->limits = options.live;
+  shared->find_tool = [tools](const std::string& ref) { return tools->find(ref); };
+  shared->check_record = [&store](std::int64_t project_id, const EditorBook::Record& record) {
+    return check_record(store, project_id, record);
+  };
+  return shared;
+}
+
+}  // namespace
+
+const Headers& security_headers() {
+  static const Headers headers = {
+      {"Content-Security-Policy",
+       "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"Cross-Origin-Resource-Policy", "same-origin"},
+      // What the pages do not use, nothing in them can.
+      {"Permissions-Policy",
+       "accelerometer=(), camera=(), display-capture=(), geolocation=(), gyroscope=(), magnetometer=(), "
+       "microphone=(), midi=(), payment=(), serial=(), usb=(), xr-spatial-tracking=()"},
+  };
+  return headers;
+}
+
+Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
+         render::Renderer& renderer, TemplateShelf templates)
+    : options_(std::move(options)),
+      own_names_(own_names(options_.host, options_.allowed_origins)),
+      store_(store),
+      rooms_(rooms),
+      auth_(store, options_.owner_token),
+      answers_(store),
+      edit_book_(store),
+      files_(options_.static_dir),
+      tools_(std::make_shared<ToolShelf>(store)),
+      templates_(std::move(templates)),
+      shared_(make_shared_state(options_, store, tools_)),
+      workers_(options_.worker_threads, options_.max_waiting_requests),
+      questions_({.threads = options_.question_threads, .waiting = options_.max_waiting_requests}),
+      bin_keeper_(store.bin(), std::chrono::days(options_.bin_days)),
+      context_{options_,          store,      rooms,      jobs,
+               renderer,          auth_,      edit_book_, *shared_->sockets,
+               *shared_->metrics, workers_,   questions_, *tools_,
+               templates_,        bin_keeper_},
+      recomputer_(context_) {
+  add_system_routes(router_, context_);
+  add_auth_routes(router_, context_);
+  add_people_routes(router_, context_);
+  add_personal_view_routes(router_, context_);
+  add_project_routes(router_, context_);
+  add_member_routes(router_, context_);
+  add_group_routes(router_, context_);
+  add_activity_routes(router_, context_);
+  add_bin_routes(router_, context_);
+  add_model_routes(router_, context_);
+  add_import_routes(router_, context_);
+  add_job_routes(router_, context_);
+  add_layer_routes(router_, context_);
+  add_look_routes(router_, context_);
+  add_comment_routes(router_, context_);
+  add_view_routes(router_, context_);
+  add_tour_routes(router_, context_);
+  add_kiosk_routes(router_, context_);
+  add_tool_routes(router_, context_);
+  add_table_routes(router_, context_);
+  add_term_routes(router_, context_);
+  add_template_routes(router_, context_);
+  add_record_routes(router_, context_);
+  add_attachment_routes(router_, context_);
+  add_attachment_match_routes(router_, context_);
+  add_edit_routes(router_, context_);
+  add_query_routes(router_, context_);
+  add_statistics_routes(router_, context_);
+  add_quantity_routes(router_, context_);
+  add_extent_routes(router_, context_);
+  add_feature_routes(router_, context_);
+  add_vertex_routes(router_, context_);
+  add_frame_routes(router_, context_);
+  add_figure_routes(router_, context_);
+  add_texel_routes(router_, context_);
+  add_shape_routes(router_, context_);
+  add_map_routes(router_, context_);
+  add_orthophoto_routes(router_, context_);
+  page_.pattern = "/";
+  page_.role = std::nullopt;
+  page_.any_query = true;
+  page_.handler = [this](const Request& request, const Respond& respond) {
+    respond(files_.serve(request));
+  };
+  live_.pattern = "/api/v1/models/{model}/live";
+}
+
+Api::~Api() { stop_workers(); }
+
+void Api::stop_workers() {
+  recomputer_.stop();
+  bin_keeper_.stop();
+  questions_.stop();
+  workers_.stop();
+  shared_->queries->stop();
+}
+
+const Route* Api::find_route(Request& request, Response& refusal) const {
+  if (auto own = check_host(request, own_names_); !own) {
+    refusal = problem_response(own.error());
+    return nullptr;
+  }
+  forget_codings(request);
+  const bool is_api = !request.segments.empty() && request.segments.front() == "api";
+  if (request.method == Method::unknown) {
+    refusal = problem_response({ErrorCode::method_not_allowed,
+                                "Unknown method",
+                                "Use GET, HEAD, POST, PUT, PATCH, DELETE or OPTIONS.",
+                                {}});
+    return nullptr;
+  }
+  if (is_live_address(request) && request.method == Method::get) {
+    refusal = problem_response({ErrorCode::upgrade_required,
+                                "Upgrade required",
+                                "This address speaks WebSocket, subprotocol strata.v1.",
+                                {}});
+    refusal.with("Upgrade", "websocket");
+    return nullptr;
+  }
+  Router::Match match = router_.find(request.method, request.segments);
+  if (match.route) {
+    request.params = std::move(match.params);
+    return match.route;
+  }
+  if (match.allowed.empty() && !is_api)
+    match.allowed = {Method::get, Method::head, Method::options};
+  if (match.allowed.empty()) {
+    refusal = problem_response(
+        {ErrorCode::not_found,
+         "Not found",
+         "There is nothing at " + request.path + ". The addresses are listed at /api/v1/docs.",
+         {}});
+    return nullptr;
+  }
+  if (!is_api && (request.method == Method::get || request.method == Method::head)) return &page_;
+  const std::string allow = allow_header(match.allowed);
+  if (request.method == Method::options) {
+    refusal = empty_response(204);
+  } else {
+    refusal = problem_response({ErrorCode::method_not_allowed,
+                                "Method not allowed",
+                                "This address takes: " + allow + ".",
+                                {}});
+  }
+  refusal.with("Allow", allow);
+  return nullptr;
+}
+
+Result<void> Api::identify(Request& request, const Route& route) {
+  auto principal = STRATA_TRY(auth_.identify(request));
+  request.principal = std::move(principal);
+  if (!request.principal)
+    return fail(ErrorCode::unauthenticated, "Not signed in",
+                "Sign in, or send `Authorization: Bearer TOKEN`.");
+  const auto inside = request.principal->kiosk
+                          ? enter_as_kiosk(context_, request, route)
+                          : enter_project(context_, request, route.project_in_query);
+  if (!inside) return inside;
+  const Role least = *route.role;
+  if (request.principal->role < least)
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "This takes the role " + std::string(name(least)) + "; yours is " +
+                    std::string(name(request.principal->role)) + ".");
+  return {};
+}
+
+std::optional<Response> Api::admit(Request& request, const Route& route) {
+  // What is open to everyone must work with a stale cookie, too: the page itself, signing in,
+  // health.
+  if (route.role)
+    if (auto known = identify(request, route); !known) return problem_response(known.error());
+  if (changes(request.method))
+    if (auto own = check_same_origin(request, options_.allowed_origins); !own)
+      return problem_response(own.error());
+  if (auto known = check_query(route, request); !known) return problem_response(known.error());
+  if (auto named = check_precondition(context_, request, route); !named)
+    return problem_response(named.error());
+  if (route.check)
+    if (auto good = route.check(request); !good) return problem_response(good.error());
+  if (request.header("idempotency-key").size() > kMaxKey)
+    return problem_response({ErrorCode::malformed, "Key too long",
+                             "An Idempotency-Key has at most 255 characters.", "Idempotency-Key"});
+  return std::nullopt;
+}
+
+std::optional<Response> Api::admit_again(Request& request, const Route& route) {
+  if (!route.role) return std::nullopt;
+  const std::string user = request.user();
+  if (auto known = identify(request, route); !known) return problem_response(known.error());
+  if (request.user() != user)
+    return problem_response(
+        {ErrorCode::unauthenticated, "Not signed in", "Somebody else is signed in now.", {}});
+  return std::nullopt;
+}
+
+void Api::handle(const Request& request, const Route& route, const Respond& send) {
+  const bool reads = request.method == Method::get || request.method == Method::head;
+  const Respond respond(
+      [send, coding = std::string(request.header("accept-encoding")), known = request.known_tags,
+       accept = reads ? std::string(request.header("accept")) : std::string()](Response response) {
+        // What was changed is told in any case; what was only read can be asked for in another way.
+        if (response.status == 200 && !response.events &&
+            !accepts_type(accept, response.header("Content-Type")))
+          response = problem_response({ErrorCode::not_acceptable, "Not acceptable",
+                                       "This address answers with " +
+                                           std::string(response.header("Content-Type")) +
+                                           ", which `Accept` does not take.",
+                                       "Accept"});
+        compress(response, coding, known);
+        send(std::move(response));
+      });
+  if (reads)
+    return answer_failures(request, respond, [&] { answer_read(request, route, respond); });
+  const bool remembered = route.keeps_answer && !request.header("idempotency-key").empty();
+  if (remembered) {
+    auto kept = answers_.begin(request);
+    if (!kept) return respond(kept.error());
+    if (*kept) {
+      auto response =
+          route.replay ? route.replay(request, **kept) : Result<Response>(response_of(**kept));
+      if (!response) return respond(response.error());
+      return respond(std::move(response->with("Idempotency-Replayed", "true")));
+    }
+  }
+  // Handlers that keep their answer reply before they return, so the request is still there.
+  const Respond answer = remembered ? Respond([this, &request, respond](Response response) {
+    answers_.end(request);
+    respond(std::move(response));
+  })
+                                    : respond;
+  answer_failures(request, answer, [&] { route.handler(request, answer); });
+}
+
+void Api::answer_failures(const Request& request, const Respond& answer,
+                          const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const QuestionEnded& ended) {
+    answer(ended.problem());
+  } catch (const std::exception& error) {
+    // The address of a kiosk is its secret.
+    const bool is_secret = !request.segments.empty() && request.segments.front() == "kiosk";
+    log::error("request " + std::string(name(request.method)) + " " +
+               (is_secret ? "/kiosk/…" : request.path) + " failed: " + error.what());
+    answer(Error{ErrorCode::internal,
+                 "Internal error",
+                 "The server made a mistake; its log says more.",
+                 {}});
+  }
+}
+
+// What is open to everyone is the page, which has tags of its own, and health, which nobody should
+// keep.
+void Api::answer_read(const Request& request, const Route& route, const Respond& respond) {
+  if (!route.role) return route.handler(request, respond);
+  const auto known = request.header("if-none-match");
+  const auto state_now = [&]() -> std::optional<std::string> {
+    const auto state = route.state ? route.state(request) : std::nullopt;
+    return state ? std::optional(tag_of_state(request, *state)) : std::nullopt;
+  };
+  // Before the work, which is what it saves. `Accept` is part of such tags. Whether there is
+  // anything that `*` could stand for shows afterwards.
+  const auto before = state_now();
+  if (before && known != "*" && names_tag(known, *before))
+    return respond(std::move(empty_response(304).with("ETag", *before).with("Vary", "Accept")));
+  const Respond with_tag([respond, known_tags = std::string(known), before,
+                          state_now](Response response) {
+    if (response.status != 200) return respond(std::move(response));
+    // Nothing changed while the answer was made: it shows that state and no other.
+    if (before && response.header("ETag").empty() && state_now() == before) {
+      if (response.header("Vary").empty()) response.with("Vary", "Accept");
+      response.with("ETag", *before);
+      return respond(names_tag(known_tags, *before) ? not_modified(std::move(response))
+                                                    : std::move(response));
+    }
+    const auto tag = tag_of_body(response);
+    if (!tag) return respond(std::move(response));
+    // For programs; a browser that several people use keeps no lists of people and sessions.
+    response.with("ETag", *tag).with("Cache-Control", "private, no-store");
+    respond(names_tag(known_tags, *tag) ? not_modified(std::move(response)) : std::move(response));
+  });
+  route.handler(request, with_tag);
+}
+
+bool Api::is_live_address(const Request& request) {
+  const auto& s = request.segments;
+  return s.size() == 5 && s[0] == "api" && s[1] == "v1" && s[2] == "models" && s[4] == "live";
+}
+
+Result<Api::LiveEntry> Api::admit_live(Request& request) {
+  request.params["model"] = request.segments[3];
+  STRATA_TRY(check_host(request, own_names_));
+  STRATA_TRY(identify(request, live_));
+  STRATA_TRY(check_upgrade_origin(request, options_.allowed_origins));
+  auto room = rooms_.open(request.segments[3], request.role());
+  if (!room) return tl::unexpected(room.error());
+  auto project = STRATA_TRY(store_.project(std::to_string((*room)->model().project_id)));
+  // What the others read of them. A person who is gone will be sent out anyway.
+  auto person = store_.person(request.user());
+  if (!person && person.error().code != ErrorCode::not_found) return tl::unexpected(person.error());
+  std::optional<protocol::PersonalView> view;
+  if (person && !request.principal->kiosk) {
+    auto kept = personal_view(store_, person->name, request.role(), **room);
+    if (!kept) return tl::unexpected(kept.error());
+    auto told = STRATA_TRY(protocol::from_json<protocol::PersonalView>(*kept));
+    view = std::move(told);
+  }
+  return LiveEntry{std::move(*room),   project.slug,
+                   *request.principal, person ? portrait_of(*person) : room::Portrait(),
+                   std::move(view),    Authenticator::secret_of(request)};
+}
+
+bool Api::is_still_welcome(const std::string& secret, std::int64_t project_id, Role role) {
+  return net::is_still_welcome(auth_, secret, project_id, role);
+}
+
+std::shared_ptr<LiveSession> Api::make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket) {
+  auto session = std::make_shared<LiveSession>(
+      shared_, std::move(entry.room), std::move(entry.project_slug), std::move(entry.principal),
+      std::move(entry.portrait), std::move(entry.personal_view), socket);
+  live_sockets().add(std::move(socket), session, std::move(entry.secret));
+  return session;
+}
+
+}  // namespace strata::net

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "jobs/job_queue.h"
+#include "net/api/routes.h"
+#include "net/auth/auth.h"
+#include "net/http/answer_book.h"
+#include "net/http/question_desk.h"
+#include "net/http/router.h"
+#include "net/http/static_files.h"
+#include "net/http/worker_pool.h"
+#include "net/live/live_session.h"
+#include "net/live/live_sockets.h"
+#include "net/recomputer.h"
+#include "net/transport/server_options.h"
+#include "protocol/messages.h"
+#include "render/renderer.h"
+#include "room/room.h"
+#include "store/store.h"
+
+namespace strata::net {
+
+// Everything between the sockets and the rooms: which route, who asks, may they, was it asked
+// before. Knows no socket library.
+class Api {
+ public:
+  Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
+      render::Renderer& renderer, TemplateShelf templates);
+  ~Api();
+
+  const ServerOptions& options() const { return options_; }
+  Metrics& metrics() { return *shared_->metrics; }
+  WorkerPool& workers() { return workers_; }
+  QuestionDesk& questions() { return questions_; }
+
+  // Once the request's head is read; does not block. Puts the path's parameters into the request.
+  // Null: `refusal` is the answer.
+  const Route* find_route(Request& request, Response& refusal) const;
+  // On a worker, before the body is read: the refusal, if any.
+  std::optional<Response> admit(Request& request, const Route& route);
+  // On a worker, once the body is there, which may have taken long: who asks may be in no longer,
+  // or may do less.
+  std::optional<Response> admit_again(Request& request, const Route& route);
+  // On a worker, with the body.
+  void handle(const Request& request, const Route& route, const Respond& respond);
+
+  // The live connection of a model: whether this is its address; and who may come in (blocks: opens
+  // the room).
+  static bool is_live_address(const Request& request);
+  struct LiveEntry {
+    std::shared_ptr<room::Room> room;
+    std::string project_slug;
+    Principal principal;
+    room::Portrait portrait;
+    std::optional<protocol::PersonalView> personal_view;  // a kiosk has none
+    std::string secret;                                   // that the person showed
+  };
+  Result<LiveEntry> admit_live(Request& request);
+  std::shared_ptr<LiveSession> make_session(LiveEntry entry, std::weak_ptr<LiveSocket> socket);
+  // Whether who came in with this may stay in the project as who it was (blocks). While the
+  // database is away nobody is sent out.
+  bool is_still_welcome(const std::string& secret, std::int64_t project_id, Role role);
+  LiveSockets& live_sockets() { return *shared_->sockets; }
+
+  void stop_workers();
+
+ private:
+  void answer_read(const Request& request, const Route& route, const Respond& respond);
+  static void answer_failures(const Request& request, const Respond& answer,
+                              const std::function<void()>& work);
+  // Who asks, and that they may do there what takes the role.
+  Result<void> identify(Request& request, const Route& route);
+
+  const ServerOptions options_;
+  const std::vector<std::string> own_names_;
+  store::Store& store_;
+  room::Rooms& rooms_;
+  Authenticator auth_;
+  AnswerBook answers_;
+  EditBook edit_book_;
+  StaticFiles files_;
+  const std::shared_ptr<ToolShelf> tools_;
+  const TemplateShelf templates_;
+  std::shared_ptr<LiveShared> shared_;
+  WorkerPool workers_;
+  QuestionDesk questions_;
+  Router router_;
+  Route page_;  // everything that is no API address
+  Route live_;  // the live connections, which no handler answers
+  BinKeeper bin_keeper_;
+  const RouteContext context_;
+  Recomputer recomputer_;
+};
+
+// Headers that every answer carries.
+const Headers& security_headers();
+
+}  // namespace strata::net

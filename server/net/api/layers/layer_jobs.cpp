@@ -1,0 +1,70 @@
+#include "net/api/layers/layer_jobs.h"
+
+#include <algorithm>
+
+#include "net/http/answer_book.h"
+
+namespace strata::net {
+namespace {
+
+Result<jobs::JobResult> run(room::Room& room, NewLayers& layers, const MakeLayers& make,
+                            const std::string& key, const std::string& print, Progress& progress) {
+  auto report = STRATA_TRY(make(layers, progress));
+  if (progress.cancelled()) return cancelled_problem();
+  jobs::JobResult result(room.model().id);
+  result.layers = layers.ids();
+  result.report = std::move(report);
+  const store::FirstAnswer<Layer> answer{key,
+                                         [&](const Layer&) {
+                                           return nlohmann::json{{"request", print},
+                                                                 {"model", result.model},
+                                                                 {"layers", result.layers},
+                                                                 {"report", result.report}};
+                                         },
+                                         {},
+                                         progress.job()};
+  STRATA_TRY(layers.show(answer));
+  return result;
+}
+
+}  // namespace
+
+Result<Response> start_layer_job(const RouteContext& context, JobBook& book, const Request& request,
+                                 const std::shared_ptr<room::Room>& room, MakeLayers make) {
+  auto known = STRATA_TRY(book.find(request));
+  if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
+  auto job = context.jobs.add(
+      room->model().project_id,
+      [&metrics = context.metrics, room, make = std::move(make), author = request.author(),
+       key = scoped_key(request),
+       print = fingerprint(request)](Progress& progress) -> Result<jobs::JobResult> {
+        NewLayers layers(room, metrics, author);
+        auto done = run(*room, layers, make, key, print, progress);
+        if (!done) layers.take_back();
+        return done;
+      },
+      {}, jobs::JobKind::layers);
+  if (!job) return tl::unexpected(job.error());
+  book.started(request, *job);
+  return job_response(context, *job);
+}
+
+Result<Response> repeat_layer_job(const RouteContext& context, JobBook& book,
+                                  const Request& request, const nlohmann::json& kept) {
+  auto known = STRATA_TRY(book.find(request));
+  if (known) return job_response(context, *known);
+  jobs::JobResult result(kept.at("model").get<std::int64_t>());
+  result.layers = kept.at("layers").get<std::vector<std::int64_t>>();
+  result.report = kept.at("report");
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
+  return job_response(context, job);
+}
+
+int order_on_top(const std::vector<Layer>& others) {
+  int top = -1;
+  for (const Layer& other : others) top = std::max(top, other.order);
+  return top + 1;
+}
+
+}  // namespace strata::net

@@ -1,0 +1,170 @@
+#include "net/api/routes.h"
+#include "net/serialization/people_wire.h"
+#include "net/serialization/wire.h"
+#include "net/show_through.h"
+
+namespace strata::net {
+namespace {
+
+Result<Response> history(const RouteContext& context, const Request& request) {
+  auto page = STRATA_TRY(page_of(request));
+  auto layer = STRATA_TRY(stored_layer(context, request));
+  const auto before = STRATA_TRY(number_after(page, INT64_MAX));
+  auto rows = STRATA_TRY(context.store.history(layer.id, page.limit + 1, page.offset, before));
+  const auto last =
+      end_page(rows.rows, page, [](const auto& row) { return ListPlace::array({row.sequence}); });
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& row : rows.rows) {
+    nlohmann::json told = to_json(row);
+    // An expression of then may name what fewer people see now.
+    if (told.contains("expression")) {
+      const auto seen = STRATA_TRY(sees_all_of(context, request.role(), layer.model_id,
+                                               told.at("expression").get<std::string>()));
+      if (!seen) told.erase("expression");
+    }
+    list.push_back(std::move(told));
+  }
+  Response response = json_response({{"edits", list}, {"total", rows.total}});
+  add_page_links(response, request, page, last);
+  return response;
+}
+
+Result<Response> list_review(const RouteContext& context, const Request& request) {
+  auto page = STRATA_TRY(page_of(request));
+  auto layer = STRATA_TRY(stored_layer(context, request));
+  std::optional<std::string> user;
+  if (const auto asked = request.query.find("user"); asked != request.query.end())
+    user = asked->second;
+  if (user && (user->empty() || user->size() > 200))
+    return fail(ErrorCode::invalid, "Bad name", "`user` is the name of a person.", "user");
+  const auto after = STRATA_TRY(number_after(page));
+  auto queue =
+      STRATA_TRY(context.store.review_queue(layer.id, user, page.limit + 1, page.offset, after));
+  const auto last = end_page(
+      queue.strokes, page, [](const auto& stroke) { return ListPlace::array({stroke.sequence}); });
+  nlohmann::json answer = to_json(queue);
+  STRATA_TRY(People::add_to(context.store, answer));
+  Response response = json_response(std::move(answer));
+  add_page_links(response, request, page, last);
+  return response;
+}
+
+struct Target {
+  std::shared_ptr<room::Room> room;
+  Layer layer;
+};
+
+Result<Target> target_of(const RouteContext& context, const Request& request) {
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto layer = STRATA_TRY(room->layer(request.param("layer")));
+  return Target{std::move(room), std::move(layer)};
+}
+
+// Runs `make` for the layer that is named by the path and applies the edit that it returns.
+template <class Make>
+Handler editing(const RouteContext& context, Make make) {
+  return [&context, make](const Request& request, const Respond& respond) {
+    auto target = target_of(context, request);
+    if (!target) return respond(target.error());
+    Result<room::EditRequest> edit = make(request, *target);
+    if (!edit) return respond(edit.error());
+    apply_edit(context, request, target->room, std::move(*edit), respond);
+  };
+}
+
+room::EditRequest bare_edit(const Request& request, const Target& target, std::string op) {
+  room::EditRequest edit{edit_id(request, target.layer, op), request.author(), target.layer.id};
+  edit.record = {{"op", std::move(op)}};
+  return edit;
+}
+
+Result<room::EditRequest> review_edit(const Request& request, const Target& target) {
+  const auto asked = STRATA_TRY(body_of<protocol::Review>(request));
+  const auto decision = *parse_decision(name(asked.decision));
+  if (decision == Decision::reopen && !asked.edits)
+    return fail(ErrorCode::invalid, "Edits missing",
+                "Name the edits whose review is to be taken back.", "edits");
+  auto edit = bare_edit(request, target, std::string(name(decision)));
+  edit.id = edit_id(request, target.layer, "review");  // one key is for one decision, whichever
+  if (asked.edits) edit.record["edits"] = *asked.edits;
+  if (asked.user) edit.record["user"] = *asked.user;
+  if (asked.reason) edit.record["reason"] = *asked.reason;
+  edit.edit = room::ReviewEdit{decision,
+                               {asked.edits.value_or(std::vector<std::int64_t>{}), asked.user},
+                               asked.reason.value_or("")};
+  return edit;
+}
+
+// Undo and redo take no members; no body is the same as an empty object.
+Result<void> check_empty(const Request& request) {
+  if (request.body.empty()) return {};
+  STRATA_TRY(body_of<protocol::Empty>(request));
+  return {};
+}
+
+}  // namespace
+
+void add_edit_routes(Router& router, const RouteContext& context) {
+  const std::string layer = "/api/v1/models/{model}/layers/{layer}";
+  auto change = [&](const std::string& pattern, Handler handler, Role role = Role::annotator) {
+    router.add({.method = Method::post,
+                .pattern = pattern,
+                .handler = std::move(handler),
+                .role = role,
+                .body = BodyKind::memory,
+                .max_body = context.options.max_json_bytes,
+                .is_long_edit = true});
+  };
+  router.add({.method = Method::get,
+              .pattern = layer + "/edits",
+              .handler = answering(
+                  [&context](const Request& request) { return history(context, request); }),
+              .query = {"limit", "offset", "after"}});
+  change(layer + "/edits",
+         editing(
+             context,
+             [&context](const Request& request, const Target& target) -> Result<room::EditRequest> {
+               auto asked = STRATA_TRY(body_of<protocol::Edit>(request));
+               return edit_request(asked, target.layer, target.room->model(),
+                                   edit_id(request, target.layer, "edit"), request.author(),
+                                   [&](const std::string& ref) { return context.tools.find(ref); });
+             }));
+  router.add({.method = Method::get,
+              .pattern = layer + "/review",
+              .handler = answering(
+                  [&context](const Request& request) { return list_review(context, request); }),
+              .query = {"user", "limit", "offset", "after"}});
+  change(layer + "/review", editing(context, review_edit), Role::curator);
+  change(layer + "/undo",
+         editing(context,
+                 [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+                   STRATA_TRY(check_empty(request));
+                   auto edit = bare_edit(request, target, "undo");
+                   edit.edit = room::UndoEdit{};
+                   return edit;
+                 }));
+  change(layer + "/redo",
+         editing(context,
+                 [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+                   STRATA_TRY(check_empty(request));
+                   auto edit = bare_edit(request, target, "redo");
+                   edit.edit = room::RedoEdit{};
+                   return edit;
+                 }));
+  change(layer + "/restore",
+         editing(context,
+                 [](const Request& request, const Target& target) -> Result<room::EditRequest> {
+                   auto asked = STRATA_TRY(body_of<protocol::Restore>(request));
+                   if (asked.sequence > target.room->sequence())
+                     return fail(ErrorCode::invalid, "Not yet there",
+                                 "The newest sequence of this model is " +
+                                     std::to_string(target.room->sequence()) + ".",
+                                 "sequence");
+                   auto edit = bare_edit(request, target, "restore");
+                   edit.record["sequence"] = asked.sequence;
+                   edit.edit = room::RestoreEdit{asked.sequence};
+                   return edit;
+                 }));
+}
+
+}  // namespace strata::net

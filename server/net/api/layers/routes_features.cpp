@@ -1,0 +1,57 @@
+#include "net/api/routes.h"
+#include "net/geopackage.h"
+#include "net/layer_features.h"
+#include "net/serialization/as_of.h"
+#include "net/serialization/feature_json.h"
+#include "net/serialization/map_query.h"
+
+namespace strata::net {
+namespace {
+
+enum class FeatureFormat { geojson, gpkg };
+
+// `f`, or where that is absent what Accept names; GeoJSON where neither says anything. 406 for what
+// is none of them.
+Result<FeatureFormat> feature_format(const Request& request) {
+  const auto asked = request.query.find("f");
+  if (asked == request.query.end())
+    return request.header("accept").find(kGeoPackageType) == std::string_view::npos
+               ? FeatureFormat::geojson
+               : FeatureFormat::gpkg;
+  if (asked->second == "geojson") return FeatureFormat::geojson;
+  if (asked->second == "gpkg") return FeatureFormat::gpkg;
+  return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is geojson or gpkg.", "f");
+}
+
+Result<Response> read_features(const RouteContext& context, const Request& request) {
+  const auto format = STRATA_TRY(feature_format(request));
+  const auto axis = STRATA_TRY(axis_of(request));
+  const auto language = STRATA_TRY(asked_language(request));
+  const auto asked = STRATA_TRY(LayerQuery::from(context, request));
+  auto set = STRATA_TRY(layer_features(context, {asked.room,
+                                                 asked.layer,
+                                                 asked.at,
+                                                 {axis.u, axis.v, 3 - axis.u - axis.v},
+                                                 request.role(),
+                                                 language}));
+  auto response =
+      STRATA_TRY(format == FeatureFormat::geojson ? feature_json(std::move(set))
+                                                  : geopackage(set, context.options.upload_dir));
+  add_sequences(response, asked.sequence, asked.room->durable_sequence());
+  response.with("Vary", "Accept");
+  return response;
+}
+
+}  // namespace
+
+void add_feature_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/layers/{layer}/features",
+              .handler = answering(
+                  [&context](const Request& request) { return read_features(context, request); }),
+              .query = {"f", "along", "at", "lang"},
+              .is_question = true,
+              .state = state_of_model(context)});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,334 @@
+#include <algorithm>
+
+#include "core/term_list.h"
+#include "net/api/layers/layer_jobs.h"
+#include "net/api/routes.h"
+#include "net/computed_layers.h"
+#include "net/formula_layers.h"
+#include "net/http/answer_book.h"
+#include "net/live/comment_events.h"
+#include "net/serialization/table_wire.h"
+#include "net/show_through.h"
+
+namespace strata::net {
+namespace {
+
+Result<Response> list_layers(const RouteContext& context, const Request& request) {
+  auto page = STRATA_TRY(page_of(request));
+  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto layers = STRATA_TRY(context.store.layers(model.id, request.role()));
+  nlohmann::json list = nlohmann::json::array();
+  const int total = static_cast<int>(layers.size());
+  const auto part = STRATA_TRY(slice_by(page, layers, [](const Layer& layer) {
+    return NumberKey{layer.order, layer.id};
+  }));
+  for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(layers[i]));
+  Response response = json_response({{"layers", list}, {"total", total}});
+  add_page_links(response, request, page, part.last);
+  return response;
+}
+
+bool is_automatic(const std::optional<protocol::Recompute>& asked) {
+  return asked == protocol::Recompute::automatic;
+}
+
+Result<Palette> palette_of(const std::optional<nlohmann::json>& asked, ValueType type,
+                           bool categorical) {
+  if (!asked) return default_palette(type, categorical);
+  return palette_from_json(*asked);
+}
+
+// A condition is told by one value, where it holds.
+bool computes_numbers(const protocol::LayerCreate& asked) {
+  if (!asked.expression) return asked.compute.has_value();
+  const auto expression = parse_formula(*asked.expression);
+  return !expression || !expression->is_condition();
+}
+
+// One class, painted where the condition holds.
+Palette palette_of_condition(const std::string& label) {
+  Palette palette;
+  palette.mode = PaletteMode::categorical;
+  palette.min = palette.max = 1;
+  palette.points.push_back({1, {213, 94, 0, 255}, label});
+  return palette;
+}
+
+int order_at_bottom(const std::vector<Layer>& others) {
+  int bottom = 1;
+  for (const Layer& other : others) bottom = std::min(bottom, other.order);
+  return bottom - 1;
+}
+
+Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model,
+                        const std::vector<Layer>& others) {
+  if ((asked.compute || asked.expression) && asked.kind != LayerKind::numeric)
+    return fail(ErrorCode::invalid, "Kind not usable", "What is computed is numeric.", "kind");
+  if (asked.compute && asked.expression)
+    return fail(ErrorCode::invalid, "Two ways to compute", "Give either `compute` or `expression`.",
+                "expression");
+  if (asked.recompute && !asked.expression)
+    return fail(ErrorCode::invalid, "No expression",
+                "`recompute` is for layers with an `expression`.", "recompute");
+  Layer layer;
+  layer.model_id = model.id;
+  layer.name = asked.name;
+  auto slug = STRATA_TRY(slug_of(asked.slug, asked.name));
+  layer.slug = slug;
+  layer.kind = asked.kind;
+  layer.type = asked.type.value_or(computes_numbers(asked) ? ValueType::f32 : ValueType::u8);
+  const bool is_key =
+      layer.type == ValueType::u8 || layer.type == ValueType::u16 || layer.type == ValueType::u32;
+  if (layer.kind == LayerKind::database && !is_key)
+    return fail(ErrorCode::invalid, "Type not usable",
+                "A database layer holds keys: its type is u8, u16 or u32.", "type");
+  if ((asked.table || asked.columns) && layer.kind != LayerKind::database)
+    return fail(ErrorCode::invalid, "Table on a numeric layer",
+                "Only database layers have a table.", asked.table ? "table" : "columns");
+  if (asked.table && asked.columns)
+    return fail(ErrorCode::invalid, "Table and columns",
+                "Name a table, or give the columns of a new one.", "columns");
+  layer.resolution =
+      asked.resolution.value_or(std::max(model.default_resolution, model.atlas.lowest_resolution));
+  if (layer.resolution < model.atlas.lowest_resolution)
+    return fail(ErrorCode::invalid, "Resolution too low",
+                "Layers of this model have at least " +
+                    std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+                "resolution");
+  layer.unit = asked.unit;
+  layer.description = asked.description;
+  layer.labels = asked.labels.value_or(Labels());
+  layer.descriptions = asked.descriptions.value_or(Labels());
+  const bool is_computed = asked.compute || asked.expression;
+  if (is_computed && asked.locked == false)
+    return fail(
+        ErrorCode::invalid, "Locked at first",
+        "A computed layer is locked when it is made. Unlock it afterwards to edit it by hand.",
+        "locked");
+  const bool is_condition = asked.expression && !computes_numbers(asked);
+  auto palette =
+      STRATA_TRY(is_condition && !asked.palette
+                     ? Result<Palette>(palette_of_condition(asked.name))
+                     : palette_of(asked.palette, layer.type, layer.kind == LayerKind::database));
+  layer.palette = std::move(palette);
+  layer.opacity = asked.opacity;
+  // It must not cover what others look at.
+  layer.visible = asked.visible.value_or(!is_computed);
+  layer.locked = asked.locked.value_or(is_computed);
+  layer.review = asked.review;
+  layer.visibility = asked.visibility.value_or(Visibility::everyone);
+  layer.order = asked.order.value_or(is_computed ? order_at_bottom(others) : order_on_top(others));
+  return layer;
+}
+
+Result<Response> create_layer(const RouteContext& context, JobBook& book, const Request& request) {
+  auto asked = STRATA_TRY(body_of<protocol::LayerCreate>(request));
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const Model model = room->model();
+  auto layer = STRATA_TRY(new_layer(asked, model, room->layers()));
+  if (asked.table) {
+    auto table = table_of_project(context.store, model.project_id, *asked.table, "table");
+    if (!table) return tl::unexpected(table.error());
+    layer.table = table->id;
+    if (!asked.palette && term_columns(*table)) layer.palette = terms_palette({});  // theirs
+  }
+  Column name;
+  name.name = "Name";
+  Result<std::vector<Column>> columns = std::vector{name};
+  if (asked.columns) columns = new_columns(context.store, model.project_id, *asked.columns);
+  if (!columns) return tl::unexpected(columns.error());
+  if (asked.compute) return start_computing(context, book, request, room, asked, std::move(layer));
+  if (asked.expression) {
+    auto formula =
+        read_formula(*room, *asked.expression, is_automatic(asked.recompute), layer.visibility);
+    if (!formula) return tl::unexpected(formula.error());
+    layer.formula = std::move(*formula);
+    layer.origin = LayerOrigin::expression;
+  }
+  STRATA_TRY(check_shows_nothing(context, layer, {}));
+  const auto answer = [model_slug = model.slug](const Layer& made) {
+    return json_response(to_json(made), 201)
+        .with("Location", "/api/v1/models/" + model_slug + "/layers/" + made.slug)
+        .with("ETag", etag_of(made.version));
+  };
+  if (layer.formula)
+    return create_formula_layer(context, book, request, room, std::move(layer),
+                                asked.palette.has_value(), answer);
+  auto created = room->create_layer(std::move(layer), first_answer<Layer>(request, answer),
+                                    std::move(*columns));
+  if (!created) return tl::unexpected(created.error());
+  return answer(*created);
+}
+
+// An expression makes a numeric layer a computed one; an empty one makes it a layer like others,
+// with the values that it has. `before`: who saw the layer, which must see nothing more through it.
+Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& asked,
+                         Visibility before, Layer& layer) {
+  const bool is_seen_by_more = layer.formula && layer.visibility < before;
+  if (!asked.expression && !asked.recompute && !is_seen_by_more) return {};
+  if (layer.kind != LayerKind::numeric)
+    return fail(ErrorCode::invalid, "Kind not usable", "What is computed is numeric.",
+                "expression");
+  if (asked.expression && asked.expression->empty()) {
+    if (!layer.formula) return {};
+    layer.formula.reset();
+    layer.locked = asked.locked.value_or(false);
+    layer.edited_by_hand = true;
+    return {};
+  }
+  if (!asked.expression && !layer.formula)
+    return fail(ErrorCode::invalid, "No expression",
+                "`recompute` is for layers with an `expression`.", "recompute");
+  const bool automatic =
+      asked.recompute ? is_automatic(asked.recompute) : layer.formula && layer.formula->automatic;
+  auto formula =
+      read_formula(room, asked.expression ? *asked.expression : layer.formula->expression,
+                   automatic, layer.visibility, layer.id);
+  if (!formula) return tl::unexpected(formula.error());
+  // Another expression: what was painted is going to be overwritten.
+  const bool is_other = !layer.formula || layer.formula->expression != formula->expression;
+  layer.formula = std::move(*formula);
+  if (is_other) {
+    layer.origin = LayerOrigin::expression;
+    layer.locked = true;
+    layer.edited_by_hand = false;
+  }
+  return {};
+}
+
+Result<Response> compute(const RouteContext& context, const Request& request) {
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto layer = context.store.layer(room->model().id, request.param("layer"), request.role());
+  if (!layer) return tl::unexpected(layer.error());
+  const std::string overwrite = request.query_or("overwrite", "false");
+  if (overwrite != "true" && overwrite != "false")
+    return fail(ErrorCode::invalid, "Bad value", "`overwrite` is true or false.", "overwrite");
+  if (overwrite == "true" && layer->edited_by_hand && request.role() < Role::curator)
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "Only curators have what was edited by hand computed again.", "overwrite");
+  Progress progress;
+  auto computed =
+      compute_layer(context, room, *layer, request.author(), progress, overwrite == "true");
+  if (!computed) return tl::unexpected(computed.error());
+  return json_response(to_json(*computed)).with("ETag", etag_of(computed->version));
+}
+
+Result<Response> change_layer(const RouteContext& context, const Request& request) {
+  auto asked = STRATA_TRY(body_of<protocol::LayerPatch>(request));
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  // As it is stored: what is open may be a moment behind.
+  auto layer = context.store.layer(room->model().id, request.param("layer"), request.role());
+  if (!layer) return tl::unexpected(layer.error());
+  STRATA_TRY(check_if_match(request, layer->version));
+  const auto answer = [](const Layer& now) {
+    return json_response(to_json(now)).with("ETag", etag_of(now.version));
+  };
+  if (asked.type) {
+    protocol::LayerPatch alone;
+    alone.type = asked.type;
+    if (!(asked == alone))
+      return fail(ErrorCode::invalid, "Type with other changes",
+                  "Change the type of a layer in a call of its own.", "type");
+    auto widened = room->widen_layer(*layer, *asked.type, first_answer<Layer>(request, answer));
+    return widened ? Result<Response>(answer(*widened)) : tl::unexpected(widened.error());
+  }
+  if (asked.name) layer->name = *asked.name;
+  if (asked.unit) layer->unit = *asked.unit;
+  if (asked.description) layer->description = *asked.description;
+  if (asked.labels) layer->labels = *asked.labels;
+  if (asked.descriptions) layer->descriptions = *asked.descriptions;
+  if (asked.palette) {
+    auto palette = STRATA_TRY(palette_from_json(*asked.palette));
+    layer->palette = std::move(palette);
+    layer->palette_of_terms = false;
+  }
+  if (asked.opacity) layer->opacity = *asked.opacity;
+  if (asked.visible) layer->visible = *asked.visible;
+  if (asked.locked == false && is_as_computed(*layer)) layer->edited_by_hand = true;
+  if (asked.locked) layer->locked = *asked.locked;
+  if (asked.review) layer->review = *asked.review;
+  const Visibility before = layer->visibility;
+  if (asked.visibility) layer->visibility = *asked.visibility;
+  if (asked.order) layer->order = *asked.order;
+  const bool was_painted = !layer->formula;
+  STRATA_TRY(set_formula(*room, asked, before, *layer));
+  if (was_painted && layer->formula) {
+    const auto queue = context.store.review_queue(layer->id, {}, 0, 0);
+    if (!queue) return tl::unexpected(queue.error());
+    if (queue->total > 0)
+      return fail(ErrorCode::conflict, "Edits wait for review",
+                  "Accept or reject what waits on this layer before it is computed.", "expression");
+  }
+  STRATA_TRY(check_shows_nothing(context, *layer, room->layers()));
+  auto changed = room->update_layer(std::move(*layer), first_answer<Layer>(request, answer));
+  if (!changed) return tl::unexpected(changed.error());
+  tell_threads(context, *changed, before, request.user());
+  return answer(*changed);
+}
+
+Result<Response> delete_layer(const RouteContext& context, const Request& request) {
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto layer = STRATA_TRY(room->layer(request.param("layer")));
+  STRATA_TRY(check_if_match(request, layer.version));
+  auto gone =
+      room->bin_layer(layer.id, first_answer<>(request, [] { return empty_response(204); }));
+  if (!gone) return tl::unexpected(gone.error());
+  if (context.options.bin_days == 0) context.bin_keeper.look();
+  return empty_response(204);
+}
+
+}  // namespace
+
+void add_layer_routes(Router& router, const RouteContext& context) {
+  auto book = std::make_shared<JobBook>(context.jobs);
+  const std::string layers = "/api/v1/models/{model}/layers";
+  router.add({.method = Method::get,
+              .pattern = layers,
+              .handler = answering(
+                  [&context](const Request& request) { return list_layers(context, request); }),
+              .query = {"limit", "offset", "after"}});
+  router.add({.method = Method::post,
+              .pattern = layers,
+              .handler = answering([&context, book](const Request& request) {
+                return create_layer(context, *book, request);
+              }),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true,
+              .replay = [&context, book](const Request& request,
+                                         const nlohmann::json& kept) -> Result<Response> {
+                return kept.contains("layers") ? repeat_layer_job(context, *book, request, kept)
+                                               : response_of(kept);
+              }});
+  router.add({.method = Method::get,
+              .pattern = layers + "/{layer}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto layer = STRATA_TRY(stored_layer(context, request));
+                return with_etag(json_response(to_json(layer)), request, layer.version);
+              })});
+  router.add({.method = Method::patch,
+              .pattern = layers + "/{layer}",
+              .handler = answering(
+                  [&context](const Request& request) { return change_layer(context, request); }),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true,
+              .needs_version = true});
+  router.add({.method = Method::remove,
+              .pattern = layers + "/{layer}",
+              .handler = answering(
+                  [&context](const Request& request) { return delete_layer(context, request); }),
+              .role = Role::curator,
+              .keeps_answer = true,
+              .needs_version = true});
+  router.add({.method = Method::post,
+              .pattern = layers + "/{layer}/compute",
+              .handler = answering(
+                  [&context](const Request& request) { return compute(context, request); }),
+              .role = Role::annotator,
+              .query = {"overwrite"}});
+}
+
+}  // namespace strata::net

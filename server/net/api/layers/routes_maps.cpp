@@ -1,0 +1,138 @@
+// Maps and measurements, painted as one edit.
+#include "core/mapped_file.h"
+#include "core/value_type.h"
+#include "net/api/routes.h"
+#include "net/byte_budget.h"
+#include "net/http/digest.h"
+#include "net/map_contents.h"
+#include "net/map_legend.h"
+#include "net/map_values.h"
+#include "net/painted_keys.h"
+#include "net/serialization/map_query.h"
+#include "net/serialization/wire.h"
+#include "query/readings.h"
+
+namespace strata::net {
+namespace {
+
+constexpr double kLargestLength_mm = 1e7;
+
+struct Painted {
+  TileMap tiles;
+  nlohmann::json record;  // of what was sent
+};
+
+struct Target {
+  std::shared_ptr<room::Room> room;
+  Layer layer;
+};
+
+// Runs `paint` for the layer that the path names.
+template <class Paint>
+Handler painting(const RouteContext& context, std::string op, Paint paint) {
+  return [&context, op = std::move(op), paint](const Request& request, const Respond& respond) {
+    auto room = context.rooms.open(request.param("model"), request.role());
+    if (!room) return respond(room.error());
+    auto layer = (*room)->layer(request.param("layer"));
+    if (!layer) return respond(layer.error());
+    Result<Painted> painted = paint(request, Target{*room, *layer});
+    if (!painted) return respond(painted.error());
+    room::EditRequest edit{edit_id(request, *layer, op), request.author(), layer->id};
+    edit.record = {{"op", "import"}, {"kind", op}};
+    edit.record.update(painted->record);
+    for (const auto& [name, value] : request.query) edit.record[name] = value;
+    edit.edit = room::ImportEdit{std::move(painted->tiles), true};
+    // With the names that the map brought.
+    const auto named = (*room)->layer(std::to_string(layer->id));
+    if (!named) return respond(named.error());
+    if (auto made =
+            records_from_legend(context, *named, room::painted_by(*named, edit), request.author());
+        !made)
+      return respond(made.error());
+    apply_edit(context, request, *room, std::move(edit), respond);
+  };
+}
+
+Result<Painted> paint_readings(const Request& request, const Target& target) {
+  const auto file = MappedFile::open(request.body_file);
+  if (!file || file->bytes().empty())
+    return fail(ErrorCode::malformed, "Empty body", "Send the file as the body.", "body");
+  const auto radius_mm = STRATA_TRY(number_of(request, "radius_mm", 1e-6, kLargestLength_mm));
+  const auto tolerance_mm =
+      STRATA_TRY(number_of(request, "tolerance_mm", 0, kLargestLength_mm, radius_mm));
+  const auto readings = STRATA_TRY(query::parse_readings(file->view()));
+  std::vector<room::Room::PlacedValue> values;
+  for (const query::Reading& reading : readings) {
+    const auto bits =
+        bits_of(target.layer, reading.value, "Line " + std::to_string(reading.line) + ": ");
+    if (!bits) return tl::unexpected(bits.error());
+    values.push_back({reading.position, *bits, reading.line});
+  }
+  const Unit unit = target.room->model().unit;
+  auto tiles = target.room->dabs(target.layer, values, in_model_units(radius_mm, unit),
+                                 in_model_units(tolerance_mm, unit));
+  if (!tiles) return tl::unexpected(tiles.error());
+  return Painted{std::move(*tiles),
+                 {{"bytes", request.body_bytes}, {"sha256", sha256_hex(file->view())}}};
+}
+
+// What a map paints at a place, and the keys that it brings to the layer's legend.
+using MakeValues = Result<MapValues> (*)(const Request& request, const MapFiles& files,
+                                         const MapTarget& target, ByteBudget& budget);
+
+Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeValues make,
+                          const Request& request, const Target& target) {
+  const auto axis = STRATA_TRY(axis_of(request));
+  auto files = STRATA_TRY(MapFiles::take(request, context.options.upload_dir));
+  MapTarget map_target{*target.room, target.layer};
+  if (target.layer.table) {
+    auto page = STRATA_TRY(context.store.records(*target.layer.table, request.role(),
+                                                 {{}, {}, {}, store::kMostRecords, 0}));
+    for (const Record& record : page.records)
+      map_target.records.insert(static_cast<double>(record.key));
+  }
+  auto values = STRATA_TRY(make(request, files, map_target, budget));
+  auto tiles = target.room->project(target.layer, axis.direction, [&](const glm::dvec3& world) {
+    return values.bits_at(axis.on_map(world));
+  });
+  if (!tiles) return tl::unexpected(tiles.error());
+  if (values.keys)
+    if (auto extended = extend_legend(request, *target.room, target.layer, *values.keys); !extended)
+      return tl::unexpected(extended.error());
+  return Painted{std::move(*tiles), files.record()};
+}
+
+}  // namespace
+
+void add_map_routes(Router& router, const RouteContext& context) {
+  const std::string model = "/api/v1/models/{model}", layer = model + "/layers/{layer}";
+  const auto budget = std::make_shared<ByteBudget>(context.options.max_rasters_at_once);
+  const auto add = [&](const std::string& pattern, Handler handler,
+                       std::vector<std::string> query) {
+    router.add({.method = Method::post,
+                .pattern = pattern,
+                .handler = std::move(handler),
+                .role = Role::annotator,
+                .query = std::move(query),
+                .body = BodyKind::file,
+                .max_body = kMaxMapBytes,
+                .is_long_edit = true});
+  };
+  const auto map = [&](MakeValues make) {
+    return [&context, budget, make](const Request& request, const Target& target) {
+      return paint_map(context, *budget, make, request, target);
+    };
+  };
+  add(layer + "/readings", painting(context, "readings", paint_readings),
+      {"radius_mm", "tolerance_mm"});
+  add(layer + "/polygons", painting(context, "polygons", map(polygon_values)),
+      {"along", "value", "attribute", "names", "crs"});
+  add(layer + "/picture", painting(context, "picture", map(picture_values)),
+      {"along", "world", "band", "colors", "tolerance", "crs"});
+  add(model + "/map-contents", answering([&context, budget](const Request& request) {
+        return map_contents(context, *budget, request);
+      }),
+      {"tolerance"});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,343 @@
+#include <algorithm>
+#include <set>
+
+#include "core/compensated_sum.h"
+#include "core/term_list.h"
+#include "net/api/routes.h"
+#include "net/class_names.h"
+#include "net/painted_keys.h"
+#include "net/record_measures.h"
+#include "net/serialization/as_of.h"
+#include "net/sheet.h"
+
+namespace strata::net {
+namespace {
+
+using Names = RecordNames;
+
+// What records have besides texels: lines and points, of those that have some. Names as in
+// RecordMeasures.
+struct OfMarks {
+  std::vector<std::string> names;
+  std::map<std::int64_t, std::vector<double>> of_key;
+
+  std::vector<double> sum() const {
+    std::vector<CompensatedSum> sums(names.size());
+    for (const auto& [key, values] : of_key)
+      for (std::size_t i = 0; i < values.size(); ++i) sums[i] += values[i];
+    std::vector<double> all;
+    for (const CompensatedSum& sum : sums) all.push_back(sum.value());
+    return all;
+  }
+  std::vector<double> of(std::int64_t key) const {
+    const auto found = of_key.find(key);
+    return found == of_key.end() ? std::vector<double>(names.size(), 0.0) : found->second;
+  }
+};
+
+// `model`: only those on it.
+Result<OfMarks> marks_of(const RouteContext& context, const Table& table, Role seen_by,
+                         const std::optional<Model>& model, std::optional<std::int64_t> at) {
+  store::Store::RecordQuery query;
+  query.limit = store::kMostRecords;
+  query.at = at;
+  if (std::ranges::none_of(table.columns,
+                           [](const Column& column) { return holds_marks(column.kind); }))
+    return OfMarks{};
+  const auto page = STRATA_TRY(context.store.records(table.id, seen_by, query));
+  const auto measures =
+      RecordMeasures::of_place(context, {page.table, model, {}}, page.table.columns);
+  if (!measures) return tl::unexpected(measures.error());
+  OfMarks marks{measures->names(), {}};
+  for (const Record& record : page.records) {
+    auto values = measures->of(record);
+    if (std::ranges::any_of(values, [](double value) { return value > 0; }))
+      marks.of_key[record.key] = std::move(values);
+  }
+  return marks;
+}
+
+nlohmann::json sums_json(const query::Quantity& quantity) {
+  return {{"pieces", quantity.pieces}, {"texels", quantity.texels}, {"area_m2", quantity.area_m2}};
+}
+
+double share_of(const query::Quantity& quantity, const query::Quantities& all) {
+  return all.surface_m2 > 0 ? std::min(1.0, quantity.area_m2 / all.surface_m2) : 0;
+}
+
+nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const Names& names,
+                       const OfMarks& marks) {
+  nlohmann::json list = nlohmann::json::array();
+  const auto add_share = [&](nlohmann::json json, const query::Quantity& quantity) {
+    json["share"] = share_of(quantity, all);
+    return json;
+  };
+  for (const query::Quantity& quantity : all.classes) {
+    nlohmann::json json = add_share(sums_json(quantity), quantity);
+    const std::string label = quantity_label(quantity, layer, names);
+    json["class"] = quantity_text(quantity, label);
+    if (quantity.value && layer.kind == LayerKind::database) {
+      const auto key = static_cast<std::int64_t>(*quantity.value);
+      json["key"] = key;
+      json["has_record"] = names.contains(key);
+      add_measures(json, marks.names, marks.of(key));
+    } else if (quantity.value) {
+      json["value"] = *quantity.value;
+    }
+    if (quantity.from) json["from"] = *quantity.from;
+    if (quantity.to) json["to"] = *quantity.to;
+    list.push_back(std::move(json));
+  }
+  const std::size_t count = list.size();
+  nlohmann::json sum = add_share(sums_json(all.sum), all.sum);
+  add_measures(sum, marks.names, marks.sum());
+  return {{"quantities", std::move(list)},
+          {"total", count},
+          {"sum", std::move(sum)},
+          {"surface_m2", all.surface_m2}};
+}
+
+Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& names,
+               const OfMarks& marks, const std::string& name) {
+  Sheet sheet{name, {"class"}, {}};
+  const bool has_keys = layer.kind == LayerKind::database,
+             has_values = query::classes_of(layer).each;
+  if (has_keys)
+    sheet.heads.emplace_back("key");
+  else if (has_values)
+    sheet.heads.emplace_back("value");
+  else
+    sheet.heads.insert(sheet.heads.end(), {"from", "to"});
+  sheet.heads.insert(sheet.heads.end(), {"pieces", "texels", "area_m2"});
+  sheet.heads.insert(sheet.heads.end(), marks.names.begin(), marks.names.end());
+  sheet.heads.emplace_back("percent_of_surface");
+  const auto number = [](const std::optional<double>& value) {
+    return value ? SheetCell(*value) : SheetCell();
+  };
+  const auto add = [&](const query::Quantity& quantity, SheetCell name_cell,
+                       const std::vector<double>& marked) {
+    std::vector<SheetCell> row{std::move(name_cell)};
+    if (has_keys || has_values)
+      row.push_back(number(quantity.value));
+    else
+      row.insert(row.end(), {number(quantity.from), number(quantity.to)});
+    row.insert(row.end(), {double(quantity.pieces), double(quantity.texels), quantity.area_m2});
+    row.insert(row.end(), marked.begin(), marked.end());
+    row.emplace_back(100 * share_of(quantity, all));
+    sheet.rows.push_back(std::move(row));
+  };
+  for (const query::Quantity& quantity : all.classes) {
+    const std::string label = quantity_label(quantity, layer, names);
+    add(quantity,
+        label.empty() && quantity.value ? SheetCell(*quantity.value)
+                                        : quantity_text(quantity, label),
+        has_keys ? marks.of(static_cast<std::int64_t>(*quantity.value)) : std::vector<double>());
+  }
+  add(all.sum, "total", marks.sum());
+  return sheet;
+}
+
+// Records that have lines or points, and nothing painted.
+void add_classes(query::Quantities& all, const OfMarks& marks) {
+  std::set<double> painted;
+  for (const query::Quantity& quantity : all.classes) painted.insert(*quantity.value);
+  for (const auto& [key, values] : marks.of_key) {
+    if (painted.contains(static_cast<double>(key))) continue;
+    query::Quantity& quantity = all.classes.emplace_back();
+    quantity.value = static_cast<double>(key);
+  }
+  std::ranges::stable_sort(all.classes, {},
+                           [](const query::Quantity& quantity) { return *quantity.value; });
+}
+
+Result<Response> quantity_sheet(const RouteContext& context, Sheet sheet, SheetFormat format,
+                                char separator) {
+  add_readable_areas(sheet);
+  return sheet_response(sheet, format, separator, context.options.upload_dir);
+}
+
+Result<Response> layer_quantities(const RouteContext& context, const Request& request) {
+  const auto format = STRATA_TRY(sheet_format(request));
+  const auto separator = STRATA_TRY(csv_separator(request));
+  const auto language = STRATA_TRY(asked_language(request));
+  const auto asked = STRATA_TRY(LayerQuery::from(context, request));
+  auto all = asked.room->quantities(asked.layer.slug, asked.at);
+  if (!all) return tl::unexpected(all.error());
+  Names names;
+  OfMarks marks;
+  if (asked.layer.table) {
+    std::optional<std::int64_t> records_at;  // as they were when that edit was made
+    if (asked.at) {
+      auto found =
+          context.store.table_sequence_when(*asked.layer.table, asked.layer.model_id, *asked.at);
+      if (!found) return tl::unexpected(found.error());
+      records_at = *found;
+    }
+    const auto table = context.store.table(std::to_string(*asked.layer.table), request.role());
+    if (!table) return tl::unexpected(table.error());
+    auto marked = marks_of(context, *table, request.role(), asked.room->model(), records_at);
+    if (!marked) return tl::unexpected(marked.error());
+    marks = std::move(*marked);
+    add_classes(*all, marks);
+    std::vector<std::int64_t> keys;
+    for (const query::Quantity& quantity : all->classes)
+      keys.push_back(static_cast<std::int64_t>(*quantity.value));
+    auto found = record_names(context, *asked.layer.table, request.role(), std::move(keys),
+                              records_at, language);
+    if (!found) return tl::unexpected(found.error());
+    names = std::move(*found);
+  }
+  auto response = STRATA_TRY(format == SheetFormat::json
+                                 ? json_response(to_json(*all, asked.layer, names, marks))
+                                 : quantity_sheet(context,
+                                                  to_sheet(*all, asked.layer, names, marks,
+                                                           asked.layer.slug + "-quantities"),
+                                                  format, separator));
+  add_sequences(response, asked.sequence, asked.room->durable_sequence());
+  response.with("Vary", "Accept");
+  return response;
+}
+
+// --- of a table: over all models whose layers hold its keys
+
+struct OfLayer {
+  Model model;
+  Layer layer;
+  std::map<std::int64_t, query::Quantity> of_key;
+};
+
+Result<std::vector<OfLayer>> of_layers(const RouteContext& context, std::int64_t table_id,
+                                       Role seen_by) {
+  auto layers = STRATA_TRY(context.store.layers_of_table(table_id, seen_by));
+  std::vector<OfLayer> found;
+  for (Layer& layer : layers) {
+    if (layer.sequence == 0) continue;  // nothing was ever painted there
+    auto room = STRATA_TRY(context.rooms.open(std::to_string(layer.model_id), seen_by));
+    auto all = room->quantities(layer.slug);
+    if (!all && all.error().code == ErrorCode::not_found) continue;  // deleted meanwhile
+    if (!all) return tl::unexpected(all.error());
+    if (all->classes.empty()) continue;
+    OfLayer of_layer{room->model(), std::move(layer), {}};
+    for (const query::Quantity& quantity : all->classes)
+      of_layer.of_key[static_cast<std::int64_t>(*quantity.value)] = quantity;
+    found.push_back(std::move(of_layer));
+  }
+  return found;
+}
+
+class QuantitySum {
+ public:
+  void add(const query::Quantity& part) {
+    sum_.pieces += part.pieces;
+    sum_.texels += part.texels;
+    area_m2_ += part.area_m2;
+    sum_.area_m2 = area_m2_.value();
+  }
+  const query::Quantity& sum() const { return sum_; }
+
+ private:
+  query::Quantity sum_;
+  CompensatedSum area_m2_;
+};
+
+Result<Response> table_quantities(const RouteContext& context, const Request& request) {
+  const auto format = STRATA_TRY(sheet_format(request));
+  const auto separator = STRATA_TRY(csv_separator(request));
+  const auto language = STRATA_TRY(asked_language(request));
+  const auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  const auto layers = STRATA_TRY(of_layers(context, table.id, request.role()));
+  std::map<std::int64_t, QuantitySum> of_key;
+  QuantitySum of_all;
+  for (const OfLayer& layer : layers)
+    for (const auto& [key, quantity] : layer.of_key) {
+      of_key[key].add(quantity);
+      of_all.add(quantity);
+    }
+  const query::Quantity& sum = of_all.sum();
+  const auto marks = STRATA_TRY(marks_of(context, table, request.role(), {}, {}));
+  for (const auto& [key, values] : marks.of_key) of_key.try_emplace(key);
+  std::vector<std::int64_t> keys;
+  for (const auto& [key, quantity] : of_key) keys.push_back(key);
+  const auto names =
+      STRATA_TRY(record_names(context, table.id, request.role(), keys, {}, language));
+  const auto text_of = [&](std::int64_t key) {
+    const auto name = names.find(key);
+    return name == names.end() || name->second.empty() ? std::to_string(key) : name->second;
+  };
+  if (format == SheetFormat::json) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const auto& [key, quantity] : of_key) {
+      nlohmann::json json = sums_json(quantity.sum()), parts = nlohmann::json::array();
+      for (const OfLayer& layer : layers)
+        if (const auto part = layer.of_key.find(key); part != layer.of_key.end()) {
+          parts.push_back(sums_json(part->second));
+          parts.back()["model"] = layer.model.id;
+          parts.back()["layer"] = layer.layer.id;
+        }
+      json["class"] = text_of(key);
+      json["key"] = key;
+      json["has_record"] = names.contains(key);
+      add_measures(json, marks.names, marks.of(key));
+      json["layers"] = std::move(parts);
+      list.push_back(std::move(json));
+    }
+    const std::size_t count = list.size();
+    nlohmann::json total = sums_json(sum);
+    add_measures(total, marks.names, marks.sum());
+    return json_response(
+               {{"quantities", std::move(list)}, {"total", count}, {"sum", std::move(total)}})
+        .with("Vary", "Accept");
+  }
+  Sheet sheet{table.slug + "-quantities", {"class", "key", "pieces", "texels", "area_m2"}, {}};
+  sheet.heads.insert(sheet.heads.end(), marks.names.begin(), marks.names.end());
+  for (const OfLayer& layer : layers)
+    sheet.heads.push_back(layer.model.slug + "/" + layer.layer.slug + " area_m2");
+  for (const auto& [key, of_one] : of_key) {
+    const query::Quantity& quantity = of_one.sum();
+    std::vector<SheetCell> row{text_of(key), double(key), double(quantity.pieces),
+                               double(quantity.texels), quantity.area_m2};
+    const auto marked = marks.of(key);
+    row.insert(row.end(), marked.begin(), marked.end());
+    for (const OfLayer& layer : layers) {
+      const auto part = layer.of_key.find(key);
+      row.push_back(part == layer.of_key.end() ? SheetCell() : SheetCell(part->second.area_m2));
+    }
+    sheet.rows.push_back(std::move(row));
+  }
+  std::vector<SheetCell> last{
+      std::string("total"), {}, double(sum.pieces), double(sum.texels), sum.area_m2};
+  const auto marked = marks.sum();
+  last.insert(last.end(), marked.begin(), marked.end());
+  for (const OfLayer& layer : layers) {
+    QuantitySum of_layer;
+    for (const auto& [key, quantity] : layer.of_key) of_layer.add(quantity);
+    last.emplace_back(of_layer.sum().area_m2);
+  }
+  sheet.rows.push_back(std::move(last));
+  auto response = quantity_sheet(context, std::move(sheet), format, separator);
+  if (response) response->with("Vary", "Accept");
+  return response;
+}
+
+}  // namespace
+
+void add_quantity_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/layers/{layer}/quantities",
+              .handler = answering([&context](const Request& request) {
+                return layer_quantities(context, request);
+              }),
+              .query = {"at", "lang", "f", "separator"},
+              .is_question = true,
+              .state = state_of_model(context)});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/tables/{table}/quantities",
+              .handler = answering([&context](const Request& request) {
+                return table_quantities(context, request);
+              }),
+              .query = {"lang", "f", "separator"},
+              .is_question = true,
+              .state = state_of_painted_table(context)});
+}
+
+}  // namespace strata::net

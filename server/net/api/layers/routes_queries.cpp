@@ -1,0 +1,147 @@
+#include "net/api/routes.h"
+#include "net/serialization/as_of.h"
+#include "net/serialization/point_text.h"
+#include "net/serialization/wire.h"
+#include "net/sheet.h"
+
+namespace strata::net {
+namespace {
+
+std::vector<std::string> slugs_of(const std::vector<Layer>& layers) {
+  std::vector<std::string> slugs;
+  for (const auto& layer : layers) slugs.push_back(layer.slug);
+  return slugs;
+}
+
+// Those of a body, or all.
+Result<std::vector<Layer>> asked_layers(
+    const room::Room& room, const std::optional<std::vector<protocol::LayerRef>>& asked) {
+  if (!asked) return room.layers();
+  std::vector<std::string> refs;
+  for (const auto& ref : *asked) refs.push_back(protocol::to_ref(ref));
+  return find_layers(room, refs, "layers");
+}
+
+Result<Response> position(const RouteContext& context, const Request& request) {
+  auto coordinates = STRATA_TRY(parse_point(request.query_or("coords", {})));
+  const std::string format = request.query_or("f", "json");
+  if (format != "json" && format != "covjson" && format != "csv")
+    return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is json, covjson or csv.", "f");
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  std::vector<Layer> layers = room->layers();
+  if (auto named = request.query.find("parameter-name"); named != request.query.end()) {
+    auto found = find_layers(*room, split_list(named->second), "parameter-name");
+    if (!found) return tl::unexpected(found.error());
+    layers = std::move(*found);
+  }
+  const auto asked = as_of(request);
+  const auto at = STRATA_TRY(find_sequence(context, *room, asked));
+  const auto sequence = at.value_or(room->sequence());
+  auto point = room->position(coordinates, slugs_of(layers), at);
+  if (!point) return tl::unexpected(point.error());
+  Response response;
+  if (format == "csv")
+    response = text_response(points_csv({*point}, slugs_of(layers)), kCsvType);
+  else if (format == "json")
+    response = json_response(protocol::to_json(to_protocol(*point)));
+  else if (!point->hit)
+    return fail(ErrorCode::not_found, "No surface", "The model has no surface to measure at.",
+                "coords");
+  else {
+    response = json_response(point_coverage(*point, layers, room->model()));
+    response.headers = {{"Content-Type", "application/prs.coverage+json"}};
+  }
+  add_sequences(response, sequence, room->durable_sequence());
+  return response;
+}
+
+Result<Response> positions(const RouteContext& context, const Request& request) {
+  auto asked =
+      STRATA_TRY(body_of<protocol::PositionsRequest>(request, context.options.max_positions_bytes));
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto layers = STRATA_TRY(asked_layers(*room, asked.layers));
+  const std::vector<glm::dvec3> points(asked.points.begin(), asked.points.end());
+  const auto at = STRATA_TRY(find_sequence(context, *room, asked.at));
+  const auto sequence = at.value_or(room->sequence());
+  auto answers = room->positions(points, slugs_of(layers), at);
+  if (!answers) return tl::unexpected(answers.error());
+  Response response;
+  if (request.header("accept").find("text/csv") != std::string_view::npos) {
+    response = text_response(points_csv(*answers, slugs_of(layers)), kCsvType);
+  } else {
+    nlohmann::json list = nlohmann::json::array();
+    for (const auto& point : *answers) list.push_back(protocol::to_json(to_protocol(point)));
+    const std::size_t total = list.size();
+    response = json_response({{"positions", std::move(list)}, {"total", total}});
+  }
+  add_sequences(response, sequence, room->durable_sequence());
+  response.with("Vary", "Accept");
+  return response;
+}
+
+Result<Response> profile(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::ProfileRequest>(request));
+  const auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return tl::unexpected(room.error());
+  const auto layers = STRATA_TRY(asked_layers(**room, asked.layers));
+  const Unit unit = (*room)->model().unit;
+  room::ProfileLine line;
+  if (asked.places)
+    line = room::PlacesInSteps{*asked.places, in_model_units(*asked.step_mm, unit)};
+  else
+    line = room::SeenLine{*asked.camera, *asked.path};
+  const auto at = STRATA_TRY(find_sequence(context, **room, asked.at));
+  const auto sequence = at.value_or((*room)->sequence());
+  const auto found = (*room)->profile(line, slugs_of(layers), at);
+  if (!found) return tl::unexpected(found.error());
+  const bool as_csv = request.header("accept").find("text/csv") != std::string_view::npos;
+  Response response = as_csv ? text_response(profile_csv(*found, unit, slugs_of(layers)), kCsvType)
+                             : json_response(to_json(*found, unit));
+  add_sequences(response, sequence, (*room)->durable_sequence());
+  response.with("Vary", "Accept");
+  return response;
+}
+
+Result<Response> pick(const RouteContext& context, const Request& request) {
+  auto asked = STRATA_TRY(body_of<protocol::PickRequest>(request));
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto at = STRATA_TRY(find_sequence(context, *room, asked.at));
+  const auto sequence = at.value_or(room->sequence());
+  auto point = room->pick(asked.camera, asked.x, asked.y, slugs_of(room->layers()), at);
+  if (!point) return tl::unexpected(point.error());
+  Response response = json_response(protocol::to_json(to_protocol(*point)));
+  add_sequences(response, sequence, room->durable_sequence());
+  return response;
+}
+
+}  // namespace
+
+void add_query_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/position",
+              .handler = answering(
+                  [&context](const Request& request) { return position(context, request); }),
+              .query = {"coords", "parameter-name", "f", "at"}});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/positions",
+              .handler = answering(
+                  [&context](const Request& request) { return positions(context, request); }),
+              .body = BodyKind::memory,
+              .max_body = context.options.max_positions_bytes,
+              .is_question = true});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/profile",
+              .handler = answering(
+                  [&context](const Request& request) { return profile(context, request); }),
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .is_question = true});
+  router.add(
+      {.method = Method::post,
+       .pattern = "/api/v1/models/{model}/pick",
+       .handler = answering([&context](const Request& request) { return pick(context, request); }),
+       .body = BodyKind::memory,
+       .max_body = context.options.max_json_bytes});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,238 @@
+#include "core/mapped_file.h"
+#include "core/number_text.h"
+#include "jobs/shape_layer.h"
+#include "jobs/transfer.h"
+#include "mesh/input_files.h"
+#include "mesh/vertex_properties.h"
+#include "net/api/layers/layer_jobs.h"
+#include "net/api/routes.h"
+#include "net/http/digest.h"
+#include "net/mark_transfer.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::size_t kMostProperties = 10000;
+constexpr std::uint64_t kMaxCsvBytes = 1ull << 30;
+
+Result<std::vector<Layer>> chosen_layers(store::Store& store, const Model& source, Role seen_by,
+                                         const Model& target,
+                                         const std::optional<std::vector<std::string>>& refs) {
+  std::vector<Layer> layers;
+  if (refs) {
+    for (const std::string& ref : *refs) {
+      auto layer = store.layer(source.id, ref, seen_by);
+      if (!layer && layer.error().code == ErrorCode::not_found)
+        return fail(ErrorCode::invalid, "No such layer",
+                    source.name + " has no layer \"" + ref + "\".", "layers");
+      if (!layer) return tl::unexpected(layer.error());
+      layers.push_back(std::move(*layer));
+    }
+  } else {
+    auto all = STRATA_TRY(store.layers(source.id, seen_by));
+    layers = std::move(all);
+  }
+  if (layers.empty())
+    return fail(ErrorCode::invalid, "No layers",
+                source.name + " has no layers that could be brought over.", "from");
+  for (const Layer& layer : layers)
+    if (layer.table && source.project_id != target.project_id)
+      return fail(ErrorCode::invalid, "Table of another project",
+                  "The keys of " + layer.name +
+                      " are of a table that this project does not have; name the other layers.",
+                  "layers");
+  return layers;
+}
+
+Result<jobs::TransferRequest> transfer_request(store::Store& store, const protocol::Transfer& asked,
+                                               const Model& target, const Principal& who) {
+  auto source = store.model(asked.from);
+  if (source ? !who.sees(source->project_id) : source.error().code == ErrorCode::not_found)
+    return fail(ErrorCode::invalid, "No such model", "There is no model \"" + asked.from + "\".",
+                "from");
+  if (!source) return tl::unexpected(source.error());
+  if (source->id == target.id)
+    return fail(ErrorCode::invalid, "The same model",
+                "Name the other version of the scan, whose layers are taken.", "from");
+  if (!source->crs.empty() && !target.crs.empty() && source->crs != target.crs)
+    return fail(ErrorCode::invalid, "Other coordinates",
+                "This model lies in " + target.crs + ", the other one in " + source->crs +
+                    "; bring both into one coordinate system before importing them.",
+                "from");
+  auto layers =
+      chosen_layers(store, *source, who.roles.in(source->project_id), target, asked.layers);
+  if (!layers) return tl::unexpected(layers.error());
+  return jobs::TransferRequest{std::move(*source), std::move(*layers), asked.tolerance_mm,
+                               asked.max_angle};
+}
+
+// The layer as it is on the source, for the target.
+Layer copy_of(const Layer& from, int resolution, int order, const jobs::TransferRequest& request) {
+  Layer layer = from;
+  layer.id = 0;
+  layer.resolution = resolution;
+  layer.order = order;
+  layer.locked = false;   // work goes on here
+  layer.formula.reset();  // its values are brought over, as they are
+  layer.origin.reset();
+  layer.edited_by_hand = false;
+  layer.description += (layer.description.empty() ? "" : "\n\n") +
+                       std::string("Brought over from ") + request.source.name + ", within " +
+                       short_number(request.tolerance_mm) + " mm.";
+  return layer;
+}
+
+Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room,
+                                const jobs::TransferRequest& request, const std::string& user,
+                                NewLayers& layers, Progress& progress) {
+  jobs::TransferTarget target{room.model(), room.geometry(), room.search_tree(),
+                              [&room](int resolution) { return room.surface_map(resolution); }};
+  int order = order_on_top(room.layers());
+  nlohmann::json report{{"from", request.source.id}, {"layers", nlohmann::json::array()}};
+  const auto deliver = [&](jobs::TransferredLayer transferred) -> Result<void> {
+    Layer layer = copy_of(*transferred.from, transferred.resolution, order++, request);
+    layer.model_id = target.model.id;
+    const nlohmann::json recipe{{"kind", "transfer"},
+                                {"model", std::to_string(request.source.id)},
+                                {"layer", std::to_string(transferred.from->id)},
+                                {"tolerance_mm", request.tolerance_mm},
+                                {"max_angle", request.max_angle_degrees}};
+    auto made = STRATA_TRY(layers.add(std::move(layer), std::move(transferred.tiles), recipe));
+    report["layers"].push_back({{"from", transferred.from->id},
+                                {"layer", made.id},
+                                {"name", made.name},
+                                {"source_m2", transferred.source_m2},
+                                {"transferred_m2", transferred.transferred_m2},
+                                {"lost_m2", transferred.lost_m2}});
+    return {};
+  };
+  auto summary =
+      STRATA_TRY(jobs::transfer_layers(context.store, target, request, deliver, progress));
+  report["area_m2"] = summary.area_m2;
+  report["matched_m2"] = summary.matched_m2;
+  const auto brought = STRATA_TRY(bring_marks(context, target, request, user));
+  report["marks"] = brought.marks;
+  report["lost_marks"] = brought.lost_marks;
+  return report;
+}
+
+Result<Response> start_transfer(const RouteContext& context, JobBook& book,
+                                const Request& request) {
+  auto asked = STRATA_TRY(body_of<protocol::Transfer>(request));
+  auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return tl::unexpected(room.error());
+  auto wish = transfer_request(context.store, asked, (*room)->model(), *request.principal);
+  if (!wish) return tl::unexpected(wish.error());
+  return start_layer_job(context, book, request, *room,
+                         [&context, room = *room, wish = std::move(*wish), user = request.user()](
+                             NewLayers& layers, Progress& progress) {
+                           return transfer(context, *room, wish, user, layers, progress);
+                         });
+}
+
+Result<Response> list_properties(const RouteContext& context, const Request& request) {
+  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  nlohmann::json list = nlohmann::json::array();
+  for (const SourceFile& source : model.source_files) {
+    std::vector<std::uint8_t> beginning;
+    auto read =
+        context.store.read_source(model.id, source.name, [&](std::span<const std::uint8_t> chunk) {
+          beginning.assign(chunk.begin(), chunk.end());
+          return false;
+        });
+    if (!read) return tl::unexpected(read.error());
+    for (const std::string& property : mesh::vertex_property_names(beginning))
+      if (list.size() < kMostProperties)
+        list.push_back({{"source", source.name}, {"property", property}});
+  }
+  const std::size_t total = list.size();
+  return json_response({{"properties", std::move(list)}, {"total", total}});
+}
+
+// The scan whose vertices are meant: the one named, or the only one that has an order of vertices.
+Result<std::string> scan_of(const Model& model, const std::string& wanted) {
+  std::vector<std::string> scans;
+  for (const SourceFile& source : model.source_files) {
+    const auto kind = mesh::input_kind(source.name);
+    const bool has_order = kind == mesh::InputKind::ply || kind == mesh::InputKind::obj;
+    if (has_order && (wanted.empty() || source.name == wanted)) scans.push_back(source.name);
+  }
+  if (scans.size() == 1) return scans.front();
+  return fail(ErrorCode::invalid, "Which scan?",
+              scans.empty()
+                  ? "This model has no such PLY or OBJ file whose vertices the values could be of."
+                  : "Several files of this model have vertices; name one as `source`.",
+              "source");
+}
+
+void write_vertices(const RouteContext& context, const Request& request, const Respond& respond) {
+  auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return respond(room.error());
+  auto layer = (*room)->layer(request.param("layer"));
+  if (!layer) return respond(layer.error());
+  const Model model = (*room)->model();
+  auto source = scan_of(model, request.query_or("source", {}));
+  if (!source) return respond(source.error());
+  const auto file = MappedFile::open(request.body_file);
+  if (!file || file->bytes().empty())
+    return respond(
+        Error{ErrorCode::malformed, "Empty body", "Send one number a line as the body.", "body"});
+  Progress progress;
+  auto scan = jobs::read_source(context.store, model, *source, progress);
+  if (!scan) return respond(scan.error());
+  auto values = mesh::read_vertex_csv(*scan, *source, file->view(), progress);
+  if (!values) return respond(values.error());
+  scan->clear();
+  const auto geometry = (*room)->geometry();
+  auto tiles = jobs::paint_vertex_values(
+      geometry, mesh::values_at_positions(*geometry, *values, !is_float(layer->type)), layer->type,
+      layer->resolution, progress);
+  if (!tiles) {
+    Error problem = tiles.error();
+    if (problem.field == "type")
+      problem.field = "body";  // the layer is there already: it is the values that do not fit
+    return respond(problem);
+  }
+  room::EditRequest edit{edit_id(request, *layer, "import"), request.author(), layer->id};
+  edit.record = {{"op", "import"},
+                 {"format", "vertices.csv"},
+                 {"source", *source},
+                 {"bytes", request.body_bytes},
+                 {"sha256", sha256_hex(file->view())}};
+  edit.edit = room::ImportEdit{std::move(*tiles)};
+  apply_edit(context, request, *room, std::move(edit), respond);
+}
+
+}  // namespace
+
+void add_shape_routes(Router& router, const RouteContext& context) {
+  auto book = std::make_shared<JobBook>(context.jobs);
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/transfer",
+              .handler = answering([&context, book](const Request& request) {
+                return start_transfer(context, *book, request);
+              }),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true,
+              .replay = [&context, book](const Request& request, const nlohmann::json& kept) {
+                return repeat_layer_job(context, *book, request, kept);
+              }});
+  router.add(
+      {.method = Method::put,
+       .pattern = "/api/v1/models/{model}/layers/{layer}/vertices.csv",
+       .handler = [&context](const Request& request,
+                             const Respond& respond) { write_vertices(context, request, respond); },
+       .role = Role::annotator,
+       .query = {"source"},
+       .body = BodyKind::file,
+       .max_body = kMaxCsvBytes});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/vertex-properties",
+              .handler = answering([&context](const Request& request) {
+                return list_properties(context, request);
+              })});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,254 @@
+#include "core/compensated_sum.h"
+#include "net/api/routes.h"
+#include "net/class_names.h"
+#include "net/readable_area.h"
+#include "net/serialization/as_of.h"
+#include "net/serialization/wire.h"
+#include "net/sheet.h"
+#include "query/expression_parser.h"
+
+namespace strata::net {
+namespace {
+
+Result<room::Selection> selection_of(const RouteContext& context, const room::Room& room,
+                                     const std::optional<std::string>& where,
+                                     const std::optional<protocol::Within>& within,
+                                     const std::optional<protocol::At>& at) {
+  room::Selection selection;
+  if (where) {
+    auto condition = STRATA_TRY(query::parse_condition(*where, "where"));
+    selection.where = std::move(condition);
+  }
+  if (within && within->path) {
+    selection.within =
+        room::Outline{*within->camera, *within->path, within->through.value_or(false)};
+  } else if (within) {
+    room::Selection::Around around;
+    around.at = place_of(*within->at);
+    around.radius = in_model_units(*within->radius_mm, room.model().unit);
+    selection.within = std::move(around);
+  }
+  auto sequence = STRATA_TRY(find_sequence(context, room, at));
+  selection.at = sequence;
+  return selection;
+}
+
+Result<Response> statistics(const RouteContext& context, const Request& request) {
+  room::StatisticsWanted wanted;
+  for (const auto& part : split_list(request.query_or("include", {}))) {
+    if (part == "pieces")
+      wanted.pieces = true;
+    else if (part == "perimeter")
+      wanted.perimeter = true;
+    else if (part == "quantiles")
+      wanted.quantiles = true;
+    else
+      return fail(ErrorCode::invalid, "Unknown part",
+                  "`include` takes pieces, perimeter and quantiles, with commas between.",
+                  "include");
+  }
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto layer = STRATA_TRY(room->layer(request.param("layer")));
+  std::optional<std::string> where;
+  if (const auto given = request.query.find("where"); given != request.query.end())
+    where = given->second;
+  const auto selection =
+      STRATA_TRY(selection_of(context, *room, where, std::nullopt, as_of(request)));
+  const auto sequence = selection.at.value_or(room->sequence());
+  auto statistics = room->statistics(layer.slug, selection, wanted);
+  if (!statistics) return tl::unexpected(statistics.error());
+  Response response = json_response(to_json(*statistics));
+  add_sequences(response, sequence, room->durable_sequence());
+  return response;
+}
+
+// The edit that paints where the condition holds.
+Result<room::EditRequest> painting(const Request& request, const protocol::SelectRequest& asked,
+                                   const room::Room& room) {
+  if (request.principal->role < Role::annotator)
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "`into` paints, which needs the role annotator.", "into");
+  if (!asked.where || asked.within || asked.at)
+    return fail(
+        ErrorCode::invalid, "Cannot be painted",
+        "`into` paints where a condition holds now: give `where`, and neither `within` nor `at`.",
+        "into");
+  const auto layer = room.layer(protocol::to_ref(asked.into->layer));
+  if (!layer) {
+    Error problem = layer.error();
+    problem.field = "into.layer";
+    return tl::unexpected(std::move(problem));
+  }
+  protocol::EditFill fill;
+  fill.mode = protocol::EditFillMode::where;
+  fill.where = asked.where;
+  fill.value = asked.into->value;
+  fill.erase = asked.into->erase;
+  return edit_request(fill, *layer, room.model(), edit_id(request, *layer, "select"),
+                      request.author());
+}
+
+void select(const RouteContext& context, const Request& request, const Respond& respond) {
+  const auto asked = body_of<protocol::SelectRequest>(request);
+  if (!asked) return respond(asked.error());
+  const auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return respond(room.error());
+  std::vector<std::string> refs, slugs;
+  for (const auto& ref : asked->layers.value_or(std::vector<protocol::LayerRef>{}))
+    refs.push_back(protocol::to_ref(ref));
+  const auto layers = find_layers(**room, refs, "layers");
+  if (!layers) return respond(layers.error());
+  for (const auto& layer : *layers) slugs.push_back(layer.slug);
+  const auto selection = selection_of(context, **room, asked->where, asked->within, asked->at);
+  if (!selection) return respond(selection.error());
+  room::StatisticsWanted wanted;
+  for (const auto part : asked->include.value_or(std::vector<protocol::StatisticsPart>{}))
+    switch (part) {
+      case protocol::StatisticsPart::pieces: wanted.pieces = true; break;
+      case protocol::StatisticsPart::perimeter: wanted.perimeter = true; break;
+      case protocol::StatisticsPart::quantiles: wanted.quantiles = true; break;
+    }
+  std::optional<room::EditRequest> edit;
+  if (asked->into) {
+    auto made = painting(request, *asked, **room);
+    if (!made) return respond(made.error());
+    edit = std::move(*made);
+  }
+  const auto sequence = selection->at.value_or((*room)->sequence());
+  const auto area = (*room)->select(*selection, slugs, wanted);
+  if (!area) return respond(area.error());
+  nlohmann::json body = to_json(*area);
+  if (edit)
+    return apply_edit(context, request, *room, std::move(*edit), respond,
+                      [body](nlohmann::json of_edit) mutable {
+                        body["edit"] = std::move(of_edit);
+                        return std::move(body);
+                      });
+  Response response = json_response(body);
+  add_sequences(response, sequence, (*room)->durable_sequence());
+  respond(std::move(response));
+}
+
+constexpr const char* kNoValue = "–";  // where one of the two layers has none
+
+// What one side of a cross-table is called.
+Result<std::vector<std::string>> side_names(const RouteContext& context, const room::Room& room,
+                                            const Layer& layer, Role role,
+                                            const std::vector<query::CrossTable::Key>& side,
+                                            std::optional<std::int64_t> at,
+                                            const std::string& language) {
+  std::vector<double> values;
+  for (const auto& key : side)
+    if (key) values.push_back(*key);
+  std::optional<std::int64_t> records_at;  // as they were when that edit was made
+  if (layer.table && at) {
+    const auto found =
+        STRATA_TRY(context.store.table_sequence_when(*layer.table, room.model().id, *at));
+    records_at = found;
+  }
+  auto names = class_names(context, layer, role, values, records_at, language);
+  if (names && values.size() < side.size()) names->emplace_back(kNoValue);  // nothing is the last
+  return names;
+}
+
+// With names and sums, as people read it: in the unit that suits the sum of all.
+Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Layer& columns,
+               const std::vector<std::string>& row_names,
+               const std::vector<std::string>& column_names) {
+  CompensatedSum all_m2;
+  for (const auto& row : table.area_m2)
+    for (const double area_m2 : row) all_m2 += area_m2;
+  const AreaUnit unit = readable_area(all_m2.value());
+  Sheet sheet{rows.slug + "-" + columns.slug,
+              {rows.name + " / " + columns.name + ", " + unit.name},
+              {},
+              {}};
+  sheet.heads.insert(sheet.heads.end(), column_names.begin(), column_names.end());
+  sheet.heads.emplace_back("total");
+  std::vector<CompensatedSum> sums(column_names.size() + 1);
+  for (std::size_t row = 0; row < row_names.size(); ++row) {
+    std::vector<SheetCell> cells{row_names[row]};
+    CompensatedSum sum;
+    for (std::size_t column = 0; column < column_names.size(); ++column) {
+      const double area = table.area_m2[row][column] * unit.per_m2;
+      cells.emplace_back(area);
+      sums[column] += area;
+      sum += area;
+    }
+    cells.emplace_back(sum.value());
+    sums.back() += sum;
+    sheet.rows.push_back(std::move(cells));
+  }
+  std::vector<SheetCell> last{std::string("total")};
+  for (const CompensatedSum& sum : sums) last.emplace_back(sum.value());
+  sheet.rows.push_back(std::move(last));
+  sheet.number_formats.assign(sheet.heads.size(), number_format(all_m2.value() * unit.per_m2));
+  return sheet;
+}
+
+Result<Response> cross_table(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::CrossTableRequest>(request));
+  // Without `f` scripts get keys; what is asked for as a sheet is for people.
+  const bool as_csv = !request.query.contains("f") &&
+                      request.header("accept").find("text/csv") != std::string_view::npos;
+  const auto format =
+      STRATA_TRY(as_csv ? Result<SheetFormat>(SheetFormat::csv) : sheet_format(request));
+  const auto separator = STRATA_TRY(csv_separator(request));
+  const auto language = STRATA_TRY(asked_language(request));
+  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto rows = STRATA_TRY(find_layers(*room, {protocol::to_ref(asked.rows)}, "rows"));
+  const auto columns = STRATA_TRY(find_layers(*room, {protocol::to_ref(asked.columns)}, "columns"));
+  const auto selection =
+      STRATA_TRY(selection_of(context, *room, asked.where, asked.within, asked.at));
+  const auto sequence = selection.at.value_or(room->sequence());
+  const auto table = room->cross_table(rows.front().slug, columns.front().slug, selection);
+  if (!table) return tl::unexpected(table.error());
+  Response response =
+      as_csv ? text_response(cross_table_csv(*table, rows.front().slug, columns.front().slug),
+                             kCsvType)
+             : json_response(to_json(*table));
+  if (!as_csv && format != SheetFormat::json) {
+    const auto side = [&](const Layer& layer, const std::vector<query::CrossTable::Key>& keys) {
+      return side_names(context, *room, layer, request.role(), keys, selection.at, language);
+    };
+    const auto row_names = STRATA_TRY(side(rows.front(), table->rows));
+    const auto column_names = STRATA_TRY(side(columns.front(), table->columns));
+    auto sheet =
+        sheet_response(sheet_of(*table, rows.front(), columns.front(), row_names, column_names),
+                       format, separator, context.options.upload_dir);
+    if (!sheet) return sheet;
+    response = std::move(*sheet);
+  }
+  add_sequences(response, sequence, room->durable_sequence());
+  response.with("Vary", "Accept");
+  return response;
+}
+
+}  // namespace
+
+void add_statistics_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/layers/{layer}/statistics",
+              .handler = answering(
+                  [&context](const Request& request) { return statistics(context, request); }),
+              .query = {"include", "at", "where"},
+              .is_question = true,
+              .state = state_of_model(context)});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/select",
+              .handler = [&context](const Request& request,
+                                    const Respond& respond) { select(context, request, respond); },
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .is_question = true});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/cross-table",
+              .handler = answering(
+                  [&context](const Request& request) { return cross_table(context, request); }),
+              .query = {"f", "separator", "lang"},
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .is_question = true});
+}
+
+}  // namespace strata::net

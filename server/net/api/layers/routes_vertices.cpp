@@ -1,0 +1,97 @@
+#include "net/api/routes.h"
+#include "net/serialization/as_of.h"
+#include "net/sheet.h"
+#include "net/vertex_colors.h"
+#include "query/vertex_ply.h"
+
+namespace strata::net {
+namespace {
+
+// What is sent, with the memory that it takes.
+struct VertexFile {
+  MemoryLedger::Share memory;
+  query::VertexPly ply;
+};
+
+// The layers that the query names, as it names them; all by their order where it names none.
+Result<std::vector<query::LayerView>> layer_views(const Request& request, room::Room& room,
+                                                  room::Room::At at) {
+  std::vector<Layer> layers = room.layers();
+  if (const auto named = request.query.find("layers"); named != request.query.end()) {
+    auto found = find_layers(room, split_list(named->second), "layers");
+    if (!found) return tl::unexpected(found.error());
+    layers = std::move(*found);
+  }
+  std::vector<query::LayerView> views;
+  for (const Layer& layer : layers) {
+    for (const query::LayerView& other : views)
+      if (other.layer.id == layer.id)
+        return fail(ErrorCode::invalid, "Layer named twice", "Name each layer once.", "layers");
+    auto tiles = STRATA_TRY(room.tiles(layer.slug, at));
+    views.push_back({layer, std::move(tiles)});
+  }
+  return views;
+}
+
+// Whether the vertices have the colours that the layers give them. The default leaves the scan's as
+// they are: who reads the mesh back as a scan does not get layers as its colours.
+Result<bool> wants_layer_colors(const Request& request) {
+  const std::string colors = request.query_or("colors", "scan");
+  if (colors != "scan" && colors != "layers")
+    return fail(
+        ErrorCode::invalid, "Colours not understood",
+        "`colors` is `scan` (the colours of the file, the default) or `layers` (as the layers are drawn).",
+        "colors");
+  return colors == "layers";
+}
+
+// As pictures show them: those that are named in the order in which they are, otherwise those that
+// are visible in theirs.
+std::vector<query::LayerView> shown_layers(const Request& request,
+                                           std::vector<query::LayerView> views) {
+  if (request.query.contains("layers")) return views;
+  std::erase_if(views, [](const query::LayerView& view) { return !view.layer.visible; });
+  room::sort_as_shown(views, room::ViewSettings{});
+  return views;
+}
+
+Result<Response> read_vertices(const RouteContext& context, const Request& request) {
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  STRATA_TRY(check_source_download(request, room->model()));
+  const auto by_layers = STRATA_TRY(wants_layer_colors(request));
+  const auto at = STRATA_TRY(find_sequence(context, *room, as_of(request)));
+  const auto sequence = at.value_or(room->sequence());
+  auto views = STRATA_TRY(layer_views(request, *room, at));
+  MemoryLedger::Share memory;
+  std::optional<query::VertexColors> colors;
+  if (by_layers) {
+    auto composed = compose_vertices(context, *room, request.role(), shown_layers(request, views));
+    if (!composed) return tl::unexpected(composed.error());
+    memory = std::move(composed->memory);
+    colors = std::move(composed->colors);
+  }
+  query::VertexPly ply(room->geometry(), std::move(views), std::move(colors));
+  const auto file =
+      std::make_shared<const VertexFile>(VertexFile{std::move(memory), std::move(ply)});
+  Response response;
+  response.with("Content-Type", "model/ply");
+  name_download(response, room->model().slug + ".ply");
+  add_sequences(response, sequence, room->durable_sequence());
+  response.stream = Response::Stream{
+      file->ply.bytes(), [file](const Response::Sink& sink) { return file->ply.write(sink); }};
+  return response;
+}
+
+}  // namespace
+
+void add_vertex_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/vertices.ply",
+              .handler = answering(
+                  [&context](const Request& request) { return read_vertices(context, request); }),
+              .query = {"layers", "colors", "at"},
+              .is_question = true,
+              .state = state_of_model(context)});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,15 @@
+#include "net/api/models/picture_response.h"
+
+#include "core/picture.h"
+
+namespace strata::net {
+
+Result<Response> picture_response(room::Room& room, const room::PictureRequest& shown,
+                                  const Camera& camera, bool is_png) {
+  constexpr int kJpegQuality = 90;  // one picture, not a frame of many
+  const PictureFormat format = is_png ? PictureFormat::png : PictureFormat::jpeg;
+  auto file = STRATA_TRY(room.picture_file(shown, camera, format, {kJpegQuality, true}));
+  return bytes_response(std::move(file), std::string(media_type(format)));
+}
+
+}  // namespace strata::net

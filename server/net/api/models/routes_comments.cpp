@@ -1,0 +1,322 @@
+// Threads of comments on a model. Everybody reads them, annotators write; what one wrote one
+// changes oneself, and curators may delete it.
+#include <set>
+
+#include "core/log.h"
+#include "core/no_such.h"
+#include "core/timestamp.h"
+#include "net/api/annotated_routes.h"
+#include "net/api/routes.h"
+#include "net/http/answer_book.h"
+#include "net/live/comment_events.h"
+#include "net/serialization/people_wire.h"
+#include "net/serialization/wire.h"
+#include "store/comments.h"
+
+namespace strata::net {
+namespace {
+
+using protocol::CommentEventEvent;
+using store::Comment;
+using store::Comments;
+
+constexpr double kFarthest = 0.05;  // from the surface, of the model's diagonal
+
+nlohmann::json to_json(const glm::dvec3& point) { return {point.x, point.y, point.z}; }
+
+nlohmann::json to_json(const Comment& comment) {
+  nlohmann::json json{
+      {"id", comment.id},          {"model", comment.model_id},      {"text", comment.text},
+      {"user", comment.user},      {"time", utc_text(comment.time)}, {"deleted", comment.deleted},
+      {"version", comment.version}};
+  if (comment.thread) json["thread"] = *comment.thread;
+  if (comment.place) {
+    json["position"] = to_json(comment.place->position);
+    json["normal"] = to_json(comment.place->normal);
+    json["state"] = comment.resolved ? "resolved" : "open";
+  }
+  if (comment.layer_id) json["layer"] = *comment.layer_id;
+  if (comment.table_id && comment.record) {
+    json["table"] = *comment.table_id;
+    json["record"] = *comment.record;
+  }
+  if (comment.resolved)
+    json["resolved"] = {{"user", comment.resolved->user},
+                        {"time", utc_text(comment.resolved->time)}};
+  if (comment.edited) json["edited"] = utc_text(*comment.edited);
+  return json;
+}
+
+// Those whom a comment, and what is done to it now, may name.
+Result<People> people_of(const RouteContext& context, const Comment& comment,
+                         const std::string& asking) {
+  std::vector<std::string> names{comment.user, asking};
+  if (comment.resolved) names.push_back(comment.resolved->user);
+  return People::load(context.store, names);
+}
+
+nlohmann::json to_json(const Comment& comment, const People& people) {
+  nlohmann::json json = to_json(comment);
+  people.add(json);
+  return json;
+}
+
+Result<Response> page_response(const RouteContext& context, const Request& request,
+                               const char* list, Comments::Page found, const Page& page) {
+  const auto last = end_page(found.comments, page,
+                             [](const Comment& comment) { return ListPlace::array({comment.id}); });
+  nlohmann::json comments = nlohmann::json::array();
+  for (const Comment& comment : found.comments) comments.push_back(to_json(comment));
+  STRATA_TRY(People::add_to(context.store, comments));
+  Response response = json_response({{list, std::move(comments)}, {"total", found.total}});
+  add_page_links(response, request, page, last);
+  return response;
+}
+
+void tell(const RouteContext& context, CommentEventEvent event, const Comment& comment,
+          const People& people, const std::string& user) {
+  protocol::CommentEvent message;
+  message.event = event;
+  message.comment_id = comment.id;
+  message.comment = to_json(comment, people);
+  message.user = user;
+  context.live_sockets.tell_model(comment.model_id, comment.visibility, message);
+}
+
+Result<Comment> stored_comment(const RouteContext& context, const Request& request) {
+  const auto id = parse_integer(request.param("comment"), 1, INT64_MAX, "comment");
+  if (!id) return no_such("comment", request.param("comment"));
+  return context.store.comments().comment(*id, request.role());
+}
+
+Result<Response> list_comments(const RouteContext& context, const Request& request) {
+  const auto page = STRATA_TRY(page_of(request));
+  Comments::Query query;
+  const auto after = STRATA_TRY(number_after(page));
+  query.limit = page.limit + 1;
+  query.offset = page.offset;
+  query.after = after;
+  if (const auto state = request.query.find("state"); state != request.query.end()) {
+    if (state->second != "open" && state->second != "resolved")
+      return fail(ErrorCode::invalid, "No such state", "`state` is open or resolved.", "state");
+    query.resolved = state->second == "resolved";
+  }
+  if (const auto since = request.query.find("since"); since != request.query.end()) {
+    query.since = utc_timestamp(since->second);
+    if (!query.since)
+      return fail(ErrorCode::invalid, "Not a time",
+                  "`since` is a time such as 2026-05-04T12:00:00Z (a + of a zone is %2B).",
+                  "since");
+  }
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto found = STRATA_TRY(context.store.comments().of_model(model.id, request.role(), query));
+  return page_response(context, request, "comments", found, page);
+}
+
+Result<Response> list_replies(const RouteContext& context, const Request& request) {
+  const auto page = STRATA_TRY(page_of(request));
+  const auto thread = STRATA_TRY(stored_comment(context, request));
+  const auto after = STRATA_TRY(number_after(page));
+  auto found = STRATA_TRY(context.store.comments().replies(thread.id, request.role(),
+                                                           page.limit + 1, page.offset, after));
+  return page_response(context, request, "replies", found, page);
+}
+
+Result<Comment::Place> place_on(room::Room& room, const glm::dvec3& world) {
+  const auto nearest = STRATA_TRY(room.position(world, {}));
+  const Model model = room.model();
+  const double farthest = kFarthest * glm::length(model.bounds_max - model.bounds_min);
+  if (!nearest.hit || nearest.distance > farthest)
+    return fail(
+        ErrorCode::invalid, "Not on the model",
+        "`position` must lie on the surface or within 5 % of the model's diagonal from it, in world coordinates.",
+        "position");
+  return Comment::Place{nearest.position, glm::dvec3(nearest.normal)};
+}
+
+// What the comment is about, as asked for.
+Result<void> put_subject(const RouteContext& context, const room::Room& room,
+                         const protocol::CommentCreate& asked, Comment& comment) {
+  if (!asked.layer) {
+    if (asked.record)
+      return fail(ErrorCode::invalid, "Record of no layer",
+                  "`record` is a key of a `layer`; name it, too.", "layer");
+    return {};
+  }
+  const auto layers = STRATA_TRY(find_layers(room, {protocol::to_ref(*asked.layer)}, "layer"));
+  const Layer& layer = layers.front();
+  comment.layer_id = layer.id;
+  if (!asked.record) return {};
+  if (!layer.table)
+    return fail(ErrorCode::invalid, "No records",
+                "The layer `" + layer.slug + "` is numeric: it has no records.", "record");
+  const auto missing =
+      STRATA_TRY(context.store.missing_records(*layer.table, std::vector{*asked.record}));
+  if (!missing.empty())
+    return fail(
+        ErrorCode::invalid, "No such record",
+        "The table of `" + layer.slug + "` has no record " + std::to_string(*asked.record) + ".",
+        "record");
+  comment.table_id = *layer.table;
+  comment.record = *asked.record;
+  return {};
+}
+
+Result<Response> write(const RouteContext& context, const Request& request,
+                       const Comment& comment) {
+  const auto people = STRATA_TRY(people_of(context, comment, request.user()));
+  const auto answer = [&people](const Comment& made) {
+    return json_response(to_json(made, people), 201)
+        .with("Location", "/api/v1/comments/" + std::to_string(made.id))
+        .with("ETag", etag_of(made.version));
+  };
+  const auto written =
+      context.store.comments().create(comment, first_answer<Comment>(request, answer));
+  if (!written) return tl::unexpected(written.error());
+  tell(context, CommentEventEvent::created, *written, people, request.user());
+  return answer(*written);
+}
+
+Result<Response> create_comment(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::CommentCreate>(request));
+  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto place = STRATA_TRY(place_on(*room, asked.position));
+  Comment comment;
+  comment.model_id = room->model().id;
+  comment.place = place;
+  STRATA_TRY(put_subject(context, *room, asked, comment));
+  comment.text = asked.text;
+  comment.user = request.user();
+  return write(context, request, comment);
+}
+
+Result<Response> create_reply(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::ReplyCreate>(request));
+  const auto thread = STRATA_TRY(stored_comment(context, request));
+  Comment comment;
+  comment.thread = thread.id;
+  comment.text = asked.text;
+  comment.user = request.user();
+  return write(context, request, comment);
+}
+
+Result<Response> change_comment(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::CommentPatch>(request));
+  auto comment = STRATA_TRY(stored_comment(context, request));
+  STRATA_TRY(check_if_match(request, comment.version));
+  if (asked.text) {
+    if (comment.user != request.user())
+      return fail(ErrorCode::forbidden, "Not yours",
+                  "Only " + comment.user + " changes the text of this comment. Reply to it.",
+                  "text");
+    if (comment.deleted)
+      return fail(ErrorCode::conflict, "Deleted already",
+                  "The comment was deleted; it stands there for its replies.", "text");
+    comment.text = *asked.text;
+  }
+  if (asked.state) {
+    if (comment.thread)
+      return fail(ErrorCode::invalid, "State of a reply",
+                  "The state is that of the thread: change comment " +
+                      std::to_string(*comment.thread) + ".",
+                  "state");
+    if (*asked.state == protocol::CommentState::open)
+      comment.resolved.reset();
+    else if (!comment.resolved)
+      comment.resolved = Comment::Resolution{request.user(), {}};
+  }
+  const auto people = STRATA_TRY(people_of(context, comment, request.user()));
+  const auto answer = [&people](const Comment& now) {
+    return json_response(to_json(now, people)).with("ETag", etag_of(now.version));
+  };
+  const auto changed =
+      context.store.comments().update(comment, first_answer<Comment>(request, answer));
+  if (!changed) return tl::unexpected(changed.error());
+  tell(context, CommentEventEvent::changed, *changed, people, request.user());
+  return answer(*changed);
+}
+
+Result<Response> delete_comment(const RouteContext& context, const Request& request) {
+  const auto comment = STRATA_TRY(stored_comment(context, request));
+  STRATA_TRY(check_if_match(request, comment.version));
+  if (comment.user != request.user() && request.principal->role < Role::curator)
+    return fail(ErrorCode::forbidden, "Not yours",
+                "Only " + comment.user + " and curators delete this comment.");
+  const auto answer = [](const Comments::Removal&) { return empty_response(204); };
+  const auto removal =
+      context.store.comments().remove(comment, first_answer<Comments::Removal>(request, answer));
+  if (!removal) return tl::unexpected(removal.error());
+  if (removal->left) {
+    const auto people = people_of(context, *removal->left, request.user());
+    tell(context, CommentEventEvent::changed, *removal->left, people.value_or(People()),
+         request.user());
+  }
+  for (const auto id : removal->gone) {
+    protocol::CommentEvent message;
+    message.event = CommentEventEvent::deleted;
+    message.comment_id = id;
+    message.user = request.user();
+    context.live_sockets.tell_model(removal->model_id, message);
+  }
+  return answer(*removal);
+}
+
+}  // namespace
+
+void tell_threads(const RouteContext& context, const Layer& layer, Visibility before,
+                  const std::string& user) {
+  if (layer.visibility == before) return;
+  Comments::Query all;
+  all.limit = static_cast<int>(Comments::kMostComments);
+  const auto found = context.store.comments().of_model(layer.model_id, Role::owner, all);
+  if (!found)
+    return log::warning("threads about layer " + std::to_string(layer.id) + ": " +
+                        found.error().detail);
+  std::set<std::int64_t> threads;
+  for (const Comment& comment : found->comments)
+    if (comment.layer_id == layer.id) threads.insert(comment.id);
+  std::vector<std::string> names;
+  for (const Comment& comment : found->comments) {
+    names.push_back(comment.user);
+    if (comment.resolved) names.push_back(comment.resolved->user);
+  }
+  const auto people = People::load(context.store, names);
+  if (!people)
+    return log::warning("threads about layer " + std::to_string(layer.id) + ": " +
+                        people.error().detail);
+  for (const Comment& comment : found->comments) {
+    if (!threads.contains(comment.thread.value_or(comment.id))) continue;
+    protocol::CommentEvent message;
+    message.comment_id = comment.id;
+    message.user = user;
+    const bool is_seen_by_more = layer.visibility < before;
+    message.event = is_seen_by_more ? CommentEventEvent::changed : CommentEventEvent::deleted;
+    if (is_seen_by_more) message.comment = to_json(comment, *people);
+    const auto is_meant = [&](Role role) {
+      return sees(role, before) != sees(role, layer.visibility);
+    };
+    for (const Visibility sight : {Visibility::everyone, Visibility::team, Visibility::curators})
+      if (is_meant(least_role(sight)))
+        context.live_sockets.tell_sight(layer.model_id, sight, message);
+  }
+}
+
+void add_comment_routes(Router& router, const RouteContext& context) {
+  AnnotatedRoutes routes(router, context);
+  const std::string of_model = "/api/v1/models/{model}/comments",
+                    comment = "/api/v1/comments/{comment}";
+  routes.read(of_model, list_comments, {"state", "since", "limit", "offset", "after"});
+  routes.change(Method::post, of_model, create_comment);
+  routes.read(comment, [](const RouteContext& of, const Request& request) -> Result<Response> {
+    const auto found = STRATA_TRY(stored_comment(of, request));
+    nlohmann::json answer = to_json(found);
+    STRATA_TRY(People::add_to(of.store, answer));
+    return with_etag(json_response(std::move(answer)), request, found.version);
+  });
+  routes.change(Method::patch, comment, change_comment);
+  routes.change(Method::remove, comment, delete_comment);
+  routes.read(comment + "/replies", list_replies, {"limit", "offset", "after"});
+  routes.change(Method::post, comment + "/replies", create_reply);
+}
+
+}  // namespace strata::net

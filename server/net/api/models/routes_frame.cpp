@@ -1,0 +1,70 @@
+#include "net/api/models/picture_response.h"
+#include "net/api/routes.h"
+#include "net/serialization/as_of.h"
+#include "net/serialization/wire.h"
+
+namespace strata::net {
+namespace {
+
+Result<Response> frame(const RouteContext& context, const Request& request) {
+  auto asked = STRATA_TRY(body_of<protocol::FrameRequest>(request));
+  auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return tl::unexpected(room.error());
+  room::PictureRequest wanted;
+  if (asked.layers) {
+    wanted.layers.emplace();
+    for (std::size_t i = 0; i < asked.layers->size(); ++i) {
+      auto layer = (*room)->layer(protocol::to_ref((*asked.layers)[i]));
+      if (!layer) {
+        Error problem = layer.error();
+        problem.field = "layers[" + std::to_string(i) + "]";
+        return tl::unexpected(std::move(problem));
+      }
+      wanted.layers->push_back(layer->slug);
+    }
+  }
+  if (asked.highlights) {
+    for (std::size_t i = 0; i < asked.highlights->size(); ++i) {
+      const auto& wished = (*asked.highlights)[i];
+      const std::string field = "highlights[" + std::to_string(i) + "]";
+      auto layer = (*room)->layer(protocol::to_ref(wished.layer));
+      if (!layer) {
+        Error problem = layer.error();
+        problem.field = field + ".layer";
+        return tl::unexpected(std::move(problem));
+      }
+      auto highlight = STRATA_TRY(highlight_of(wished.highlight, *layer, field + ".highlight"));
+      wanted.shown.layers.push_back(
+          {layer->id, std::nullopt, std::nullopt, std::nullopt, std::move(highlight)});
+    }
+  }
+  const auto sequence = (*room)->sequence();
+  const auto at = STRATA_TRY(find_sequence(context, **room, asked.at));
+  wanted.at = at;
+  if (asked.looks) {
+    auto looks = STRATA_TRY(look_views(**room, *asked.looks));
+    wanted.shown.looks = std::move(looks);
+  }
+  if (asked.light) wanted.shown.light = *asked.light;
+  STRATA_TRY(validate(wanted.shown.light));
+  const auto background = STRATA_TRY(background_of(asked.background));
+  wanted.shown.background = background;
+  auto response = STRATA_TRY(picture_response(**room, wanted, asked.camera,
+                                              asked.format == protocol::FrameRequestFormat::png));
+  add_sequences(response, wanted.at.value_or(sequence), (*room)->durable_sequence());
+  return response;
+}
+
+}  // namespace
+
+void add_frame_routes(Router& router, const RouteContext& context) {
+  router.add(
+      {.method = Method::post,
+       .pattern = "/api/v1/models/{model}/frame",
+       .handler = answering([&context](const Request& request) { return frame(context, request); }),
+       .body = BodyKind::memory,
+       .max_body = context.options.max_json_bytes,
+       .is_question = true});
+}
+
+}  // namespace strata::net

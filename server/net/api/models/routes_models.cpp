@@ -1,0 +1,163 @@
+#include <map>
+
+#include "net/auth/project_gate.h"
+#include "net/http/answer_book.h"
+
+namespace strata::net {
+namespace {
+
+Result<std::string> project_slug(const RouteContext& context, std::int64_t project_id) {
+  auto project = STRATA_TRY(context.store.project(std::to_string(project_id)));
+  return project.slug;
+}
+
+Result<Response> model_answer(const RouteContext& context, const Request& request,
+                              const Model& model) {
+  auto slug = STRATA_TRY(project_slug(context, model.project_id));
+  return with_etag(json_response(to_json(model, slug)), request, model.version);
+}
+
+Result<Response> list_models(const RouteContext& context, const Request& request) {
+  auto page = STRATA_TRY(page_of(request));
+  auto projects = STRATA_TRY(context.store.projects());
+  std::map<std::int64_t, std::string> slugs;
+  for (const auto& project : projects) slugs[project.id] = project.slug;
+  std::optional<std::int64_t> only;
+  if (auto wanted = request.query.find("project"); wanted != request.query.end()) {
+    STRATA_TRY(check_seen(context, request, wanted->second, "project"));
+    auto project = STRATA_TRY(context.store.project(wanted->second));
+    only = project.id;
+  }
+  auto models = STRATA_TRY(context.store.models(only));
+  std::erase_if(models,
+                [&](const Model& model) { return !request.principal->sees(model.project_id); });
+  nlohmann::json list = nlohmann::json::array();
+  const int total = static_cast<int>(models.size());
+  const auto part = slice_by(page, models, [](const Model& model) { return NumberKey{model.id}; });
+  if (!part) return tl::unexpected(part.error());
+  for (std::size_t i = part->begin; i < part->end; ++i)
+    list.push_back(to_json(models[i], slugs[models[i].project_id]));
+  Response response = json_response({{"models", list}, {"total", total}});
+  add_page_links(response, request, page, part->last);
+  return response;
+}
+
+Result<void> apply_patch(const protocol::ModelPatch& patch, Model& model) {
+  if (patch.name) model.name = *patch.name;
+  if (patch.unit) {
+    model.unit = *patch.unit;
+    model.unit_assumed = false;
+  }
+  if (patch.scale_verified) model.scale_verified = *patch.scale_verified;
+  if (patch.up) model.up = std::string(protocol::name(*patch.up));
+  if (patch.north) model.north = *patch.north;
+  if (patch.crs) model.crs = *patch.crs;
+  if (patch.default_resolution) {
+    if (*patch.default_resolution < model.atlas.lowest_resolution)
+      return fail(ErrorCode::invalid, "Resolution too low",
+                  "Layers of this model have at least " +
+                      std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+                  "default_resolution");
+    model.default_resolution = *patch.default_resolution;
+  }
+  auto set = [](std::string& member, const std::optional<std::string>& value) {
+    if (value) member = *value;
+  };
+  set(model.inventory_number, patch.inventory_number);
+  set(model.owner, patch.owner);
+  set(model.creator, patch.creator);
+  set(model.captured, patch.captured);
+  set(model.method, patch.method);
+  set(model.accuracy, patch.accuracy);
+  set(model.processing, patch.processing);
+  set(model.rights_uri, patch.rights_uri);
+  set(model.credit, patch.credit);
+  if (patch.source_download)
+    model.source_download = *parse_role(protocol::name(*patch.source_download));
+  return {};
+}
+
+Result<Response> change_model(const RouteContext& context, const Request& request) {
+  auto asked = STRATA_TRY(body_of<protocol::ModelPatch>(request));
+  // Through the room: those who look at the model are told.
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  Model model = room->model();
+  STRATA_TRY(check_if_match(request, model.version));
+  STRATA_TRY(apply_patch(asked, model));
+  auto slug = project_slug(context, model.project_id);
+  if (!slug) return tl::unexpected(slug.error());
+  const auto answer = [slug = *slug](const Model& now) {
+    return json_response(to_json(now, slug)).with("ETag", etag_of(now.version));
+  };
+  auto changed = room->update_model(std::move(model), first_answer<Model>(request, answer));
+  if (!changed) return tl::unexpected(changed.error());
+  return answer(*changed);
+}
+
+Result<Response> source(const RouteContext& context, const Request& request) {
+  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  STRATA_TRY(check_source_download(request, model));
+  const std::string& wanted = request.param("name");
+  for (const auto& file : model.source_files) {
+    if (file.name != wanted) continue;
+    const std::string etag = "\"" + file.sha256 + "\"";
+    if (names_tag(request.header("if-none-match"), etag))
+      return empty_response(304).with("ETag", etag);
+    Response response;
+    response.with("Content-Type", "application/octet-stream").with("ETag", etag);
+    name_download(response, file.name);
+    response.stream = Response::Stream{
+        file.bytes, [&store = context.store, id = model.id, wanted](const Response::Sink& sink) {
+          return store.read_source(id, wanted, sink).has_value();
+        }};
+    return response;
+  }
+  return fail(ErrorCode::not_found, "No such file",
+              "The model was not made from a file of this name; see `source_files`.", "name");
+}
+
+}  // namespace
+
+void add_model_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models",
+              .handler = answering(
+                  [&context](const Request& request) { return list_models(context, request); }),
+              .role = Role::guest,
+              .query = {"project", "limit", "offset", "after"}});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto model = STRATA_TRY(context.store.model(request.param("model")));
+                return model_answer(context, request, model);
+              })});
+  router.add({.method = Method::patch,
+              .pattern = "/api/v1/models/{model}",
+              .handler = answering(
+                  [&context](const Request& request) { return change_model(context, request); }),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true,
+              .needs_version = true});
+  router.add({.method = Method::remove,
+              .pattern = "/api/v1/models/{model}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto model = STRATA_TRY(context.store.model(request.param("model")));
+                STRATA_TRY(check_if_match(request, model.version));
+                STRATA_TRY(context.store.bin().put_model(
+                    model.id, first_answer<>(request, [] { return empty_response(204); })));
+                context.rooms.forget(model.id);
+                if (context.options.bin_days == 0) context.bin_keeper.look();
+                return empty_response(204);
+              }),
+              .role = Role::curator,
+              .keeps_answer = true,
+              .needs_version = true});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/source/{name}",
+              .handler = answering(
+                  [&context](const Request& request) { return source(context, request); })});
+}
+
+}  // namespace strata::net

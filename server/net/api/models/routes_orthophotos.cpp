@@ -1,0 +1,159 @@
+// Orthophotos that become looks.
+#include <algorithm>
+#include <bit>
+
+#include "jobs/orthophoto.h"
+#include "net/api/routes.h"
+#include "net/http/answer_book.h"
+#include "net/http/job_book.h"
+#include "net/map_values.h"
+
+namespace strata::net {
+namespace {
+
+struct Wish {
+  Look look;
+  MapAxis axis;
+  int resolution = 0;
+};
+
+Result<Wish> wish_of(const Request& request) {
+  const auto axis = STRATA_TRY(axis_of(request));
+  Wish wish{{}, axis, 0};
+  wish.look.name = request.query_or("name", {});
+  if (wish.look.name.empty() || wish.look.name.size() > 200)
+    return fail(ErrorCode::invalid, "Name missing", "A look has a name of 1 to 200 bytes.", "name");
+  wish.look.description = request.query_or("description", {});
+  if (const std::string text = request.query_or("resolution", {}); !text.empty()) {
+    const auto resolution =
+        STRATA_TRY(parse_integer(text, 1, jobs::kLargestOrthophotoLook, "resolution"));
+    wish.resolution = static_cast<int>(resolution);
+    if (!std::has_single_bit(static_cast<unsigned>(wish.resolution)))
+      return fail(ErrorCode::invalid, "Resolution not usable", "`resolution` is a power of two.",
+                  "resolution");
+  }
+  return wish;
+}
+
+double texel_area(const Model& model, int resolution) {
+  const double texels = model.atlas.coverage * resolution * resolution;
+  return texels > 0 ? model.area / texels : 0;
+}
+
+Result<Look> bake(room::Room& room, const Wish& wish, const MapPicture& map,
+                  const store::FirstAnswer<Look>& answer, Progress& progress) {
+  progress.report(0, "Finding what is seen");
+  const jobs::OrthophotoSampler sampler(map.picture, map.world,
+                                        texel_area(room.model(), wish.resolution));
+  if (progress.cancelled()) return cancelled_problem();
+  Layer colors;  // of the surface: never stored, its numbers are RGBA
+  colors.type = ValueType::u32;
+  colors.resolution = wish.resolution;
+  const auto tiles = room.project(colors, wish.axis.direction, [&](const glm::dvec3& world) {
+    return progress.cancelled() ? std::nullopt : sampler.color_at(wish.axis.on_map(world));
+  });
+  if (progress.cancelled()) return cancelled_problem();
+  if (!tiles) return tl::unexpected(tiles.error());
+  if (tiles->empty())
+    return fail(
+        ErrorCode::invalid, "Beside the model",
+        "Nothing of the model lies under the picture. Check its place, the direction and the unit.",
+        "world");
+  progress.report(0.4, "Painting the look");
+  const auto map_of_surface = STRATA_TRY(room.surface_map(wish.resolution));
+  const Picture picture = jobs::orthophoto_look(*tiles, *map_of_surface);
+  if (progress.cancelled()) return cancelled_problem();
+  progress.report(0.6, "Packing the look");
+  const auto png = encode_png(picture.rgba, picture.width, picture.height);
+  if (progress.cancelled()) return cancelled_problem();
+  progress.report(0.9, "Saving");
+  Look look = wish.look;
+  look.visible = false;
+  look.media_type = media_type(PictureFormat::png);
+  look.width = picture.width;
+  look.height = picture.height;
+  const auto looks = room.looks();
+  look.order = looks.empty() ? 0 : looks.back().order + 1;
+  return room.create_look(std::move(look), png, answer);
+}
+
+Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, ByteBudget& budget,
+                                  const Request& request) {
+  auto known = STRATA_TRY(book.find(request));
+  if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
+  auto wish = wish_of(request);
+  if (!wish) return tl::unexpected(wish.error());
+  auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return tl::unexpected(room.error());
+  const Model model = (*room)->model();
+  if (wish->resolution != 0 && wish->resolution < model.atlas.lowest_resolution)
+    return fail(ErrorCode::invalid, "Resolution too low",
+                "Pictures of this model have at least " +
+                    std::to_string(model.atlas.lowest_resolution) + " texels a side.",
+                "resolution");
+  const auto files = STRATA_TRY(MapFiles::take(request, context.options.upload_dir));
+  auto map = map_picture(request, files, model, budget);
+  if (!map) return tl::unexpected(map.error());
+  if (wish->resolution == 0) wish->resolution = jobs::orthophoto_resolution(model, map->world);
+
+  const store::FirstAnswer<Look> answer{
+      scoped_key(request),
+      [print = fingerprint(request), model = model.id](const Look& look) {
+        return nlohmann::json{{"request", print}, {"model", model}, {"look", look.id}};
+      },
+      request.user()};
+  auto job = context.jobs.add(
+      model.project_id,
+      [room = *room, wish = std::move(*wish), answer,
+       map = std::make_shared<const MapPicture>(std::move(*map))](
+          Progress& progress) -> Result<jobs::JobResult> {
+        store::FirstAnswer<Look> kept = answer;
+        kept.job = progress.job();
+        auto look = STRATA_TRY(bake(*room, wish, *map, kept, progress));
+        jobs::JobResult result(look.model_id);
+        result.look = look.id;
+        return result;
+      },
+      {}, jobs::JobKind::look);
+  if (!job) return tl::unexpected(job.error());
+  book.started(request, *job);
+  return job_response(context, *job);
+}
+
+Result<Response> repeat_orthophoto(const RouteContext& context, JobBook& book,
+                                   const Request& request, const nlohmann::json& kept) {
+  auto known = STRATA_TRY(book.find(request));
+  if (known) return job_response(context, *known);
+  jobs::JobResult result(kept.at("model").get<std::int64_t>());
+  result.look = kept.at("look").get<std::int64_t>();
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
+  return job_response(context, job);
+}
+
+}  // namespace
+
+void add_orthophoto_routes(Router& router, const RouteContext& context) {
+  const auto book = std::make_shared<JobBook>(context.jobs);
+  const auto budget = std::make_shared<ByteBudget>(context.options.max_rasters_at_once);
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/orthophotos",
+              .handler = answering([&context, book, budget](const Request& request) {
+                return start_orthophoto(context, *book, *budget, request);
+              }),
+              .role = Role::curator,
+              .query = {"name", "description", "along", "world", "resolution", "crs"},
+              .check = [](const Request& request) -> Result<void> {
+                auto wish = wish_of(request);
+                return wish ? Result<void>{} : tl::unexpected(wish.error());
+              },
+              .body = BodyKind::file,
+              .max_body = kMaxMapBytes,
+              .keeps_answer = true,
+              .replay =
+                  [&context, book](const Request& request, const nlohmann::json& kept) {
+                    return repeat_orthophoto(context, *book, request, kept);
+                  }});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,67 @@
+// How a person shows the layers of a model, kept for them alone.
+#include "net/api/models/personal_view.h"
+#include "net/serialization/view_wire.h"
+
+namespace strata::net {
+
+Result<nlohmann::json> personal_view(store::Store& store, const std::string& user, Role role,
+                                     const room::Room& room) {
+  auto layers = STRATA_TRY(store.personal_view(user, room.model().id));
+  leave_out_unseen(store, role, room, layers);
+  return nlohmann::json{{"layers", std::move(layers)}};
+}
+
+namespace {
+
+Result<Response> get_view(const RouteContext& context, const Request& request) {
+  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto view = STRATA_TRY(personal_view(context.store, request.user(), request.role(), *room));
+  return json_response(std::move(view)).with("Cache-Control", "no-store");
+}
+
+Result<Response> put_view(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::PersonalView>(request));
+  for (std::size_t i = 0; i < asked.layers.size(); ++i)
+    if (asked.layers[i].highlight)
+      return fail(ErrorCode::invalid, "Not kept",
+                  "Records that stand out belong to a named view; here they are not kept.",
+                  "layers[" + std::to_string(i) + "].highlight");
+  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto settings = STRATA_TRY(view_settings(*room, asked.layers, {}, {}));
+  if (auto kept = context.store.keep_personal_view(request.user(), room->model().id,
+                                                   kept_layers(asked.layers, settings));
+      !kept)
+    return tl::unexpected(kept.error());
+  return get_view(context, request);
+}
+
+Result<Response> delete_view(const RouteContext& context, const Request& request) {
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  if (auto gone =
+          context.store.keep_personal_view(request.user(), model.id, nlohmann::json::array());
+      !gone)
+    return tl::unexpected(gone.error());
+  return empty_response(204);
+}
+
+}  // namespace
+
+void add_personal_view_routes(Router& router, const RouteContext& context) {
+  const std::string view = "/api/v1/me/models/{model}/view";
+  router.add({.method = Method::get,
+              .pattern = view,
+              .handler = answering(
+                  [&context](const Request& request) { return get_view(context, request); })});
+  router.add({.method = Method::put,
+              .pattern = view,
+              .handler = answering(
+                  [&context](const Request& request) { return put_view(context, request); }),
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
+  router.add({.method = Method::remove,
+              .pattern = view,
+              .handler = answering(
+                  [&context](const Request& request) { return delete_view(context, request); })});
+}
+
+}  // namespace strata::net

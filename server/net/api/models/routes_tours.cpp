@@ -1,0 +1,122 @@
+// Tours of a model. Everybody reads them, curators make and change them.
+#include "net/api/annotated_routes.h"
+#include "net/api/routes.h"
+#include "net/http/answer_book.h"
+#include "net/serialization/tour_wire.h"
+#include "store/kiosks.h"
+
+namespace strata::net {
+namespace {
+
+using store::NamedPart;
+
+struct Found {
+  Model model;
+  NamedPart tour;
+};
+Result<Found> find_tour(const RouteContext& context, const Request& request) {
+  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto tour = STRATA_TRY(context.store.tours().find(model.id, request.param("tour")));
+  return Found{std::move(model), std::move(tour)};
+}
+Result<Found> find_to_change(const RouteContext& context, const Request& request) {
+  auto found = STRATA_TRY(find_tour(context, request));
+  STRATA_TRY(check_if_match(request, found.tour.version));
+  return found;
+}
+
+// An answer is made within the transaction of what it tells, so that what its tour names is read
+// before.
+Response answer_of(nlohmann::json told, const NamedPart& now, int status) {
+  told.update(
+      {{"id", now.id}, {"slug", now.slug}, {"time", utc_text(now.time)}, {"version", now.version}});
+  return json_response(told, status).with("ETag", etag_of(now.version));
+}
+
+Result<Response> list_tours(const RouteContext& context, const Request& request) {
+  const auto page = STRATA_TRY(page_of(request));
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto after = STRATA_TRY(number_after(page));
+  auto found =
+      STRATA_TRY(context.store.tours().of_model(model.id, page.limit + 1, page.offset, after));
+  const auto last = end_page(found.parts, page,
+                             [](const NamedPart& tour) { return ListPlace::array({tour.id}); });
+  nlohmann::json tours = nlohmann::json::array();
+  for (const NamedPart& tour : found.parts) tours.push_back(tour_entry(tour, tour.user));
+  Response response = json_response({{"tours", std::move(tours)}, {"total", found.total}});
+  add_page_links(response, request, page, last);
+  return response;
+}
+
+Result<Response> get_tour(const RouteContext& context, const Request& request) {
+  const auto found = STRATA_TRY(find_tour(context, request));
+  const auto told =
+      to_json(context, found.tour, request.role(), told_name(request, found.tour.user));
+  if (!told) return tl::unexpected(told.error());
+  return with_etag(json_response(*told), request, found.tour.version);
+}
+
+Result<Response> create_tour(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::TourCreate>(request));
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  auto stops = STRATA_TRY(kept_stops(context, model, request.role(), asked.stops));
+  NamedPart tour;
+  tour.model_id = model.id;
+  tour.name = asked.name;
+  tour.text = asked.text.value_or("");
+  tour.content = {
+      {"languages", asked.languages}, {"idle_s", asked.idle_s}, {"stops", std::move(stops)}};
+  tour.user = request.user();
+  STRATA_TRY(check_languages(tour.content, true));
+  const auto told = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
+  const auto answer = [&](const NamedPart& made) {
+    return answer_of(told, made, 201)
+        .with("Location", "/api/v1/models/" + model.slug + "/tours/" + made.slug);
+  };
+  const auto made =
+      STRATA_TRY(context.store.tours().create(tour, first_answer<NamedPart>(request, answer)));
+  return answer(made);
+}
+
+Result<Response> change_tour(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::TourPatch>(request));
+  auto found = STRATA_TRY(find_to_change(context, request));
+  NamedPart& tour = found.tour;
+  if (asked.name) tour.name = *asked.name;
+  if (asked.text) tour.text = *asked.text;
+  if (asked.languages) tour.content["languages"] = *asked.languages;
+  if (asked.idle_s) tour.content["idle_s"] = *asked.idle_s;
+  if (asked.stops) {
+    auto stops = STRATA_TRY(kept_stops(context, found.model, request.role(), *asked.stops));
+    tour.content["stops"] = std::move(stops);
+  }
+  STRATA_TRY(check_languages(tour.content, asked.stops.has_value()));
+  const auto told = STRATA_TRY(to_json(context, tour, request.role(), tour.user));
+  const auto answer = [&](const NamedPart& now) { return answer_of(told, now, 200); };
+  const auto changed =
+      STRATA_TRY(context.store.tours().update(tour, first_answer<NamedPart>(request, answer)));
+  return answer(changed);
+}
+
+Result<Response> delete_tour(const RouteContext& context, const Request& request) {
+  const auto found = STRATA_TRY(find_to_change(context, request));
+  const auto kiosks = STRATA_TRY(context.store.kiosks().of_tour(found.tour.id));
+  const auto answer = [] { return empty_response(204); };
+  STRATA_TRY(context.store.tours().remove(found.tour, first_answer<>(request, answer)));
+  end_kiosks(context, kiosks, "the tour was deleted");
+  return answer();
+}
+
+}  // namespace
+
+void add_tour_routes(Router& router, const RouteContext& context) {
+  AnnotatedRoutes routes(router, context, Role::curator);
+  const std::string tours = "/api/v1/models/{model}/tours", tour = tours + "/{tour}";
+  routes.read(tours, list_tours, {"limit", "offset", "after"});
+  routes.change(Method::post, tours, create_tour);
+  routes.read(tour, get_tour);
+  routes.change(Method::patch, tour, change_tour);
+  routes.change(Method::remove, tour, delete_tour);
+}
+
+}  // namespace strata::net

@@ -1,0 +1,183 @@
+// Named views of a model. Everybody reads them, annotators make them; what one made one changes
+// oneself, and curators may.
+#include <algorithm>
+#include <cmath>
+
+#include "net/api/annotated_routes.h"
+#include "net/api/models/picture_response.h"
+#include "net/api/routes.h"
+#include "net/http/answer_book.h"
+#include "net/serialization/view_wire.h"
+#include "protocol/json_values.h"
+
+namespace strata::net {
+namespace {
+
+using protocol::ViewEventEvent;
+using store::NamedPart;
+
+// What the body says is shown, as it is kept: with ids, since slugs change.
+template <class Asked>
+Result<nlohmann::json> content_of(const room::Room& room, const Asked& asked,
+                                  const Camera& camera) {
+  STRATA_TRY(validate(camera));
+  const auto shown = asked.layers.value_or(std::vector<protocol::LayerOverride>{});
+  const auto settings = STRATA_TRY(shown_settings(room, asked));
+  nlohmann::json content{{"camera", protocol::write_core(camera)},
+                         {"layers", kept_layers(shown, settings)},
+                         {"light", protocol::write_core(settings.light)}};
+  if (settings.looks) {
+    content["looks"] = nlohmann::json::array();
+    for (const room::LookView& look : *settings.looks)
+      content["looks"].push_back({{"look", look.look_id}, {"opacity", look.opacity}});
+  }
+  return content;
+}
+
+// The model as who asks sees it, and one of its views.
+struct Found {
+  std::shared_ptr<room::Room> room;
+  NamedPart view;
+};
+Result<Found> find_view(const RouteContext& context, const Request& request) {
+  auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto view = context.store.views().find(room->model().id, request.param("view"));
+  if (!view) return tl::unexpected(view.error());
+  return Found{std::move(room), std::move(*view)};
+}
+
+Result<Found> find_own_view(const RouteContext& context, const Request& request) {
+  auto found = STRATA_TRY(find_view(context, request));
+  STRATA_TRY(check_if_match(request, found.view.version));
+  if (found.view.user != request.user() && request.role() < Role::curator)
+    return fail(ErrorCode::forbidden, "Not yours",
+                "Only " + found.view.user +
+                    " and curators change this view. Keep one of your own under another name.");
+  return found;
+}
+
+void tell(const RouteContext& context, ViewEventEvent event, const NamedPart& view,
+          const std::string& user) {
+  protocol::ViewEvent message;
+  message.event = event;
+  message.view = view.id;
+  message.user = user;
+  context.live_sockets.tell_model(view.model_id, message);
+}
+
+Result<Response> list_views(const RouteContext& context, const Request& request) {
+  const auto page = STRATA_TRY(page_of(request));
+  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  const auto after = STRATA_TRY(number_after(page));
+  auto found = context.store.views().of_model(room->model().id, page.limit + 1, page.offset, after);
+  if (!found) return tl::unexpected(found.error());
+  const auto last = end_page(found->parts, page,
+                             [](const NamedPart& view) { return ListPlace::array({view.id}); });
+  nlohmann::json views = nlohmann::json::array();
+  for (const NamedPart& view : found->parts)
+    views.push_back(to_json(context, request, view, *room));
+  Response response = json_response({{"views", std::move(views)}, {"total", found->total}});
+  add_page_links(response, request, page, last);
+  return response;
+}
+
+Result<Response> get_view(const RouteContext& context, const Request& request) {
+  const auto found = STRATA_TRY(find_view(context, request));
+  return with_etag(json_response(to_json(context, request, found.view, *found.room)), request,
+                   found.view.version);
+}
+
+// What the view shows today, to who asks.
+Result<Response> view_picture(const RouteContext& context, const Request& request) {
+  std::optional<int> side;
+  if (const std::string text = request.query_or("thumbnail", {}); !text.empty()) {
+    const auto number = STRATA_TRY(parse_integer(text, 16, 1024, "thumbnail"));
+    side = static_cast<int>(number);
+  }
+  const std::string format = request.query_or("format", "jpeg");
+  if (format != "jpeg" && format != "png")
+    return fail(ErrorCode::invalid, "Unknown format", "A picture of a view is 'jpeg' or 'png'.",
+                "format");
+  const auto found = STRATA_TRY(find_view(context, request));
+  const auto kept = STRATA_TRY(as_asked(context, request, found.view, *found.room));
+  auto shown = shown_settings(*found.room, kept);
+  if (!shown) return tl::unexpected(shown.error());
+  room::PictureRequest wanted;
+  Camera camera = kept.camera;
+  if (side) {
+    const double scale = std::min(1.0, double(*side) / std::max(camera.width, camera.height));
+    camera.width = std::max(1, static_cast<int>(std::lround(camera.width * scale)));
+    camera.height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
+  }
+  wanted.shown = std::move(*shown);
+  const auto sequence = found.room->sequence();
+  auto response = picture_response(*found.room, wanted, camera, format == "png");
+  if (!response) return response;
+  add_sequences(*response, sequence, found.room->durable_sequence());
+  return response;
+}
+
+Result<Response> create_view(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::ViewCreate>(request));
+  const auto room = STRATA_TRY(context.rooms.open(request.param("model"), request.role()));
+  auto content = STRATA_TRY(content_of(*room, asked, asked.camera));
+  NamedPart view;
+  view.model_id = room->model().id;
+  view.name = asked.name;
+  view.text = asked.text.value_or("");
+  view.content = std::move(content);
+  view.user = request.user();
+  const auto answer = [&](const NamedPart& made) {
+    return json_response(to_json(context, request, made, *room), 201)
+        .with("Location", "/api/v1/models/" + room->model().slug + "/views/" + made.slug)
+        .with("ETag", etag_of(made.version));
+  };
+  const auto made =
+      STRATA_TRY(context.store.views().create(view, first_answer<NamedPart>(request, answer)));
+  tell(context, ViewEventEvent::created, made, request.user());
+  return answer(made);
+}
+
+Result<Response> change_view(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::ViewPatch>(request));
+  auto found = STRATA_TRY(find_own_view(context, request));
+  NamedPart& view = found.view;
+  if (asked.name) view.name = *asked.name;
+  if (asked.text) view.text = *asked.text;
+  if (asked.camera) {
+    auto content = content_of(*found.room, asked, *asked.camera);
+    if (!content) return tl::unexpected(content.error());
+    view.content = std::move(*content);
+  }
+  const auto answer = [&](const NamedPart& now) {
+    return json_response(to_json(context, request, now, *found.room))
+        .with("ETag", etag_of(now.version));
+  };
+  const auto changed =
+      STRATA_TRY(context.store.views().update(view, first_answer<NamedPart>(request, answer)));
+  tell(context, ViewEventEvent::changed, changed, request.user());
+  return answer(changed);
+}
+
+Result<Response> delete_view(const RouteContext& context, const Request& request) {
+  const auto found = STRATA_TRY(find_own_view(context, request));
+  const auto answer = [] { return empty_response(204); };
+  STRATA_TRY(context.store.views().remove(found.view, first_answer<>(request, answer)));
+  tell(context, ViewEventEvent::deleted, found.view, request.user());
+  return answer();
+}
+
+}  // namespace
+
+void add_view_routes(Router& router, const RouteContext& context) {
+  AnnotatedRoutes routes(router, context);
+  const std::string views = "/api/v1/models/{model}/views", view = views + "/{view}";
+  routes.read(views, list_views, {"limit", "offset", "after"});
+  routes.change(Method::post, views, create_view);
+  routes.read(view, get_view);
+  routes.read(view + "/picture", view_picture, {"thumbnail", "format"}, state_of_model(context));
+  routes.change(Method::patch, view, change_view);
+  routes.change(Method::remove, view, delete_view);
+}
+
+}  // namespace strata::net

@@ -1,0 +1,71 @@
+// What was done in a project.
+#include "net/live/model_events.h"
+#include "net/serialization/activity_wire.h"
+#include "net/serialization/people_wire.h"
+
+namespace strata::net {
+namespace {
+
+using store::Activity;
+
+Result<Response> list_activity(const RouteContext& context, const Request& request) {
+  const auto page = STRATA_TRY(page_of(request));
+  store::ActivityQuery query;
+  query.limit = page.limit;
+  query.with_members = request.principal->role >= Role::curator;
+  if (const auto before = request.query.find("before"); before != request.query.end()) {
+    query.before = place_of(before->second);
+    if (!query.before)
+      return fail(ErrorCode::invalid, "No such page",
+                  "`before` is `next` of an answer: 1777896570120000-7, for example.", "before");
+  }
+  const auto project = STRATA_TRY(context.store.project(request.param("project")));
+  if (const auto ref = request.query.find("model"); ref != request.query.end()) {
+    const auto model = context.store.model(ref->second);
+    if (!model && model.error().code != ErrorCode::not_found) return tl::unexpected(model.error());
+    if (!model || model->project_id != project.id)
+      return fail(ErrorCode::invalid, "No such model",
+                  "The project has no model `" + ref->second.substr(0, 100) + "`.", "model");
+    query.model = model->id;
+  }
+  const auto found = STRATA_TRY(context.store.activity(project.id, request.role(), query));
+  nlohmann::json lines = nlohmann::json::array();
+  for (const Activity& line : found.lines) lines.push_back(to_json(line));
+  nlohmann::json answer{{"activity", std::move(lines)}};
+  if (found.next) answer["next"] = to_text(*found.next);
+  STRATA_TRY(People::add_to(context.store, answer));
+  return json_response(std::move(answer));
+}
+
+// From where a reader comes back, or from now.
+Result<Response> listen(const RouteContext& context, const Request& request) {
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  std::optional<store::ActivityPlace> after;
+  if (const auto text = request.header("last-event-id"); !text.empty()) {
+    after = place_of(text);
+    if (!after)
+      return fail(ErrorCode::malformed, "No such event",
+                  "`Last-Event-ID` is the id of an event: 1777896570120000-7, for example.",
+                  "Last-Event-ID");
+  }
+  Response response;
+  const auto events = std::make_shared<ModelEvents>(context, request, model, after);
+  response.events = Response::Events{[events] { return events->next(); }};
+  return response;
+}
+
+}  // namespace
+
+void add_activity_routes(Router& router, const RouteContext& context) {
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/projects/{project}/activity",
+              .handler = answering(
+                  [&context](const Request& request) { return list_activity(context, request); }),
+              .query = {"model", "before", "limit"}});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/models/{model}/events",
+              .handler = answering(
+                  [&context](const Request& request) { return listen(context, request); })});
+}
+
+}  // namespace strata::net

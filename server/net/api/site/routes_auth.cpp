@@ -1,0 +1,284 @@
+// Signing in and out, and what people change of themselves.
+#include <memory>
+
+#include "core/utf8.h"
+#include "net/api/routes.h"
+#include "net/auth/project_gate.h"
+#include "net/auth/sign_in_gate.h"
+#include "net/http/origin.h"
+#include "net/serialization/people_wire.h"
+#include "net/serialization/wire.h"
+#include "store/password.h"
+
+namespace strata::net {
+
+Result<Response> who_is_signed_in(const RouteContext& context, const std::string& user, Role role) {
+  const auto person = context.store.person(user);
+  if (!person && person.error().code == ErrorCode::not_found)
+    return fail(ErrorCode::unauthenticated, "Not signed in", "This account was closed meanwhile.");
+  if (!person) return tl::unexpected(person.error());
+  nlohmann::json me{{"user", person->name},
+                    {"full_name", person->full_name},
+                    {"role", std::string(name(role))},
+                    {"has_password", person->has_password}};
+  add_color(me, *person);
+  return json_response(std::move(me));
+}
+
+Result<Response> signed_in(const RouteContext& context, const Request& request,
+                           const std::string& session) {
+  auto principal = STRATA_TRY(context.auth.identify_token(session));
+  if (!principal)
+    return fail(ErrorCode::unauthenticated, "Not signed in", "This account was closed meanwhile.");
+  auto response = who_is_signed_in(context, principal->user, principal->role);
+  if (response)
+    response->with("Set-Cookie", Authenticator::set_cookie(session, needs_secure_cookie(request)));
+  return response;
+}
+
+Result<void> check_no_script(const Request& request) {
+  if (!request.principal->is_script) return {};
+  return fail(ErrorCode::forbidden, "Not for scripts",
+              "A token for scripts does nothing to accounts. Sign in with name and password.");
+}
+
+std::string told_name(const Request& request, const std::string& user) {
+  return request.principal->kiosk ? std::string() : user;
+}
+
+std::string agent_of(const Request& request) {
+  const std::string_view agent = request.header("user-agent");
+  return is_utf8(agent) ? mended_utf8(agent.substr(0, 390)) : std::string();
+}
+
+namespace {
+
+using store::TokenKind;
+
+Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::Login>(request));
+  const std::string user = asked.user.value_or(""), address = address_of(request);
+  STRATA_TRY(gate.pass(address, user));
+  const auto session =
+      asked.token ? context.auth.session_for_token(*asked.token, agent_of(request))
+                  : context.auth.session_for_password(user, *asked.password, agent_of(request));
+  if (!session) return tl::unexpected(session.error());
+  gate.was_right(address, user);
+  return signed_in(context, request, *session);
+}
+
+Result<Response> sign_out(const RouteContext& context, const Request& request) {
+  // A script's token stays valid: it is revoked by name, not by using it here.
+  if (request.principal->by_cookie) {
+    const std::string session = Authenticator::secret_of(request);
+    STRATA_TRY(context.auth.end_session(session));
+    context.live_sockets.close_those_of(session, kClosePolicy, "signed out");
+  }
+  return empty_response(204).with("Set-Cookie",
+                                  Authenticator::clear_cookie(needs_secure_cookie(request)));
+}
+
+Result<Response> change_me(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::MePatch>(request));
+  const auto person = STRATA_TRY(context.store.person(request.user()));
+  STRATA_TRY(context.store.change_person(
+      person.id, {.full_name = asked.full_name, .role = {}, .disabled = {}}));
+  return who_is_signed_in(context, request.user(), request.principal->role);
+}
+
+Result<Response> change_password(const RouteContext& context, SignInGate& gate,
+                                 const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::PasswordChange>(request));
+  STRATA_TRY(store::check_password(asked.password, request.user(), "password"));
+  const auto hash = STRATA_TRY(context.store.password_of(request.user()));
+  if (!hash.empty()) {
+    // Whoever sits at somebody else's browser guesses no faster than from anywhere.
+    STRATA_TRY(gate.pass(address_of(request), request.user()));
+    const auto fits =
+        asked.current ? store::password_fits(hash, *asked.current) : Result<bool>(false);
+    if (!fits) return tl::unexpected(fits.error());
+    if (!*fits)
+      return fail(ErrorCode::invalid, "Password does not fit",
+                  "This is not the password that you have now.", "current");
+    gate.was_right(address_of(request), request.user());
+  }
+  const auto chosen = STRATA_TRY(store::hash_password(asked.password));
+  STRATA_TRY(context.store.set_password(request.user(), chosen, request.principal->secret));
+  context.auth.forget();
+  context.live_sockets.close_user(request.user(), kClosePolicy, "the password was changed");
+  return empty_response(204);
+}
+
+std::optional<std::string> text_of(
+    const std::optional<std::chrono::system_clock::time_point>& time) {
+  return time ? std::optional(utc_text(*time)) : std::nullopt;
+}
+
+nlohmann::json session_json(const store::Token& token, std::int64_t current) {
+  nlohmann::json json{{"id", token.id},
+                      {"created", utc_text(token.created)},
+                      {"expires", utc_text(token.expires.value_or(token.created))},
+                      {"agent", token.label},
+                      {"current", token.id == current}};
+  if (const auto used = text_of(token.last_used)) json["last_used"] = *used;
+  return json;
+}
+
+nlohmann::json token_json(const store::Token& token) {
+  nlohmann::json json{{"id", token.id},
+                      {"name", token.label},
+                      {"role", std::string(name(token.role))},
+                      {"created", utc_text(token.created)}};
+  if (token.project) json["project"] = *token.project;
+  if (const auto expires = text_of(token.expires)) json["expires"] = *expires;
+  if (const auto used = text_of(token.last_used)) json["last_used"] = *used;
+  return json;
+}
+
+template <class Write>
+Result<Response> list_of(const RouteContext& context, const Request& request, TokenKind kind,
+                         const char* member, Write write) {
+  const auto page = STRATA_TRY(page_of(request, kMaxPage));
+  const auto tokens = STRATA_TRY(context.store.tokens(request.user(), kind));
+  const auto part =
+      slice_by(page, tokens, [](const store::Token& token) { return NumberKey{-token.id}; });
+  if (!part) return tl::unexpected(part.error());
+  nlohmann::json list = nlohmann::json::array();
+  for (std::size_t i = part->begin; i < part->end; ++i) list.push_back(write(tokens[i]));
+  Response response = json_response({{member, std::move(list)}, {"total", tokens.size()}});
+  add_page_links(response, request, page, part->last);
+  return response;
+}
+
+Result<Response> end_one(const RouteContext& context, const Request& request, TokenKind kind,
+                         const std::string& param) {
+  const auto id =
+      parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), param);
+  if (!id) return tl::unexpected(id.error());
+  STRATA_TRY(context.store.revoke_token(request.user(), kind, *id));
+  context.auth.forget();
+  context.live_sockets.close_user(request.user(), kClosePolicy, "a session ended");
+  return empty_response(204);
+}
+
+Result<Response> end_others(const RouteContext& context, const Request& request) {
+  auto ended =
+      context.store.revoke_tokens(request.user(), TokenKind::session, request.principal->secret);
+  if (!ended) return tl::unexpected(ended.error());
+  context.auth.forget();
+  context.live_sockets.close_user(request.user(), kClosePolicy, "other sessions ended");
+  return empty_response(204);
+}
+
+Result<Response> create_token(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::ScriptTokenCreate>(request));
+  Role own = request.principal->roles.highest();
+  Role role = own;
+  std::optional<std::int64_t> only;
+  if (asked.project) {
+    STRATA_TRY(check_seen(context, request, *asked.project, "project"));
+    auto project = context.store.project(*asked.project);
+    if (!project) {
+      project.error().field = "project";
+      return tl::unexpected(project.error());
+    }
+    only = project->id;
+    own = request.principal->roles.in(*only);
+    role = std::min(own, Role::curator);
+  }
+  if (asked.role) role = static_cast<Role>(static_cast<int>(*asked.role));
+  if (role > own)
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "Your highest role " + std::string(only ? "there " : "") + "is " +
+                    std::string(name(own)) + ": a token of yours can do no more.",
+                "role");
+  const auto made =
+      context.store.create_token(TokenKind::script, request.user(), role,
+                                 std::chrono::hours(24 * asked.days), asked.name, {}, only);
+  if (!made) return tl::unexpected(made.error());
+  return json_response({{"secret", made->secret}, {"token", token_json(made->token)}}, 201)
+      .with("Cache-Control", "no-store");
+}
+
+}  // namespace
+
+void add_auth_routes(Router& router, const RouteContext& context) {
+  auto gate = std::make_shared<SignInGate>();
+  // What people change of themselves.
+  const auto add = [&](Method method, std::string pattern, auto answer,
+                       std::vector<std::string> query = {}) {
+    const bool has_body = method == Method::post || method == Method::patch;
+    router.add({.method = method,
+                .pattern = std::move(pattern),
+                .handler = answering(answer),
+                .role = Role::guest,
+                .query = std::move(query),
+                .check = check_no_script,
+                .body = has_body ? BodyKind::memory : BodyKind::none,
+                .max_body = has_body ? context.options.max_json_bytes : 0});
+  };
+
+  router.add({.method = Method::get,
+              .pattern = "/login",
+              .handler = answering([&context, gate](const Request& request) -> Result<Response> {
+                STRATA_TRY(gate->pass(address_of(request), {}));
+                auto session =
+                    context.auth.session_for_link(request.query_or("link", {}), agent_of(request));
+                if (!session) return tl::unexpected(session.error());
+                gate->was_right(address_of(request), {});
+                return empty_response(303)
+                    .with("Location", "/")
+                    .with("Set-Cookie",
+                          Authenticator::set_cookie(*session, needs_secure_cookie(request)))
+                    .with("Cache-Control", "no-store");
+              }),
+              .role = std::nullopt,
+              .query = {"link"}});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/login",
+              .handler = answering([&context, gate](const Request& request) {
+                return sign_in(context, *gate, request);
+              }),
+              .role = std::nullopt,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/logout",
+              .handler = answering(
+                  [&context](const Request& request) { return sign_out(context, request); }),
+              .role = Role::guest});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/me",
+              .handler = answering([&context](const Request& request) {
+                return who_is_signed_in(context, request.user(), request.principal->role);
+              }),
+              .role = Role::guest});
+  add(Method::patch, "/api/v1/me",
+      [&context](const Request& request) { return change_me(context, request); });
+  add(Method::post, "/api/v1/me/password", [&context, gate](const Request& request) {
+    return change_password(context, *gate, request);
+  });
+  const std::vector<std::string> paged{"limit", "offset", "after"};
+  const auto list_sessions = [&context](const Request& request) {
+    return list_of(
+        context, request, TokenKind::session, "sessions",
+        [&](const store::Token& token) { return session_json(token, request.principal->secret); });
+  };
+  add(Method::get, "/api/v1/me/sessions", list_sessions, paged);
+  add(Method::remove, "/api/v1/me/sessions",
+      [&context](const Request& request) { return end_others(context, request); });
+  add(Method::remove, "/api/v1/me/sessions/{session}", [&context](const Request& request) {
+    return end_one(context, request, TokenKind::session, "session");
+  });
+  const auto list_tokens = [&context](const Request& request) {
+    return list_of(context, request, TokenKind::script, "tokens", token_json);
+  };
+  add(Method::get, "/api/v1/me/tokens", list_tokens, paged);
+  add(Method::post, "/api/v1/me/tokens",
+      [&context](const Request& request) { return create_token(context, request); });
+  add(Method::remove, "/api/v1/me/tokens/{token}", [&context](const Request& request) {
+    return end_one(context, request, TokenKind::script, "token");
+  });
+}
+
+}  // namespace strata::net

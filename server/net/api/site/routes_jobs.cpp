@@ -1,0 +1,94 @@
+#include "net/api/routes.h"
+#include "net/serialization/wire.h"
+
+namespace strata::net {
+namespace {
+
+Result<jobs::JobStatus> find_job(const RouteContext& context, const Request& request) {
+  auto id = parse_integer(request.param("job"), 1, INT64_MAX, "job");
+  auto status = id ? context.jobs.status(*id) : std::nullopt;
+  if (!status)
+    return fail(ErrorCode::not_found, "No such job",
+                "There is no job of this id, or it ended long ago.", "job");
+  return *status;
+}
+
+bool is_own(const jobs::JobStatus& job, const Principal& who) {
+  return !job.user.empty() && job.user == who.user;
+}
+
+// What a job reports, or why it failed, may name layers that only curators see, who start such
+// jobs. A file is for who asked for it: it shows what they see.
+nlohmann::json job_json(jobs::JobStatus job, const Principal& who) {
+  if (job.result && !is_own(job, who)) job.result->file.reset();
+  if (!sees(who.roles.in(job.project), Visibility::curators) && !is_own(job, who)) {
+    if (job.result) job.result->report = nullptr;
+    if (job.problem)
+      job.problem =
+          Error{job.problem->code, job.problem->title, "Curators of the project read why.", {}};
+  }
+  return to_json(job);
+}
+
+bool is_over(const jobs::JobStatus& job) {
+  return job.state != jobs::JobState::queued && job.state != jobs::JobState::running;
+}
+
+}  // namespace
+
+void add_job_routes(Router& router, const RouteContext& context) {
+  router.add(
+      {.method = Method::get,
+       .pattern = "/api/v1/jobs",
+       .handler = answering([&context](const Request& request) -> Result<Response> {
+         auto page = STRATA_TRY(page_of(request));
+         auto all = context.jobs.all();
+         std::erase_if(all, [&](const auto& job) { return !request.principal->sees(job.project); });
+         nlohmann::json list = nlohmann::json::array();
+         const int total = static_cast<int>(all.size());
+         const auto part =
+             STRATA_TRY(slice_by(page, all, [](const auto& job) { return NumberKey{-job.id}; }));
+         for (std::size_t i = part.begin; i < part.end; ++i)
+           list.push_back(job_json(all[i], *request.principal));
+         Response response = json_response({{"jobs", list}, {"total", total}});
+         add_page_links(response, request, page, part.last);
+         return response;
+       }),
+       .role = Role::guest,
+       .query = {"limit", "offset", "after"}});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/jobs/{job}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto job = STRATA_TRY(find_job(context, request));
+                return json_response(job_json(job, *request.principal));
+              })});
+  router.add({.method = Method::remove,
+              .pattern = "/api/v1/jobs/{job}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto job = STRATA_TRY(find_job(context, request));
+                if (request.role() < Role::curator && !is_own(job, *request.principal))
+                  return fail(ErrorCode::forbidden, "Not yours",
+                              "Only who started a job and curators cancel it.", "job");
+                if (is_over(job) || !context.jobs.cancel(job.id))
+                  return fail(ErrorCode::conflict, "Job is over",
+                              "The job has ended; there is nothing to cancel.", "job");
+                auto now = context.jobs.status(job.id);
+                return json_response(job_json(now.value_or(job), *request.principal));
+              })});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/jobs/{job}/file",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto job = STRATA_TRY(find_job(context, request));
+                if (!is_over(job) && is_own(job, *request.principal))
+                  return fail(ErrorCode::conflict, "Not done yet",
+                              "The job is still at work: ask again when it is done.", "job");
+                if (!is_own(job, *request.principal) || !job.result || !job.result->file)
+                  return fail(ErrorCode::not_found, "No such file",
+                              "This job made no file for you, or it is kept no longer.", "job");
+                return file_response(job.result->file);
+              }),
+              // A job makes one file, and its number is never given again.
+              .state = [](const Request& request) { return std::optional(request.param("job")); }});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,172 @@
+// Links for kiosks: what curators do with them, and what a kiosk asks.
+#include <memory>
+
+#include "net/api/routes.h"
+#include "net/auth/project_gate.h"
+#include "net/auth/sign_in_gate.h"
+#include "net/http/origin.h"
+#include "net/serialization/tour_wire.h"
+#include "net/serialization/wire.h"
+#include "store/kiosks.h"
+
+namespace strata::net {
+
+void end_kiosks(const RouteContext& context, const std::vector<std::int64_t>& kiosks,
+                const std::string& reason) {
+  context.auth.forget();
+  for (const std::int64_t id : kiosks)
+    context.live_sockets.close_user(kiosk_name(id), kClosePolicy, reason);
+}
+
+namespace {
+
+using store::Kiosk;
+
+nlohmann::json to_json(const Kiosk& kiosk) {
+  nlohmann::json json{{"id", kiosk.id},
+                      {"name", kiosk.name},
+                      {"project", kiosk.project},
+                      {"model", kiosk.model},
+                      {"model_name", kiosk.model_name},
+                      {"tour", kiosk.tour},
+                      {"tour_name", kiosk.tour_name},
+                      {"user", kiosk.user},
+                      {"created", utc_text(kiosk.created)},
+                      {"wants_reload", kiosk.wants_reload}};
+  if (kiosk.expires) json["expires"] = utc_text(*kiosk.expires);
+  if (kiosk.last_seen) json["last_seen"] = utc_text(*kiosk.last_seen);
+  if (kiosk.revoked) json["revoked"] = utc_text(*kiosk.revoked);
+  return json;
+}
+
+Result<Response> list_kiosks(const RouteContext& context, const Request& request) {
+  const auto page = STRATA_TRY(page_of(request));
+  const Roles& roles = request.principal->roles;
+  std::optional<std::vector<std::int64_t>> projects;
+  if (roles.everywhere < Role::curator) {
+    projects.emplace();
+    for (const auto& [project, role] : roles.in_projects)
+      if (role >= Role::curator) projects->push_back(project);
+  }
+  const auto after = STRATA_TRY(number_after(page));
+  auto found = STRATA_TRY(context.store.kiosks().all(projects, page.limit + 1, page.offset, after));
+  const auto last =
+      end_page(found.kiosks, page, [](const Kiosk& kiosk) { return ListPlace::array({kiosk.id}); });
+  nlohmann::json kiosks = nlohmann::json::array();
+  for (const Kiosk& kiosk : found.kiosks) kiosks.push_back(to_json(kiosk));
+  Response response = json_response({{"kiosks", std::move(kiosks)}, {"total", found.total}});
+  add_page_links(response, request, page, last);
+  return response;
+}
+
+Result<Response> create_kiosk(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::KioskCreate>(request));
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto tour = STRATA_TRY(context.store.tours().find(model.id, request.param("tour")));
+  std::optional<std::chrono::seconds> lifetime;
+  if (asked.days) lifetime = std::chrono::hours(24 * *asked.days);
+  const auto made =
+      STRATA_TRY(context.store.kiosks().create(tour.id, asked.name, request.user(), lifetime));
+  return json_response({{"path", "/kiosk/" + made.secret}, {"kiosk", to_json(made.kiosk)}}, 201)
+      .with("Location", "/api/v1/kiosks/" + std::to_string(made.kiosk.id))
+      .with("Cache-Control", "no-store");
+}
+
+Result<Response> revoke_kiosk(const RouteContext& context, const Request& request) {
+  const auto id = STRATA_TRY(id_of(request, "kiosk"));
+  STRATA_TRY(context.store.kiosks().revoke(id));
+  end_kiosks(context, {id}, "the link was revoked");
+  return empty_response(204);
+}
+
+Result<Response> reload_kiosk(const RouteContext& context, const Request& request) {
+  const auto id = STRATA_TRY(id_of(request, "kiosk"));
+  const auto kiosk = STRATA_TRY(context.store.kiosks().ask_reload(id));
+  return json_response(to_json(kiosk));
+}
+
+// --- from the other side of the link
+
+Result<Response> self(const RouteContext& context, const Kiosk& kiosk, bool wants_reload) {
+  const auto tour =
+      STRATA_TRY(context.store.tours().find(kiosk.model_id, std::to_string(kiosk.tour_id)));
+  auto told = STRATA_TRY(to_json(context, tour, Role::viewer, {}));
+  nlohmann::json json{{"id", kiosk.id},           {"name", kiosk.name},
+                      {"project", kiosk.project}, {"model", kiosk.model},
+                      {"tour", std::move(told)},  {"wants_reload", wants_reload}};
+  if (kiosk.expires) json["expires"] = utc_text(*kiosk.expires);
+  return json_response(json).with("Cache-Control", "no-store");
+}
+
+Result<Response> sign_in(const RouteContext& context, SignInGate& gate, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::KioskLogin>(request));
+  const std::string address = address_of(request);
+  STRATA_TRY(gate.pass(address, {}));
+  const auto kiosk = STRATA_TRY(context.store.kiosks().find(asked.link));
+  if (!kiosk)
+    return fail(ErrorCode::unauthenticated, "Link not valid",
+                "This link is unknown, expired or revoked. A curator makes a new one.", "link");
+  gate.was_right(address, {});
+  STRATA_TRY(context.store.kiosks().seen(kiosk->id, true));
+  auto response = self(context, *kiosk, false);
+  if (response)
+    response->with("Set-Cookie",
+                   Authenticator::set_kiosk_cookie(asked.link, needs_secure_cookie(request)));
+  return response;
+}
+
+Result<Response> kiosk_self(const RouteContext& context, const Request& request) {
+  if (!request.principal->kiosk)
+    return fail(
+        ErrorCode::forbidden, "Not a kiosk",
+        "This is told to kiosks: with the cookie of one and `as=kiosk`, or its bearer token.");
+  const auto kiosk = STRATA_TRY(context.store.kiosks().kiosk(request.principal->kiosk->id));
+  // That it was there is only remembered: it gets its answer also where nothing can be written.
+  (void)context.store.kiosks().seen(kiosk.id, false);
+  return self(context, kiosk, kiosk.wants_reload);
+}
+
+}  // namespace
+
+void add_kiosk_routes(Router& router, const RouteContext& context) {
+  using Answer = Result<Response> (*)(const RouteContext&, const Request&);
+  const auto answer_by = [&context](Answer answer) {
+    return answering(
+        [&context, answer](const Request& request) { return answer(context, request); });
+  };
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/models/{model}/tours/{tour}/kiosks",
+              .handler = answer_by(create_kiosk),
+              .role = Role::curator,
+              .check = check_no_script,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/kiosks",
+              .handler = answer_by(list_kiosks),
+              .role = Role::guest,
+              .query = {"limit", "offset", "after"}});
+  router.add({.method = Method::remove,
+              .pattern = "/api/v1/kiosks/{kiosk}",
+              .handler = answer_by(revoke_kiosk),
+              .role = Role::curator});
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/kiosks/{kiosk}/reload",
+              .handler = answer_by(reload_kiosk),
+              .role = Role::curator});
+  auto gate = std::make_shared<SignInGate>();
+  router.add({.method = Method::post,
+              .pattern = "/api/v1/auth/kiosk",
+              .handler = answering([&context, gate](const Request& request) {
+                return sign_in(context, *gate, request);
+              }),
+              .role = std::nullopt,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/kiosk",
+              .handler = answer_by(kiosk_self),
+              .role = Role::guest});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,193 @@
+// Accounts: who there is, what they may do, and how they come in.
+#include "net/api/routes.h"
+#include "net/http/origin.h"
+#include "net/serialization/people_wire.h"
+#include "net/serialization/wire.h"
+#include "store/password.h"
+
+namespace strata::net {
+namespace {
+
+using store::Person;
+using store::TokenKind;
+
+nlohmann::json to_json(const Person& person) {
+  nlohmann::json json{{"id", person.id},
+                      {"user", person.name},
+                      {"full_name", person.full_name},
+                      {"role", std::string(name(person.role))},
+                      {"state", person.disabled       ? "disabled"
+                                : person.has_password ? "active"
+                                                      : "invited"},
+                      {"created", utc_text(person.created)},
+                      {"groups", person.groups}};
+  add_color(json, person);
+  if (person.last_seen) json["last_seen"] = utc_text(*person.last_seen);
+  return json;
+}
+
+Result<Response> list_people(const RouteContext& context, const Request& request) {
+  auto page = STRATA_TRY(page_of(request));
+  auto people = STRATA_TRY(context.store.people());
+  nlohmann::json list = nlohmann::json::array();
+  const int total = static_cast<int>(people.size());
+  const auto part = STRATA_TRY(slice_by_name(page, people, context.store, [](const Person& person) {
+    return store::Store::NamedId{person.name, person.id};
+  }));
+  for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(people[i]));
+  Response response = json_response({{"users", std::move(list)}, {"total", total}});
+  add_page_links(response, request, page, part.last);
+  return response;
+}
+
+Result<Role> usable_role(const Request& request, std::optional<protocol::Role> asked,
+                         Role otherwise) {
+  const Role role = asked ? static_cast<Role>(static_cast<int>(*asked)) : otherwise;
+  if (role == Role::owner)
+    return fail(ErrorCode::invalid, "One owner",
+                "A server has one owner. Make the person administrator.", "role");
+  if (role > request.principal->role)
+    return fail(ErrorCode::forbidden, "Not allowed", "Nobody gives a role above their own.",
+                "role");
+  return role;
+}
+
+Result<Response> with_invitation(const RouteContext& context, const Person& person, int status) {
+  const auto link =
+      context.store.create_link(TokenKind::invitation, person.name, store::kInvitationLifetime);
+  if (!link) return tl::unexpected(link.error());
+  // Behind a #, so that it is in no log: browsers keep that to themselves.
+  return json_response({{"path", "/join#" + link->secret},
+                        {"expires", utc_text(link->token.expires.value_or(link->token.created))},
+                        {"user", to_json(person)}},
+                       status)
+      .with("Cache-Control", "no-store");
+}
+
+Result<Response> invite(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::PersonCreate>(request));
+  const auto role = STRATA_TRY(usable_role(request, asked.role, Role::viewer));
+  const auto person = STRATA_TRY(context.store.create_person(
+      asked.user, asked.full_name.value_or(""), role,
+      asked.groups.value_or(std::vector<std::int64_t>()), request.user()));
+  auto response = with_invitation(context, person, 201);
+  if (response) response->with("Location", "/api/v1/users/" + percent_encode(person.name));
+  return response;
+}
+
+// Whom the caller may change: not themselves, so that no server is left without who runs it, and
+// not the owner.
+Result<Person> somebody_else(const RouteContext& context, const Request& request) {
+  auto person = STRATA_TRY(context.store.person(request.param("user")));
+  if (person.name == request.user())
+    return fail(ErrorCode::conflict, "That is you",
+                "Nobody changes their own account here. Ask another administrator.");
+  if (person.role == Role::owner)
+    return fail(ErrorCode::conflict, "The owner", "The owner's account is changed by nobody else.");
+  // Otherwise they could let themselves in as one another.
+  if (person.role == Role::administrator && request.principal->role < Role::owner)
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "Only the owner changes accounts of administrators.");
+  return person;
+}
+
+Result<Response> change_person(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::PersonPatch>(request));
+  const auto person = STRATA_TRY(somebody_else(context, request));
+  const auto role = STRATA_TRY(usable_role(request, asked.role, person.role));
+  const store::PersonChange change{asked.full_name, asked.role ? std::optional(role) : std::nullopt,
+                                   asked.disabled};
+  const auto changed = STRATA_TRY(context.store.change_person(person.id, change));
+  context.auth.forget();
+  if (changed.role != person.role || changed.disabled != person.disabled)
+    context.live_sockets.close_user(changed.name, kClosePolicy, "your account was changed");
+  return json_response(to_json(changed));
+}
+
+Result<Response> delete_person(const RouteContext& context, const Request& request) {
+  const auto person = STRATA_TRY(somebody_else(context, request));
+  // Out first, so that nothing more is written under the name.
+  const auto out =
+      context.store.change_person(person.id, {.full_name = {}, .role = {}, .disabled = true});
+  if (!out) return tl::unexpected(out.error());
+  context.auth.forget();
+  context.live_sockets.close_user(person.name, kClosePolicy, "your account was deleted");
+  // What they drew last may be on its way to the journal still.
+  STRATA_TRY(context.rooms.settle());
+  STRATA_TRY(context.store.delete_person(person.name));
+  return empty_response(204);
+}
+
+// --- from the other side of the link
+
+Result<Person> invited_by(const RouteContext& context, const std::string& invitation) {
+  const auto principal = STRATA_TRY(context.store.find_token(invitation));
+  if (!principal || principal->kind != TokenKind::invitation)
+    return fail(ErrorCode::unauthenticated, "Link not valid",
+                "This invitation was used, or is too old. Ask for a new one.", "invitation");
+  return context.store.person(principal->user);
+}
+
+Result<Response> show_invitation(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::InvitationShow>(request));
+  const auto person = STRATA_TRY(invited_by(context, asked.invitation));
+  return json_response(to_json(person)).with("Cache-Control", "no-store");
+}
+
+Result<Response> accept_invitation(const RouteContext& context, const Request& request) {
+  const auto asked = STRATA_TRY(body_of<protocol::InvitationAccept>(request));
+  const auto person = STRATA_TRY(invited_by(context, asked.invitation));
+  STRATA_TRY(store::check_password(asked.password, person.name, "password"));
+  const auto hash = STRATA_TRY(store::hash_password(asked.password));
+  const auto session = STRATA_TRY(context.store.accept_invitation(
+      asked.invitation, hash, asked.full_name, kSessionLifetime, agent_of(request)));
+  if (!session)
+    return fail(ErrorCode::unauthenticated, "Link not valid", "This invitation was used meanwhile.",
+                "invitation");
+  context.auth.forget();
+  context.live_sockets.close_user(person.name, kClosePolicy, "the password was changed");
+  return signed_in(context, request, *session);
+}
+
+}  // namespace
+
+void add_people_routes(Router& router, const RouteContext& context) {
+  const auto add = [&](Method method, std::string pattern,
+                       Result<Response> (*answer)(const RouteContext&, const Request&),
+                       std::optional<Role> role, std::vector<std::string> query = {}) {
+    const bool has_body =
+        method == Method::patch || (method == Method::post && !pattern.ends_with("/invite"));
+    router.add({.method = method,
+                .pattern = std::move(pattern),
+                .handler = answering([&context, answer](const Request& request) {
+                  return answer(context, request);
+                }),
+                .role = role,
+                .query = std::move(query),
+                .check = role && method != Method::get ? std::function(check_no_script) : nullptr,
+                .body = has_body ? BodyKind::memory : BodyKind::none,
+                .max_body = has_body ? context.options.max_json_bytes : 0});
+  };
+  add(Method::get, "/api/v1/users", list_people, Role::administrator, {"limit", "offset", "after"});
+  add(Method::post, "/api/v1/users", invite, Role::administrator);
+  add(
+      Method::get, "/api/v1/users/{user}",
+      [](const RouteContext& of, const Request& request) -> Result<Response> {
+        const auto person = STRATA_TRY(of.store.person(request.param("user")));
+        return json_response(to_json(person));
+      },
+      Role::administrator);
+  add(Method::patch, "/api/v1/users/{user}", change_person, Role::administrator);
+  add(Method::remove, "/api/v1/users/{user}", delete_person, Role::administrator);
+  add(
+      Method::post, "/api/v1/users/{user}/invite",
+      [](const RouteContext& of, const Request& request) -> Result<Response> {
+        const auto person = STRATA_TRY(somebody_else(of, request));
+        return with_invitation(of, person, 200);
+      },
+      Role::administrator);
+  add(Method::post, "/api/v1/invitations/show", show_invitation, std::nullopt);
+  add(Method::post, "/api/v1/invitations/accept", accept_invitation, std::nullopt);
+}
+
+}  // namespace strata::net

@@ -1,0 +1,77 @@
+#include <fstream>
+#include <sstream>
+
+#include "core/version.h"
+#include "net/api/docs_page.h"
+#include "net/api/routes.h"
+
+namespace strata::net {
+namespace {
+
+Response readiness(const RouteContext& context) {
+  nlohmann::json reasons = nlohmann::json::array();
+  if (!context.store.ready()) reasons.push_back("The database does not answer.");
+  if (!context.renderer.ready())
+    reasons.push_back("The graphics context was lost and cannot be replaced yet.");
+  const bool ready = reasons.empty();
+  return json_response({{"ready", ready}, {"reasons", reasons}}, ready ? 200 : 503);
+}
+
+// With the tag of its bytes; 304 to a client that has them.
+Response revalidated(Response response, const Request& request) {
+  const auto tag = tag_of_body(response).value_or("");
+  response.with("ETag", tag).with("Cache-Control", "no-cache");
+  return names_tag(request.header("if-none-match"), tag) ? not_modified(std::move(response))
+                                                         : std::move(response);
+}
+
+Result<Response> contract(const RouteContext& context, const Request& request) {
+  std::ifstream file(context.options.protocol_dir / "openapi.json", std::ios::binary);
+  if (!file)
+    return fail(ErrorCode::unavailable, "Contract missing",
+                "openapi.json is not part of this installation.");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return revalidated(text_response(std::move(text).str(), "application/json"), request);
+}
+
+}  // namespace
+
+void add_system_routes(Router& router, const RouteContext& context) {
+  auto open = [&](std::string pattern, std::function<Result<Response>(const Request&)> answer) {
+    router.add({.method = Method::get,
+                .pattern = std::move(pattern),
+                .handler = answering(std::move(answer)),
+                .role = std::nullopt});
+  };
+  open("/livez", [](const Request&) -> Result<Response> {
+    return text_response("ok\n", "text/plain; charset=utf-8");
+  });
+  open("/readyz", [&context](const Request&) -> Result<Response> { return readiness(context); });
+  open("/api/v1/version", [](const Request& request) -> Result<Response> {
+    return revalidated(json_response({{"version", version()}}), request);
+  });
+  open("/metrics", [&context](const Request&) -> Result<Response> {
+    return text_response(
+        metrics_text(context.metrics,
+                     {context.rooms.open_rooms(), context.renderer.gpu_bytes_used(),
+                      context.rooms.memory_bytes_used(), context.workers.waiting(),
+                      context.questions.waiting(), context.questions.under_way(),
+                      context.questions.steps()}),
+        "text/plain; version=0.0.4; charset=utf-8");
+  });
+  open("/api/v1/openapi.json",
+       [&context](const Request& request) { return contract(context, request); });
+  for (const char* pattern : {"/docs", "/api/v1/docs"})
+    open(pattern, [&context](const Request&) {
+      return docs_page(context.options.protocol_dir / "openapi.json");
+    });
+  open("/problems", [](const Request&) -> Result<Response> {
+    return text_response(problems_html(), "text/html; charset=utf-8");
+  });
+  open("/api/v1/docs.css", [](const Request&) -> Result<Response> {
+    return text_response(std::string(docs_style()), "text/css; charset=utf-8");
+  });
+}
+
+}  // namespace strata::net

@@ -1,0 +1,171 @@
+#include "core/mapped_file.h"
+#include "core/picture.h"
+#include "core/slug.h"
+#include "net/api/routes.h"
+#include "net/http/answer_book.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::uint64_t kLargestPicture_bytes = std::uint64_t{8} << 20;
+constexpr int kLargestPictureSide_px = 2048;
+constexpr std::size_t kLongestToolName = 200;
+
+using Event = protocol::ToolEventEvent;
+
+void tell_everyone(const RouteContext& context, Event event, const Tool& tool) {
+  protocol::ToolEvent message;
+  message.event = event;
+  message.tool_id = tool.id;
+  if (event != Event::deleted) message.tool = to_json(tool);
+  context.live_sockets.tell_all(message);
+}
+
+Result<Response> list_tools(const RouteContext& context, const Request& request) {
+  const auto page = STRATA_TRY(page_of(request, kMaxPage));
+  auto tools = STRATA_TRY(context.store.tools());
+  const auto part = STRATA_TRY(slice_by_name(page, tools, context.store, [](const Tool& tool) {
+    return store::Store::NamedId{tool.name, tool.id};
+  }));
+  nlohmann::json list = nlohmann::json::array();
+  for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(tools[i]));
+  Response response = json_response({{"tools", list}, {"total", tools.size()}});
+  add_page_links(response, request, page, part.last);
+  return response;
+}
+
+Result<std::string> name_of(const Request& request) {
+  std::string name = request.query_or("name", {});
+  if (name.empty() || name.size() > kLongestToolName)
+    return fail(ErrorCode::invalid, "Name missing", "A tool has a name of 1 to 200 bytes.", "name");
+  return name;
+}
+
+Result<std::optional<ShapePart>> part_of(const Request& request) {
+  const std::string part = request.query_or("part", {});
+  if (part.empty()) return std::nullopt;
+  if (part == "opaque") return ShapePart::opaque;
+  if (part == "light") return ShapePart::light;
+  if (part == "dark") return ShapePart::dark;
+  return fail(ErrorCode::invalid, "Unknown part", "`part` is opaque, light or dark.", "part");
+}
+
+Result<Response> create_tool(const RouteContext& context, const Request& request) {
+  Tool tool;
+  auto name = STRATA_TRY(name_of(request));
+  tool.name = std::move(name);
+  const auto part = STRATA_TRY(part_of(request));
+  const auto body = MappedFile::open(request.body_file);
+  if (!body || body->bytes().empty())
+    return fail(ErrorCode::malformed, "Empty body",
+                "Send a picture as the body: PNG, JPEG, TIFF, WebP, BMP or TGA.", "body");
+  const auto picture = decode_picture(body->bytes(), kLargestPictureSide_px);
+  if (!picture) return tl::unexpected(picture.error());
+  const auto shape = STRATA_TRY(shape_of(*picture, part));
+  const auto answer = [](const Tool& made) {
+    return json_response(to_json(made), 201)
+        .with("Location", "/api/v1/tools/" + made.slug)
+        .with("ETag", etag_of(made.version));
+  };
+  auto created =
+      STRATA_TRY(context.store.create_tool(tool, shape, first_answer<Tool>(request, answer)));
+  tell_everyone(context, Event::created, created);
+  return answer(created);
+}
+
+// One that can be changed: that is not deleted.
+Result<Tool> present_tool(const RouteContext& context, const Request& request) {
+  auto tool = context.store.tool(request.param("tool"));
+  if (tool && tool->deleted)
+    return fail(ErrorCode::not_found, "Tool deleted",
+                "The tool `" + tool->name + "` was deleted: it can be read, but not changed.");
+  if (!tool) return tool;
+  STRATA_TRY(check_if_match(request, tool->version));
+  return tool;
+}
+
+Result<Response> rename_tool(const RouteContext& context, const Request& request) {
+  auto asked = STRATA_TRY(body_of<protocol::ToolPatch>(request));
+  auto tool = STRATA_TRY(present_tool(context, request));
+  tool.name = asked.name;
+  const auto answer = [](const Tool& now) {
+    return json_response(to_json(now)).with("ETag", etag_of(now.version));
+  };
+  auto changed = STRATA_TRY(context.store.update_tool(tool, first_answer<Tool>(request, answer)));
+  tell_everyone(context, Event::changed, changed);
+  return answer(changed);
+}
+
+Result<Response> delete_tool(const RouteContext& context, const Request& request) {
+  auto tool = STRATA_TRY(present_tool(context, request));
+  STRATA_TRY(context.store.delete_tool(
+      tool.id, first_answer<>(request, [] { return empty_response(204); })));
+  tell_everyone(context, Event::deleted, tool);
+  return empty_response(204);
+}
+
+Result<Response> tool_picture(const RouteContext& context, const Request& request) {
+  auto tool = STRATA_TRY(context.store.tool(request.param("tool")));
+  auto shape = STRATA_TRY(context.store.tool_shape(tool.id));
+  const Picture picture = picture_of(shape);
+  Response response =
+      bytes_response(encode_png(picture.rgba, picture.width, picture.height), "image/png");
+  // An id stands for one shape for ever; a slug may be given to another.
+  if (is_all_digits(request.param("tool")))
+    response.with("Cache-Control", "private, max-age=31536000, immutable");
+  return response;
+}
+
+}  // namespace
+
+void add_tool_routes(Router& router, const RouteContext& context) {
+  const std::string tools = "/api/v1/tools";
+  router.add({.method = Method::get,
+              .pattern = tools,
+              .handler = answering(
+                  [&context](const Request& request) { return list_tools(context, request); }),
+              .role = Role::guest,
+              .query = {"limit", "offset", "after"}});
+  router.add({.method = Method::post,
+              .pattern = tools,
+              .handler = answering(
+                  [&context](const Request& request) { return create_tool(context, request); }),
+              .role = Role::annotator,
+              .query = {"name", "part"},
+              .check = [](const Request& request) -> Result<void> {
+                STRATA_TRY(name_of(request));
+                STRATA_TRY(part_of(request));
+                return {};
+              },
+              .body = BodyKind::file,
+              .max_body = std::min(kLargestPicture_bytes, context.options.max_upload_bytes),
+              .keeps_answer = true});
+  router.add({.method = Method::get,
+              .pattern = tools + "/{tool}",
+              .handler = answering([&context](const Request& request) -> Result<Response> {
+                auto tool = STRATA_TRY(context.store.tool(request.param("tool")));
+                return with_etag(json_response(to_json(tool)), request, tool.version);
+              }),
+              .role = Role::guest});
+  router.add({.method = Method::patch,
+              .pattern = tools + "/{tool}",
+              .handler = answering(
+                  [&context](const Request& request) { return rename_tool(context, request); }),
+              .role = Role::curator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true});
+  router.add({.method = Method::remove,
+              .pattern = tools + "/{tool}",
+              .handler = answering(
+                  [&context](const Request& request) { return delete_tool(context, request); }),
+              .role = Role::curator,
+              .keeps_answer = true});
+  router.add({.method = Method::get,
+              .pattern = tools + "/{tool}/picture",
+              .handler = answering(
+                  [&context](const Request& request) { return tool_picture(context, request); }),
+              .role = Role::guest});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,352 @@
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <mutex>
+
+#include "core/filename.h"
+#include "core/media_type.h"
+#include "core/no_such.h"
+#include "core/picture.h"
+#include "core/thumbnail.h"
+#include "net/http/answer_book.h"
+#include "net/http/byte_range.h"
+#include "net/http/upload.h"
+#include "net/live/table_events.h"
+#include "net/serialization/record_place.h"
+#include "net/serialization/table_wire.h"
+
+namespace strata::net {
+namespace {
+
+using Attached = store::Store::Attached;
+using NewAttachment = store::Store::NewAttachment;
+
+constexpr const char* kAccepted =
+    "Send the file as the body, with its `name` in the address, or one or several files in a multipart/form-data form.";
+// holds what stands before a picture's pixels, profiles and all
+constexpr std::size_t kHeadBytes = 1u << 20;
+constexpr std::uint64_t kAtOnceBytes = 4u << 20;  // answers that need no stream
+constexpr std::uint64_t kThumbnailFileBytes = 128u << 20;
+
+// Nothing that a file holds runs in our origin, whatever a browser makes of it.
+constexpr const char* kSandbox = "sandbox; default-src 'none'";
+
+bool is_shown_in_place(std::string_view media_type) {
+  return is_raster_picture(media_type) || media_type == "application/pdf";
+}
+
+std::vector<std::uint8_t> head_of(const std::filesystem::path& file) {
+  std::vector<std::uint8_t> head(kHeadBytes);
+  std::ifstream in(file, std::ios::binary);
+  in.read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  return head;
+}
+
+NewAttachment inspected(const Upload& upload, const std::string& wished_name) {
+  NewAttachment file;
+  file.file = upload.file;
+  file.name = base_filename(wished_name.empty() ? upload.filename : wished_name);
+  if (file.name.empty()) file.name = "unnamed";
+  const auto head = head_of(upload.file);
+  file.media_type = sniff_media_type(head, file.name);
+  // A picture whose size cannot be told is kept all the same: it is the person's file.
+  const bool is_picture = is_raster_picture(file.media_type);
+  if (const auto info = inspect_picture(head, 1 << 16); is_picture && info) {
+    file.width = info->width;
+    file.height = info->height;
+  }
+  return file;
+}
+
+// Parts cut out of a form go with the answer.
+class CutOut {
+ public:
+  CutOut(const std::vector<Upload>& uploads, const std::filesystem::path& body)
+      : uploads_(uploads), body_(body) {}
+  CutOut(const CutOut&) = delete;
+  ~CutOut() {
+    std::error_code gone_already;
+    for (const Upload& upload : uploads_)
+      if (upload.file != body_) std::filesystem::remove(upload.file, gone_already);
+  }
+
+ private:
+  const std::vector<Upload>& uploads_;
+  const std::filesystem::path& body_;
+};
+
+nlohmann::json list_json(const std::vector<Attachment>& attachments) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Attachment& attachment : attachments) list.push_back(to_json(attachment));
+  const std::size_t total = list.size();
+  return {{"attachments", std::move(list)}, {"total", total}};
+}
+
+Result<Response> attach(const RouteContext& context, const Request& request) {
+  auto key = STRATA_TRY(record_key(request));
+  auto place = STRATA_TRY(record_place(context, request));
+  std::optional<std::int64_t> column_id;
+  if (const std::string ref = request.query_or("column", {}); !ref.empty()) {
+    const Column* column = find_column(place.table.columns, ref);
+    if (!column)
+      return fail(ErrorCode::invalid, "No such column",
+                  place.table.name + " has no column `" + ref.substr(0, 100) + "`.", "column");
+    column_id = column->id;
+  }
+  auto version = STRATA_TRY(wished_record_version(context, request, place.table, key));
+  auto uploads = STRATA_TRY(take_upload(request, context.options.upload_dir, kAccepted));
+  const CutOut cut_out(uploads, request.body_file);
+  const std::string name = request.query_or("name", {});
+  if (!name.empty() && uploads.size() > 1)
+    return fail(ErrorCode::invalid, "Name of several files",
+                "`name` is for one file; those of a form bring theirs.", "name");
+  const auto visibility = parse_visibility(request.query_or("visibility", "public"));
+  if (!visibility)
+    return fail(ErrorCode::invalid, "Unknown visibility",
+                "`visibility` is public, team or private.", "visibility");
+  std::vector<NewAttachment> files;
+  for (const Upload& upload : uploads) {
+    files.push_back(inspected(upload, name));
+    files.back().visibility = *visibility;
+  }
+  const auto answer = [role = request.role()](const Attached& attached) {
+    auto body = list_json(attached.attachments);
+    body["record"] =
+        to_json(attached.change.records.front(), seen_by(attached.change.table, role).columns);
+    return json_response(body, 201)
+        .with("Location", "/api/v1/attachments/" + std::to_string(attached.attachments.front().id))
+        .with("ETag", etag_of(attached.change.records.front().version));
+  };
+  auto attached =
+      STRATA_TRY(context.store.attach(place.table.id, key, column_id, files, version,
+                                      request.author(), first_answer<Attached>(request, answer)));
+  tell_change(context, attached.change, request.user());
+  return answer(attached);
+}
+
+// Column by column, each in its own order.
+Result<Response> list_attachments(const RouteContext& context, const Request& request) {
+  auto key = STRATA_TRY(record_key(request));
+  auto place = STRATA_TRY(record_place(context, request));
+  std::optional<std::int64_t> at;
+  if (auto text = request.query.find("at"); text != request.query.end()) {
+    auto sequence = STRATA_TRY(sequence_at(context.store, place.table, text->second));
+    at = sequence;
+  }
+  Table then;
+  auto record = STRATA_TRY(stored_record(context, place.table, request.role(), key, at, &then));
+  std::vector<std::pair<std::int64_t, const Column*>> ids;
+  std::vector<std::int64_t> wanted;
+  for (const Column& column : then.columns) {
+    if (!holds_attachments(column.kind)) continue;
+    const auto cell = record.values.find(column.id);
+    if (cell == record.values.end()) continue;
+    for (const auto& id : cell->second) {
+      ids.emplace_back(id.get<std::int64_t>(), &column);
+      wanted.push_back(id.get<std::int64_t>());
+    }
+  }
+  auto found = STRATA_TRY(context.store.attachments(then.id, request.author(), wanted));
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& [id, column] : ids)
+    for (const Attachment& attachment : found)
+      if (attachment.id == id) {
+        list.push_back(to_json(attachment));
+        list.back()["user"] = told_name(request, attachment.user);
+        list.back()["column"] = column->slug;
+      }
+  const std::size_t total = list.size();
+  return json_response({{"attachments", std::move(list)}, {"total", total}})
+      .with("ETag", etag_of(record.version));
+}
+
+Result<std::int64_t> attachment_id(const Request& request) {
+  auto id = parse_integer(request.param("attachment"), 1, INT64_MAX, "attachment");
+  if (!id) return no_such("attachment", request.param("attachment"));
+  return id;
+}
+
+Result<int> thumbnail_side(const Request& request) {
+  static constexpr std::array kSides = {64, 128, 256, 512, 1024};
+  const std::string& text = request.query.at("thumbnail");
+  for (const int side : kSides)
+    if (text == std::to_string(side)) return side;
+  return fail(ErrorCode::invalid, "Size not made", "`thumbnail` is 64, 128, 256, 512 or 1024.",
+              "thumbnail");
+}
+
+Result<Response> thumbnail(const RouteContext& context, const Attachment& attachment, int side) {
+  // Decoded pictures are large: one at a time, so that memory is bounded.
+  static std::mutex decoding;
+  auto kept = STRATA_TRY(context.store.thumbnail(attachment, side));
+  if (kept) return bytes_response(std::move(*kept), "image/jpeg");
+  constexpr std::array<std::string_view, 5> kTypes{"image/jpeg", "image/png", "image/tiff",
+                                                   "image/webp", "image/bmp"};
+  if (std::find(kTypes.begin(), kTypes.end(), attachment.media_type) == kTypes.end())
+    return fail(ErrorCode::unsupported, "No small picture",
+                "Small pictures are made of JPEG, PNG, TIFF, WebP and BMP pictures; this is " +
+                    attachment.media_type + ".",
+                "thumbnail");
+  if (attachment.bytes > kThumbnailFileBytes)
+    return fail(ErrorCode::invalid, "Picture too large",
+                "Small pictures are made of files of at most " +
+                    std::to_string(kThumbnailFileBytes >> 20) + " MiB.",
+                "thumbnail");
+  const std::lock_guard lock(decoding);
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(attachment.bytes);
+  STRATA_TRY(context.store.read_attachment(attachment, 0, attachment.bytes,
+                                           [&](std::span<const std::uint8_t> piece) {
+                                             bytes.insert(bytes.end(), piece.begin(), piece.end());
+                                             return true;
+                                           }));
+  auto picture = make_thumbnail(bytes, side);
+  if (!picture) {
+    picture.error().field = "thumbnail";
+    return tl::unexpected(picture.error());
+  }
+  // Where it cannot be kept (no room, database busy), it is made again next time.
+  (void)context.store.keep_thumbnail(attachment, side, *picture);
+  return bytes_response(std::move(*picture), "image/jpeg");
+}
+
+Result<Response> content(const RouteContext& context, const Attachment& attachment,
+                         const AskedRange& asked) {
+  Response response;
+  response.status = asked.is_part ? 206 : 200;
+  response.with("Content-Type", attachment.media_type);
+  if (asked.is_part)
+    response.with("Content-Range", "bytes " + std::to_string(asked.range.begin) + "-" +
+                                       std::to_string(asked.range.end - 1) + "/" +
+                                       std::to_string(attachment.bytes));
+  const std::uint64_t length = asked.range.end - asked.range.begin;
+  if (length > kAtOnceBytes) {
+    response.stream = Response::Stream{
+        length,
+        [&store = context.store, attachment, range = asked.range](const Response::Sink& sink) {
+          return store.read_attachment(attachment, range.begin, range.end, sink).has_value();
+        }};
+    return response;
+  }
+  response.bytes.reserve(length);
+  STRATA_TRY(context.store.read_attachment(
+      attachment, asked.range.begin, asked.range.end, [&](std::span<const std::uint8_t> piece) {
+        response.bytes.insert(response.bytes.end(), piece.begin(), piece.end());
+        return true;
+      }));
+  return response;
+}
+
+Result<Response> read_attachment(const RouteContext& context, const Request& request) {
+  auto id = STRATA_TRY(attachment_id(request));
+  auto attachment = STRATA_TRY(context.store.attachment(id, request.author()));
+  const bool small = request.query.contains("thumbnail");
+  int side = 0;
+  if (small) {
+    auto asked = STRATA_TRY(thumbnail_side(request));
+    side = asked;
+  }
+  const std::string etag =
+      "\"" + attachment.sha256 + (small ? "-" + std::to_string(side) : "") + "\"";
+  if (names_tag(request.header("if-none-match"), etag))
+    return empty_response(304).with("ETag", etag);
+  Result<Response> response;
+  if (small) {
+    response = thumbnail(context, attachment, side);
+    if (!response) return response;
+  } else {
+    const auto if_range = request.header("if-range");
+    const auto range =
+        if_range.empty() || if_range == etag ? request.header("range") : std::string_view();
+    const auto asked = asked_range(range, attachment.bytes);
+    if (!asked) {
+      Response refusal = problem_response(
+          {ErrorCode::range_not_satisfied, "No such bytes",
+           "The file has " + std::to_string(attachment.bytes) + " bytes.", "Range"});
+      return refusal.with("Content-Range", "bytes */" + std::to_string(attachment.bytes));
+    }
+    response = content(context, attachment, *asked);
+    if (!response) return response;
+    const char* way = is_shown_in_place(attachment.media_type) ? "inline" : "attachment";
+    response
+        ->with("Content-Disposition",
+               way + ("; filename*=UTF-8''" + percent_encode(attachment.name)))
+        .with("Accept-Ranges", "bytes");
+  }
+  response->with("ETag", etag).with("Content-Security-Policy", kSandbox);
+  return response;
+}
+
+Result<Response> change_attachment(const RouteContext& context, const Request& request) {
+  auto id = STRATA_TRY(attachment_id(request));
+  auto attachment = STRATA_TRY(context.store.attachment(id, request.author()));
+  if (request.role() < Role::curator && request.user() != attachment.user)
+    return fail(ErrorCode::forbidden, "Not allowed",
+                "Who sees a file is said by curators and by who attached it.");
+  auto asked = STRATA_TRY(body_of<protocol::AttachmentPatch>(request));
+  const auto answer = [](const Attachment& now) { return json_response(to_json(now)); };
+  auto now = STRATA_TRY(context.store.show_attachment(id, asked.visibility,
+                                                      first_answer<Attachment>(request, answer)));
+  if (auto table = context.store.table(std::to_string(now.table_id), Role::owner))
+    tell_table(context, protocol::TableEventEvent::changed, *table, request.user());
+  return answer(now);
+}
+
+Result<Response> detach(const RouteContext& context, const Request& request) {
+  auto id = STRATA_TRY(attachment_id(request));
+  STRATA_TRY(context.store.attachment(id, request.author()));
+  const auto answer = [](const store::TableChange&) { return empty_response(204); };
+  auto change =
+      context.store.detach(id, request.user(), first_answer<store::TableChange>(request, answer));
+  if (!change) return tl::unexpected(change.error());
+  tell_change(context, *change, request.user());
+  return answer(*change);
+}
+
+}  // namespace
+
+void add_attachment_routes(Router& router, const RouteContext& context) {
+  for (const std::string parent :
+       {"/api/v1/tables/{table}", "/api/v1/models/{model}/layers/{layer}"}) {
+    const std::string attachments = parent + "/records/{key}/attachments";
+    router.add({.method = Method::get,
+                .pattern = attachments,
+                .handler = answering([&context](const Request& request) {
+                  return list_attachments(context, request);
+                }),
+                .query = {"at"}});
+    router.add({.method = Method::post,
+                .pattern = attachments,
+                .handler = answering(
+                    [&context](const Request& request) { return attach(context, request); }),
+                .role = Role::annotator,
+                .query = {"name", "column", "visibility"},
+                .body = BodyKind::file,
+                .max_body = context.options.max_upload_bytes,
+                .keeps_answer = true});
+  }
+  const std::string attachment = "/api/v1/attachments/{attachment}";
+  router.add({.method = Method::get,
+              .pattern = attachment,
+              .handler = answering(
+                  [&context](const Request& request) { return read_attachment(context, request); }),
+              .query = {"thumbnail"}});
+  router.add({.method = Method::patch,
+              .pattern = attachment,
+              .handler = answering([&context](const Request& request) {
+                return change_attachment(context, request);
+              }),
+              .role = Role::annotator,
+              .body = BodyKind::memory,
+              .max_body = context.options.max_json_bytes,
+              .keeps_answer = true});
+  router.add({.method = Method::remove,
+              .pattern = attachment,
+              .handler = answering(
+                  [&context](const Request& request) { return detach(context, request); }),
+              .role = Role::annotator,
+              .keeps_answer = true});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,471 @@
+#include <algorithm>
+#include <map>
+
+#include "net/api/routes.h"
+#include "net/http/answer_book.h"
+#include "net/live/table_events.h"
+#include "net/painted_keys.h"
+#include "net/readable_area.h"
+#include "net/record_csv.h"
+#include "net/record_measures.h"
+#include "net/serialization/record_place.h"
+#include "net/serialization/table_wire.h"
+#include "net/sheet.h"
+#include "net/workbook.h"
+#include "query/expression_parser.h"
+
+namespace strata::net {
+namespace {
+
+using TableChange = store::TableChange;
+
+constexpr std::uint64_t kMaxRecordsBytes = 64u << 20;
+
+constexpr std::size_t kMostSortColumns = 16;
+
+// "name,-depth": descending after a minus. A column that is there already says nothing more.
+Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& text) {
+  std::vector<std::pair<std::string, bool>> order;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    std::string word = text.substr(begin, end - begin);
+    const bool descending = word.starts_with('-');
+    // a plus in a query is a space
+    if (descending || word.starts_with('+') || word.starts_with(' ')) word.erase(0, 1);
+    if (!word.empty() &&
+        std::ranges::find(order, word, &std::pair<std::string, bool>::first) == order.end())
+      order.emplace_back(std::move(word), descending);
+    if (order.size() > kMostSortColumns)
+      return fail(ErrorCode::invalid, "Too many columns to sort by",
+                  "Records are sorted by at most " + std::to_string(kMostSortColumns) + " columns.",
+                  "sortby");
+    begin = end + 1;
+  }
+  return order;
+}
+
+// Sorted by what they measure, such as the area that they have on the layer: all other order is the
+// database's.
+Result<store::Store::RecordPage> page_by_measure(const RouteContext& context,
+                                                 const RecordPlace& place,
+                                                 const RecordMeasures& measures,
+                                                 std::size_t measure, Role seen_by,
+                                                 store::Store::RecordQuery query) {
+  const bool descending = query.order.front().second;
+  const auto limit = static_cast<std::size_t>(query.limit),
+             offset = static_cast<std::size_t>(query.offset);
+  const auto after = std::exchange(query.after, std::nullopt);
+  query.order.erase(query.order.begin());
+  query.limit = store::kMostRecords;
+  query.offset = 0;
+  auto page = STRATA_TRY(context.store.records(place.table.id, seen_by, query));
+  // worked out once: a line may have thousands of places
+  std::vector<std::pair<double, Record>> by_value;
+  by_value.reserve(page.records.size());
+  for (Record& record : page.records) {
+    const double value = measures.of(record)[measure];
+    by_value.emplace_back(value, std::move(record));
+  }
+  const auto comes_before = [descending](double a, double b) { return descending ? a > b : a < b; };
+  std::ranges::stable_sort(by_value, comes_before, &std::pair<double, Record>::first);
+  auto begin = by_value.begin() + static_cast<std::ptrdiff_t>(std::min(offset, by_value.size()));
+  if (after) {
+    if (after->size() != 2 || !after->at(0).is_number() || !after->at(1).is_number_integer())
+      return wrong_place();
+    const auto value = after->at(0).get<double>();
+    const auto key = after->at(1).get<std::int64_t>();
+    const auto [low, high] =
+        std::ranges::equal_range(by_value, value, comes_before, &std::pair<double, Record>::first);
+    const auto same =
+        std::find_if(low, high, [key](const auto& each) { return each.second.key == key; });
+    // Where it is gone, of those with its value the ones with higher keys follow: that is how they
+    // stand, unless more was sorted by.
+    begin = same != high ? same + 1 : std::find_if(low, high, [key](const auto& each) {
+      return each.second.key > key;
+    });
+  }
+  const auto end =
+      begin + static_cast<std::ptrdiff_t>(std::min<std::size_t>(limit, by_value.end() - begin));
+  auto& records = page.records;
+  records.clear();
+  page.last.reset();
+  if (end != by_value.end() && end != begin)
+    page.last = ListPlace::array({(end - 1)->first, (end - 1)->second.key});
+  for (; begin != end; ++begin) records.push_back(std::move(begin->second));
+  return page;
+}
+
+// The columns of `records_csv`, with values of their own types; under a layer the last one has
+// areas in a unit that people read.
+Result<Response> records_book(const RouteContext& context, const store::Store::RecordPage& page,
+                              const RecordMeasures& measures, const WordsOfTables& words) {
+  std::vector<BookColumn> heads{{"key", {}}};
+  for (const Column& column : page.table.columns) heads.push_back({column.slug, {}});
+  for (const std::string& name : measures.names()) heads.push_back({name, {}});
+  const bool has_area = std::ranges::count(measures.names(), kAreaMeasure) > 0;
+  double largest_m2 = 0;
+  for (const Record& record : page.records)
+    largest_m2 = std::max(largest_m2, measures.area_m2(record.key));
+  const AreaUnit unit = readable_area(largest_m2);
+  if (has_area) {
+    std::ranges::find(heads, kAreaMeasure, &BookColumn::head)->number_format =
+        number_format(largest_m2);
+    heads.push_back({readable_head(kAreaMeasure, unit), number_format(largest_m2 * unit.per_m2)});
+  }
+  Workbook book(context.options.upload_dir, page.table.slug, heads);
+  std::vector<BookCell> cells;
+  for (const Record& record : page.records) {
+    cells.assign(1, double(record.key));
+    for (const Column& column : page.table.columns) {
+      if (auto word = term_word(record, column, words))
+        cells.emplace_back(std::move(*word));
+      else
+        cells.push_back(book_cell(record, column));
+    }
+    for (const double value : measures.of(record)) cells.emplace_back(value);
+    if (has_area) cells.emplace_back(measures.area_m2(record.key) * unit.per_m2);
+    book.add_row(cells);
+  }
+  return book.finish(page.table.slug + ".xlsx");
+}
+
+Result<Response> list_records(const RouteContext& context, const Request& request) {
+  auto page = STRATA_TRY(page_of(request));
+  const auto format = STRATA_TRY(sheet_format(request));
+  auto separator = STRATA_TRY(csv_separator(request));
+  auto place = STRATA_TRY(record_place(context, request));
+  store::Store::RecordQuery query;
+  auto order = STRATA_TRY(order_of(request.query_or("sortby", {})));
+  query.order = std::move(order);
+  const auto language = STRATA_TRY(asked_language(request));
+  query.language = language;
+  const std::string terms = request.query_or("terms", "words");
+  if (terms != "words" && terms != "keys")
+    return fail(ErrorCode::invalid, "Unknown choice", "`terms` is words or keys.", "terms");
+  if (auto filter = request.query.find("filter");
+      filter != request.query.end() && !filter->second.empty()) {
+    auto condition = query::parse_condition(filter->second, "filter", query::Names::columns);
+    if (!condition) return tl::unexpected(condition.error());
+    query.filter = std::move(*condition);
+  }
+  // A table to work on elsewhere is all of it, unless a part is asked for.
+  const bool whole = format != SheetFormat::json && !request.query.contains("limit");
+  query.limit = whole ? store::kMostRecords : page.limit;
+  query.offset = page.offset;
+  query.after = page.after;
+  if (auto at = request.query.find("at"); at != request.query.end()) {
+    auto sequence = STRATA_TRY(sequence_at(context.store, place.table, at->second));
+    query.at = sequence;
+  }
+  // Of the columns as they are now: what was a line and is none any more has no length.
+  auto measures = STRATA_TRY(RecordMeasures::of_place(context, place, place.table.columns));
+  const auto& names = measures.names();
+  const auto measure =
+      query.order.empty() ? names.end() : std::ranges::find(names, query.order.front().first);
+  auto records = STRATA_TRY(measure == names.end()
+                                ? context.store.records(place.table.id, request.role(), query)
+                                : page_by_measure(context, place, measures,
+                                                  static_cast<std::size_t>(measure - names.begin()),
+                                                  request.role(), query));
+  WordsOfTables words;
+  if (format != SheetFormat::json && terms == "words") {
+    auto known =
+        STRATA_TRY(words_of(context.store, records.table.columns, request.role(), language));
+    words = std::move(known);
+  }
+  if (page.after && records.last && !cursor_of(request, *records.last))
+    return fail(
+        ErrorCode::invalid, "Sorted by too much",
+        "The values by which this page ends are too long for an address; sort by fewer columns.",
+        "sortby");
+  Response response;
+  if (format == SheetFormat::xlsx) {
+    auto book = STRATA_TRY(records_book(context, records, measures, words));
+    response = std::move(book);
+  } else if (format == SheetFormat::csv) {
+    std::vector<std::vector<double>> values;
+    for (const Record& record : records.records) values.push_back(measures.of(record));
+    response = text_response(records_csv(records.records, records.table.columns,
+                                         {measures.names(), std::move(values)}, separator, words),
+                             kCsvType);
+    name_download(response, place.table.slug + ".csv");
+  } else {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Record& record : records.records) {
+      nlohmann::json json = to_json(record, records.table.columns);
+      add_measures(json, measures.names(), measures.of(record));
+      list.push_back(std::move(json));
+    }
+    response = json_response({{"records", std::move(list)}, {"total", records.total}});
+  }
+  if (!whole) add_page_links(response, request, page, records.last);
+  response.with("Strata-Sequence", std::to_string(records.table.sequence)).with("Vary", "Accept");
+  return response;
+}
+
+Result<Response> read_record(const RouteContext& context, const Request& request) {
+  auto key = STRATA_TRY(record_key(request));
+  auto place = STRATA_TRY(record_place(context, request));
+  std::optional<std::int64_t> at;
+  if (auto text = request.query.find("at"); text != request.query.end()) {
+    auto sequence = STRATA_TRY(sequence_at(context.store, place.table, text->second));
+    at = sequence;
+  }
+  Table then;
+  auto record = STRATA_TRY(stored_record(context, place.table, request.role(), key, at, &then));
+  nlohmann::json json = to_json(record, then.columns);
+  const auto measures = STRATA_TRY(RecordMeasures::of_place(context, place, then.columns));
+  add_measures(json, measures.names(), measures.of(record));
+  if (!place.layer) return with_etag(json_response(json), request, record.version);
+  return json_response(json).with("ETag", etag_of(record.version));
+}
+
+// --- changes
+
+Error first_problem(const TableChange& change, bool is_list) {
+  Error problem = change.problems.front().problem;
+  if (is_list && change.problems.front().index)
+    problem.field =
+        "records[" + std::to_string(*change.problems.front().index) + "]." + problem.field;
+  return problem;
+}
+
+Result<Response> create_from_json(const RouteContext& context, const Request& request,
+                                  const RecordPlace& place) {
+  auto asked = STRATA_TRY(body_of<protocol::RecordsCreate>(request, kMaxRecordsBytes));
+  if (asked.records && (asked.key || asked.values))
+    return fail(ErrorCode::invalid, "One or several",
+                "Give either `records`, or `key` and `values` of one.", "records");
+  store::WriteRecords write;
+  write.may_change = false;
+  const bool is_list = asked.records.has_value();
+  std::vector<protocol::RecordInput> inputs;
+  if (is_list)
+    inputs = std::move(*asked.records);
+  else
+    inputs.push_back({asked.key, asked.values});
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::string field = is_list ? "records[" + std::to_string(i) + "].values" : "values";
+    auto values =
+        values_by_column(place.table, inputs[i].values.value_or(nlohmann::json::object()), field);
+    if (!values) return tl::unexpected(values.error());
+    write.records.push_back({inputs[i].key, std::move(*values)});
+  }
+  const auto answer = [is_list, role = request.role()](const TableChange& change) {
+    const Table seen = seen_by(change.table, role);
+    if (!is_list) {
+      const Record& record = change.records.front();
+      return json_response(to_json(record, seen.columns), 201)
+          .with("Location",
+                "/api/v1/tables/" + change.table.slug + "/records/" + std::to_string(record.key))
+          .with("ETag", etag_of(record.version));
+    }
+    nlohmann::json list = nlohmann::json::array();
+    for (const Record& record : change.records) list.push_back(to_json(record, seen.columns));
+    const std::size_t total = list.size();
+    return json_response({{"records", std::move(list)}, {"total", total}}, 201);
+  };
+  auto change = STRATA_TRY(context.store.write_records(place.table.id, write, request.user(),
+                                                       first_answer<TableChange>(request, answer)));
+  if (!change.problems.empty()) return tl::unexpected(first_problem(change, is_list));
+  tell_change(context, change, request.user());
+  return answer(change);
+}
+
+nlohmann::json report_of(const RecordRows& rows, const TableChange& change, bool dry_run) {
+  nlohmann::json problems = nlohmann::json::array();
+  const auto add = [&](int line, const std::string& column, const Error& problem) {
+    if (problems.size() == store::kMostRowProblems) return;
+    problems.push_back({{"line", line}, {"title", problem.title}, {"detail", problem.detail}});
+    if (!column.empty()) problems.back()["column"] = column;
+  };
+  for (const RowMistake& mistake : rows.mistakes)
+    add(mistake.line, mistake.column, mistake.problem);
+  for (const store::RowError& problem : change.problems) {
+    std::string head = problem.problem.field;
+    for (const Column& column : change.table.columns)
+      if ("values." + column.slug == head) {
+        const auto found = rows.heads.find(column.id);
+        head = found == rows.heads.end() ? column.name : found->second;
+      }
+    // Something else names a record that is not in the text.
+    add(problem.index ? rows.lines[*problem.index] : 1, head, problem.problem);
+  }
+  const bool refused = !problems.empty();
+  const std::size_t created = refused ? 0 : change.created.size(),
+                    changed = refused ? 0 : change.changed.size();
+  return {{"rows", rows.rows},
+          {"created", created},
+          {"changed", changed},
+          {"unchanged", refused ? 0 : rows.records.size() - created - changed},
+          {"dry_run", dry_run},
+          {"sequence", refused || dry_run ? 0 : change.sequence},
+          {"problems", std::move(problems)}};
+}
+
+Result<Response> import_csv(const RouteContext& context, const Request& request,
+                            const RecordPlace& place) {
+  const std::string tried = request.query_or("dry_run", "false");
+  if (tried != "true" && tried != "false")
+    return fail(ErrorCode::invalid, "Bad value", "`dry_run` is true or false.", "dry_run");
+  const auto words = STRATA_TRY(words_of(context.store, place.table.columns, request.role(), {}));
+  auto rows = STRATA_TRY(read_records_csv(request.body, place.table, words));
+  store::WriteRecords write;
+  write.records = rows.records;
+  write.op = "import";
+  // Where a row cannot even be read, the others are looked at all the same, so that one look finds
+  // all that is wrong.
+  write.dry_run = tried == "true" || !rows.mistakes.empty();
+  const auto answer = [&rows](const TableChange& change) {
+    return json_response(report_of(rows, change, false));
+  };
+  auto change = STRATA_TRY(context.store.write_records(place.table.id, write, request.user(),
+                                                       first_answer<TableChange>(request, answer)));
+  const bool refused = !rows.mistakes.empty() || !change.problems.empty();
+  if (tried == "true") return json_response(report_of(rows, change, true));
+  if (refused) {
+    const nlohmann::json report = report_of(rows, change, false);
+    const auto& first = report.at("problems").front();
+    Response response = problem_response({ErrorCode::invalid, "Rows refused",
+                                          "Nothing was written. Line " +
+                                              std::to_string(first.at("line").get<int>()) + ": " +
+                                              first.at("detail").get<std::string>(),
+                                          "body"});
+    auto body = nlohmann::json::parse(response.body);
+    body["rows"] = report;
+    response.body = body.dump();
+    return response;
+  }
+  tell_change(context, change, request.user());
+  return answer(change);
+}
+
+Result<Response> create_records(const RouteContext& context, const Request& request) {
+  auto place = STRATA_TRY(record_place(context, request));
+  if (to_lower(request.header("content-type")).starts_with("text/csv"))
+    return import_csv(context, request, place);
+  if (request.query.contains("dry_run"))
+    return fail(ErrorCode::invalid, "Not for JSON", "`dry_run` is for records sent as text/csv.",
+                "dry_run");
+  return create_from_json(context, request, place);
+}
+
+Result<Response> change_record(const RouteContext& context, const Request& request) {
+  auto key = STRATA_TRY(record_key(request));
+  auto asked = STRATA_TRY(body_of<protocol::RecordPatch>(request));
+  auto place = STRATA_TRY(record_place(context, request));
+  auto version = STRATA_TRY(wished_record_version(context, request, place.table, key));
+  auto values = STRATA_TRY(values_by_column(place.table, asked.values, "values"));
+  store::WriteRecords write;
+  write.may_create = false;
+  write.records.push_back({key, std::move(values), version ? version : asked.version});
+  const auto answer = [role = request.role()](const TableChange& change) {
+    const Record& record = change.records.front();
+    return json_response(to_json(record, seen_by(change.table, role).columns))
+        .with("ETag", etag_of(record.version));
+  };
+  // What stays the same is no entry, and no record comes with it.
+  std::optional<Record> same;
+  if (auto now = stored_record(context, place.table, request.role(), key, {}))
+    same = std::move(*now);
+  const auto keep = [&](const TableChange& change) {
+    if (!change.records.empty() || !same) return answer(change);
+    return json_response(to_json(*same, seen_by(change.table, request.role()).columns))
+        .with("ETag", etag_of(same->version));
+  };
+  auto change = STRATA_TRY(context.store.write_records(place.table.id, write, request.user(),
+                                                       first_answer<TableChange>(request, keep)));
+  if (!change.problems.empty()) return tl::unexpected(first_problem(change, false));
+  tell_change(context, change, request.user());
+  return keep(change);
+}
+
+// Nothing paints the key any more.
+Result<Response> delete_retired(const RouteContext& context, const Request& request,
+                                const Table& table, std::int64_t key,
+                                std::optional<std::int64_t> version, const std::string& texels,
+                                std::optional<std::int64_t> to) {
+  auto painted = STRATA_TRY(painted_layers(context, table.id, request.role()));
+  const std::string where = where_painted(painted, {key});
+  if (!where.empty() && texels == "refuse")
+    return fail(ErrorCode::conflict, "Record is painted",
+                "Record " + std::to_string(key) + " covers " + where +
+                    ". Say what becomes of it: texels=clear, or texels=reassign&to=KEY.",
+                "texels");
+  STRATA_TRY(repaint_key(context, painted, key, to, request.author()));
+  const auto answer = [](const TableChange&) { return empty_response(204); };
+  auto change = STRATA_TRY(context.store.delete_record(
+      table.id, key, version, request.user(), false, first_answer<TableChange>(request, answer)));
+  tell_change(context, change, request.user());
+  return answer(change);
+}
+
+Result<Response> delete_record(const RouteContext& context, const Request& request) {
+  auto key = STRATA_TRY(record_key(request));
+  const std::string texels = request.query_or("texels", "refuse");
+  if (texels != "refuse" && texels != "clear" && texels != "reassign")
+    return fail(ErrorCode::invalid, "Unknown choice", "`texels` is refuse, clear or reassign.",
+                "texels");
+  std::optional<std::int64_t> to;
+  if ((texels == "reassign") != request.query.contains("to"))
+    return fail(ErrorCode::invalid, "Which record",
+                "`to` is the key that the texels get, with texels=reassign.", "to");
+  auto place = STRATA_TRY(record_place(context, request));
+  const Table& table = place.table;
+  if (texels == "reassign") {
+    auto number = STRATA_TRY(parse_integer(request.query.at("to"), 0, kHighestKey, "to"));
+    auto missing = STRATA_TRY(context.store.missing_records(table.id, std::vector{number}));
+    if (!missing.empty() || number == key)
+      return fail(ErrorCode::invalid, "No such record",
+                  "`to` is another record of " + table.name + ".", "to");
+    to = number;
+  }
+  auto version = STRATA_TRY(wished_record_version(context, request, table, key));
+  // Before any texel is touched: may it go?
+  STRATA_TRY(context.store.delete_record(table.id, key, version, request.user(), true));
+  // A stroke that began while there was a record must not paint it again.
+  const auto retired = context.rooms.retire_key(table.id, key);
+  auto deleted = retired ? delete_retired(context, request, table, key, version, texels, to)
+                         : Result<Response>(tl::unexpected(retired.error()));
+  if (!deleted)
+    if (const auto missing = context.store.missing_records(table.id, std::vector{key});
+        missing && missing->empty())
+      context.rooms.admit_keys(table.id, std::vector{key});
+  return deleted;
+}
+
+}  // namespace
+
+void add_record_routes(Router& router, const RouteContext& context) {
+  using Answer = Result<Response> (*)(const RouteContext&, const Request&);
+  const auto add = [&](Method method, const std::string& pattern, Answer answer,
+                       std::vector<std::string> query, BodyKind body = BodyKind::none,
+                       std::uint64_t max_body = 0, StateOf state = {}) {
+    const bool changes = method != Method::get;
+    router.add({.method = method,
+                .pattern = pattern,
+                .handler = answering([&context, answer](const Request& request) {
+                  return answer(context, request);
+                }),
+                .role = changes ? Role::annotator : Role::viewer,
+                .query = std::move(query),
+                .body = body,
+                .max_body = max_body,
+                .keeps_answer = changes,
+                .needs_version = method == Method::patch || method == Method::remove,
+                .state = std::move(state)});
+  };
+  for (const std::string parent :
+       {"/api/v1/tables/{table}", "/api/v1/models/{model}/layers/{layer}"}) {
+    const std::string records = parent + "/records", record = records + "/{key}";
+    add(Method::get, records, list_records,
+        {"f", "separator", "filter", "sortby", "lang", "terms", "limit", "offset", "after", "at"},
+        BodyKind::none, 0, state_of_records(context));
+    add(Method::post, records, create_records, {"dry_run"}, BodyKind::memory, kMaxRecordsBytes);
+    add(Method::get, record, read_record, {"at"});
+    add(Method::patch, record, change_record, {}, BodyKind::memory, context.options.max_json_bytes);
+    add(Method::remove, record, delete_record, {"texels", "to"});
+  }
+}
+
+}  // namespace strata::net

@@ -1,0 +1,459 @@
+#include <algorithm>
+#include <map>
+
+#include "core/classification.h"
+#include "core/compensated_sum.h"
+#include "core/key_colors.h"
+#include "core/relation_cycles.h"
+#include "net/api/routes.h"
+#include "net/http/answer_book.h"
+#include "net/live/table_events.h"
+#include "net/painted_keys.h"
+#include "net/serialization/table_wire.h"
+#include "net/show_through.h"
+
+namespace strata::net {
+namespace {
+
+using TableChange = store::TableChange;
+
+Result<Response> list_tables(const RouteContext& context, const Request& request) {
+  auto page = STRATA_TRY(page_of(request));
+  auto project = STRATA_TRY(context.store.project(request.param("project")));
+  auto tables = STRATA_TRY(context.store.tables(project.id, request.role()));
+  nlohmann::json list = nlohmann::json::array();
+  const int total = static_cast<int>(tables.size());
+  const auto part = STRATA_TRY(slice_by_name(page, tables, context.store, [](const Table& table) {
+    return store::Store::NamedId{table.name, table.id};
+  }));
+  for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(tables[i]));
+  Response response = json_response({{"tables", list}, {"total", total}});
+  add_page_links(response, request, page, part.last);
+  return response;
+}
+
+Result<Response> create_table(const RouteContext& context, const Request& request) {
+  auto asked = STRATA_TRY(body_of<protocol::TableCreate>(request));
+  auto project = STRATA_TRY(context.store.project(request.param("project")));
+  auto slug = STRATA_TRY(slug_of(asked.slug, asked.name));
+  Table table;
+  table.project_id = project.id;
+  table.name = asked.name;
+  table.slug = slug;
+  if (asked.labels) table.labels = *asked.labels;
+  table.description = asked.description;
+  if (asked.columns) {
+    auto columns = STRATA_TRY(new_columns(context.store, project.id, *asked.columns));
+    table.columns = std::move(columns);
+  }
+  const auto answer = [](const Table& made) {
+    return json_response(to_json(made), 201)
+        .with("Location", "/api/v1/tables/" + made.slug)
+        .with("ETag", etag_of(made.version));
+  };
+  auto created =
+      STRATA_TRY(context.store.create_table(table, first_answer<Table>(request, answer)));
+  tell_table(context, protocol::TableEventEvent::created, created, request.user());
+  return answer(created);
+}
+
+Result<Response> change_table(const RouteContext& context, const Request& request) {
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  STRATA_TRY(check_if_match(request, table.version));
+  auto asked = STRATA_TRY(body_of<protocol::TablePatch>(request));
+  if (asked.name) table.name = *asked.name;
+  if (asked.labels) table.labels = *asked.labels;
+  if (asked.description) table.description = *asked.description;
+  if (asked.title_column) {
+    const Column* title =
+        asked.title_column->empty() ? nullptr : find_column(table.columns, *asked.title_column);
+    if (!title && !asked.title_column->empty())
+      return fail(ErrorCode::invalid, "No such column",
+                  table.name + " has no column `" + *asked.title_column + "`.", "title_column");
+    table.title_column = title ? std::optional(title->id) : std::nullopt;
+  }
+  const auto answer = [](const Table& now) {
+    return json_response(to_json(now)).with("ETag", etag_of(now.version));
+  };
+  auto changed =
+      STRATA_TRY(context.store.update_table(table, first_answer<Table>(request, answer)));
+  tell_table(context, protocol::TableEventEvent::changed, changed, request.user());
+  return answer(changed);
+}
+
+Result<Response> delete_table(const RouteContext& context, const Request& request) {
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  STRATA_TRY(check_if_match(request, table.version));
+  STRATA_TRY(context.store.delete_table(
+      table.id, first_answer<>(request, [] { return empty_response(204); })));
+  tell_table(context, protocol::TableEventEvent::deleted, table, request.user());
+  return empty_response(204);
+}
+
+// --- columns; If-Match takes the version of the table
+
+std::optional<std::int64_t> wished_version(const Request& request, const Table& table) {
+  return request.header("if-match").empty() ? std::nullopt : std::optional(table.version);
+}
+
+Result<const Column*> column_of(const Table& table, const Request& request) {
+  const Column* column = find_column(table.columns, request.param("column"));
+  if (!column)
+    return fail(ErrorCode::not_found, "Not found",
+                table.name + " has no column `" + request.param("column").substr(0, 100) + "`.");
+  return column;
+}
+
+nlohmann::json column_json(const TableChange& change, std::int64_t id) {
+  nlohmann::json json{{"sequence", change.sequence ? change.sequence : change.table.sequence}};
+  for (const Column& column : change.table.columns)
+    if (column.id == id) json["column"] = to_json(column);
+  for (const char* told : {"converted", "lost", "lost_keys"})
+    if (change.record.contains(told)) json[told] = change.record.at(told);
+  return json;
+}
+
+Result<Response> list_columns(const RouteContext& context, const Request& request) {
+  const auto page = STRATA_TRY(page_of(request, kMaxPage));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  const auto part = STRATA_TRY(slice_by(page, table.columns, [](const Column& column) {
+    return NumberKey{column.order, column.id};
+  }));
+  nlohmann::json list = nlohmann::json::array();
+  for (std::size_t i = part.begin; i < part.end; ++i) list.push_back(to_json(table.columns[i]));
+  Response response =
+      json_response({{"columns", std::move(list)}, {"total", table.columns.size()}});
+  add_page_links(response, request, page, part.last);
+  return with_etag(std::move(response), request, table.version);
+}
+
+Result<Response> create_column(const RouteContext& context, const Request& request) {
+  auto asked = STRATA_TRY(body_of<protocol::ColumnCreate>(request));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  STRATA_TRY(check_if_match(request, table.version));
+  auto column = STRATA_TRY(new_column(context.store, table.project_id, asked));
+  for (const Column& other : table.columns) column.order = std::max(column.order, other.order + 1);
+  const auto answer = [](const TableChange& change) {
+    const std::int64_t id = change.record.at("column").get<std::int64_t>();
+    return json_response(column_json(change, id), 201)
+        .with("Location", "/api/v1/tables/" + change.table.slug + "/columns/" + std::to_string(id))
+        .with("ETag", etag_of(change.table.version));
+  };
+  auto change = STRATA_TRY(context.store.create_column(table.id, column, request.user(),
+                                                       first_answer<TableChange>(request, answer)));
+  tell_change(context, change, request.user());
+  return answer(change);
+}
+
+// Null takes a default or a limit away, which the typed body cannot tell from a member that is
+// absent.
+Result<void> change(const RouteContext& context, const Request& request,
+                    const protocol::ColumnPatch& asked, const Table& table, Column& column) {
+  const auto body = nlohmann::json::parse(request.body);
+  if (asked.name) column.name = *asked.name;
+  if (asked.slug) {
+    auto slug = STRATA_TRY(slug_of(asked.slug, column.name));
+    column.slug = slug;
+  }
+  if (asked.labels) column.labels = *asked.labels;
+  if (asked.kind) {
+    column.kind = *parse_column_kind(protocol::name(*asked.kind));
+    // What the new kind has no use for goes with the old one, unless it is asked for.
+    const bool is_number = column.kind == ColumnKind::integer || column.kind == ColumnKind::numeric;
+    if (!is_number) column.unit.clear(), column.minimum.reset(), column.maximum.reset();
+    if (column.kind != ColumnKind::enumeration) column.choices.clear();
+    if (column.kind != ColumnKind::term && column.kind != ColumnKind::relation)
+      column.target.reset();
+    if (!body.contains("default")) column.default_value = nullptr;
+  }
+  if (asked.unit) column.unit = *asked.unit;
+  if (asked.required) column.required = *asked.required;
+  if (asked.unique) column.unique = *asked.unique;
+  if (body.contains("default")) column.default_value = body.at("default");
+  if (asked.comment) column.comment = *asked.comment;
+  if (asked.choices) column.choices = *asked.choices;
+  if (asked.target) {
+    auto target =
+        STRATA_TRY(table_of_project(context.store, table.project_id, *asked.target, "target"));
+    column.target = target.id;
+  }
+  if (body.contains("minimum")) column.minimum = asked.minimum;
+  if (body.contains("maximum")) column.maximum = asked.maximum;
+  if (asked.order) column.order = *asked.order;
+  return {};
+}
+
+Result<Response> show_column(const RouteContext& context, const Request& request,
+                             const Table& table, const Column& column, Visibility visibility) {
+  STRATA_TRY(check_shows_nothing(context, table, column, visibility));
+  const auto answer = [id = column.id](const Table& now) {
+    TableChange shown;
+    shown.table = now;
+    return json_response(column_json(shown, id)).with("ETag", etag_of(now.version));
+  };
+  auto now = STRATA_TRY(context.store.show_column(table.id, column.id, visibility, table.version,
+                                                  first_answer<Table>(request, answer)));
+  // Colours, lines and points that are drawn from it are others for who does not see it any more.
+  context.rooms.records_changed(now.id);
+  tell_table(context, protocol::TableEventEvent::changed, now, request.user());
+  return answer(now);
+}
+
+Result<Response> change_column(const RouteContext& context, const Request& request) {
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto found = STRATA_TRY(column_of(table, request));
+  STRATA_TRY(check_if_match(request, table.version));
+  auto asked = STRATA_TRY(body_of<protocol::ColumnPatch>(request));
+  if (asked.visibility) {
+    protocol::ColumnPatch alone;
+    alone.visibility = asked.visibility;
+    if (!(asked == alone))
+      return fail(ErrorCode::invalid, "Visibility with other changes",
+                  "Say who sees a column in a call of its own.", "visibility");
+    return show_column(context, request, table, *found, *asked.visibility);
+  }
+  Column column = *found;
+  STRATA_TRY(change(context, request, asked, table, column));
+  const auto answer = [id = column.id](const TableChange& done) {
+    const auto now = done.record.is_object() ? done.record.value("column", id) : id;
+    return json_response(column_json(done, now)).with("ETag", etag_of(done.table.version));
+  };
+  auto done =
+      context.store.update_column(table.id, column, wished_version(request, table), request.user(),
+                                  first_answer<TableChange>(request, answer));
+  if (!done) return tl::unexpected(done.error());
+  tell_change(context, *done, request.user());
+  return answer(*done);
+}
+
+Result<Response> drop_column(const RouteContext& context, const Request& request) {
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto column = STRATA_TRY(column_of(table, request));
+  STRATA_TRY(check_if_match(request, table.version));
+  const auto answer = [](const TableChange&) { return empty_response(204); };
+  auto done = context.store.drop_column(table.id, column->id, wished_version(request, table),
+                                        request.user(), first_answer<TableChange>(request, answer));
+  if (!done) return tl::unexpected(done.error());
+  tell_change(context, *done, request.user());
+  return answer(*done);
+}
+
+// A record that lies above itself cannot be: told, not refused, since excavation drawings have such
+// things to be found.
+Result<Response> cycles(const RouteContext& context, const Request& request) {
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto column = STRATA_TRY(column_of(table, request));
+  if (column->target != table.id)
+    return fail(ErrorCode::invalid, "No relation of its own",
+                "Cycles are those of a relation or term that names records of its own table.",
+                "column");
+  store::Store::RecordQuery query;
+  query.limit = store::kMostRecords;
+  auto page = STRATA_TRY(context.store.records(table.id, request.role(), query));
+  Relation relation;
+  for (const Record& record : page.records)
+    if (const auto named = record.values.find(column->id); named != record.values.end())
+      relation[record.key] = named->second.is_array()
+                                 ? named->second.get<std::vector<std::int64_t>>()
+                                 : std::vector{named->second.get<std::int64_t>()};
+  const auto found = relation_cycles(relation);
+  return json_response({{"cycles", found}, {"total", found.size()}});
+}
+
+// --- history
+
+Result<Response> classes(const RouteContext& context, const Request& request) {
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto column = STRATA_TRY(column_of(table, request));
+  const auto asked = request.query.find("method");
+  const std::string method = asked == request.query.end() ? "unique" : asked->second;
+  const bool unique = method == "unique";
+  if (!unique && method != "equal" && method != "quantile")
+    return fail(ErrorCode::invalid, "No such method", "Classes are equal, quantile or unique.",
+                "method");
+  int count = unique ? 20 : 5;
+  if (const auto wished = request.query.find("count"); wished != request.query.end()) {
+    auto number = parse_integer(wished->second, 1, 1000, "count");
+    if (!number) return tl::unexpected(number.error());
+    count = static_cast<int>(*number);
+  }
+  nlohmann::json list = nlohmann::json::array();
+  std::uint64_t with_value = 0, classified = 0;
+  if (unique) {
+    auto cells = context.store.record_texts(table.id, request.role(), column->slug, "column");
+    if (!cells) return tl::unexpected(cells.error());
+    std::vector<std::string> values;
+    for (KeyText& cell : *cells) values.push_back(std::move(cell.text));
+    with_value = values.size();
+    for (const TextClass& found : classify(values)) {
+      if (list.size() == static_cast<std::size_t>(count)) break;
+      list.push_back({{"value", found.value}, {"records", found.count}});
+      classified += found.count;
+    }
+  } else {
+    if (column->kind != ColumnKind::integer && column->kind != ColumnKind::numeric)
+      return fail(ErrorCode::invalid, "Column holds no numbers",
+                  "'" + column->name + "' holds no numbers: its classes are its unique values.",
+                  "method");
+    Expression number;
+    number.op = Expression::Op::column;
+    number.path = {column->slug};
+    auto cells =
+        context.store.record_numbers(table.id, request.role(), number, std::nullopt, "column");
+    if (!cells) return tl::unexpected(cells.error());
+    std::vector<double> values;
+    for (const KeyNumber& cell : *cells) values.push_back(cell.number);
+    with_value = classified = values.size();
+    for (const NumberClass& found :
+         classify(values, method == "equal" ? ClassMethod::equal : ClassMethod::quantile, count))
+      list.push_back({{"from", found.from}, {"to", found.to}, {"records", found.count}});
+  }
+  const auto records = static_cast<std::uint64_t>(table.records);
+  return json_response({{"total", list.size()},
+                        {"classes", std::move(list)},
+                        {"records", records},
+                        {"unclassified", with_value - classified},
+                        {"without", records - std::min(records, with_value)}});
+}
+
+Result<Response> history(const RouteContext& context, const Request& request) {
+  auto page = STRATA_TRY(page_of(request));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  std::optional<std::int64_t> key;
+  if (const std::string text = request.query_or("key", {}); !text.empty()) {
+    auto number = STRATA_TRY(parse_integer(text, 0, kHighestKey, "key"));
+    key = number;
+  }
+  const auto before = STRATA_TRY(number_after(page, INT64_MAX));
+  auto rows = STRATA_TRY(context.store.table_history(table.id, request.role(), key, page.limit + 1,
+                                                     page.offset, before));
+  const auto last =
+      end_page(rows.rows, page, [](const auto& row) { return ListPlace::array({row.sequence}); });
+  nlohmann::json list = nlohmann::json::array();
+  for (const auto& row : rows.rows) list.push_back(to_json(row));
+  Response response = json_response({{"edits", std::move(list)}, {"total", rows.total}});
+  add_page_links(response, request, page, last);
+  return response;
+}
+
+Result<Response> undo(const RouteContext& context, const Request& request, bool redo) {
+  if (!request.body.empty()) STRATA_TRY(body_of<protocol::Empty>(request));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto plan = STRATA_TRY(context.store.plan_table_undo(table.id, request.user(), redo));
+  if (!plan.vanishing.empty()) {
+    auto painted = STRATA_TRY(painted_layers(context, table.id, request.role()));
+    if (const std::string where = where_painted(painted, plan.vanishing); !where.empty())
+      return fail(ErrorCode::conflict, "Record is painted",
+                  "This would take away records that are painted: " + where +
+                      ". Delete those records instead, which asks what to do with their texels.");
+  }
+  const auto answer = [](const TableChange& done) {
+    return json_response({{"sequence", done.sequence},
+                          {"created", done.created},
+                          {"changed", done.changed},
+                          {"deleted", done.deleted},
+                          {"columns_changed", done.columns_changed}});
+  };
+  auto done =
+      STRATA_TRY(context.store.undo_table(table.id, request.user(), redo, plan.table_sequence,
+                                          first_answer<TableChange>(request, answer)));
+  tell_change(context, done, request.user());
+  return answer(done);
+}
+
+// --- surface of its keys
+
+Result<Response> areas(const RouteContext& context, const Request& request) {
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto painted = STRATA_TRY(painted_layers(context, table.id, request.role()));
+  struct Sum {
+    CompensatedSum area_m2;
+    std::map<std::int64_t, std::pair<CompensatedSum, nlohmann::json>> models;
+  };
+  std::map<std::int64_t, Sum> sums;
+  for (const PaintedLayer& layer : painted)
+    for (const auto& [key, area] : layer.areas) {
+      Sum& sum = sums[key];
+      sum.area_m2 += area.area_m2;
+      auto& [model_area_m2, layers] = sum.models[layer.layer.model_id];
+      model_area_m2 += area.area_m2;
+      layers.push_back(
+          {{"layer", layer.layer.id}, {"area_m2", area.area_m2}, {"texels", area.texels}});
+    }
+  std::vector<std::int64_t> keys;
+  for (const auto& [key, sum] : sums) keys.push_back(key);
+  auto missing = STRATA_TRY(context.store.missing_records(table.id, keys));
+  nlohmann::json list = nlohmann::json::array();
+  for (auto& [key, sum] : sums) {
+    nlohmann::json models = nlohmann::json::array();
+    for (auto& [model, of_model] : sum.models)
+      models.push_back({{"model", model},
+                        {"area_m2", of_model.first.value()},
+                        {"layers", std::move(of_model.second)}});
+    list.push_back({{"key", key},
+                    {"area_m2", sum.area_m2.value()},
+                    {"has_record", !std::binary_search(missing.begin(), missing.end(), key)},
+                    {"models", std::move(models)}});
+  }
+  const std::size_t total = list.size();
+  return json_response({{"areas", std::move(list)}, {"total", total}});
+}
+
+}  // namespace
+
+void add_table_routes(Router& router, const RouteContext& context) {
+  const std::string tables = "/api/v1/projects/{project}/tables", table = "/api/v1/tables/{table}";
+  using Answer = Result<Response> (*)(const RouteContext&, const Request&);
+  const auto read = [&](const std::string& pattern, Answer answer,
+                        std::vector<std::string> query = {}, StateOf state = {}) {
+    router.add({.method = Method::get,
+                .pattern = pattern,
+                .handler = answering([&context, answer](const Request& request) {
+                  return answer(context, request);
+                }),
+                .query = std::move(query),
+                .state = std::move(state)});
+  };
+  const auto write = [&](Method method, const std::string& pattern, Answer answer,
+                         BodyKind body = BodyKind::memory) {
+    router.add({.method = method,
+                .pattern = pattern,
+                .handler = answering([&context, answer](const Request& request) {
+                  return answer(context, request);
+                }),
+                .role = Role::curator,
+                .body = body,
+                .max_body = body == BodyKind::none ? 0 : context.options.max_json_bytes,
+                .keeps_answer = true,
+                .needs_version = method != Method::post});
+  };
+  read(tables, list_tables, {"limit", "offset", "after"});
+  write(Method::post, tables, create_table);
+  read(table, [](const RouteContext& c, const Request& request) -> Result<Response> {
+    auto found = STRATA_TRY(c.store.table(request.param("table"), request.role()));
+    return with_etag(json_response(to_json(found)), request, found.version);
+  });
+  write(Method::patch, table, change_table);
+  write(Method::remove, table, delete_table, BodyKind::none);
+  read(table + "/columns", list_columns, {"limit", "offset", "after"});
+  write(Method::post, table + "/columns", create_column);
+  write(Method::patch, table + "/columns/{column}", change_column);
+  write(Method::remove, table + "/columns/{column}", drop_column, BodyKind::none);
+  read(table + "/columns/{column}/cycles", cycles, {}, state_of_records(context));
+  read(table + "/columns/{column}/classes", classes, {"method", "count"},
+       state_of_records(context));
+  read(table + "/edits", history, {"key", "limit", "offset", "after"});
+  read(table + "/areas", areas, {}, state_of_painted_table(context));
+  for (const bool redo : {false, true})
+    router.add({.method = Method::post,
+                .pattern = table + (redo ? "/redo" : "/undo"),
+                .handler = answering([&context, redo](const Request& request) {
+                  return undo(context, request, redo);
+                }),
+                .role = Role::annotator,
+                .body = BodyKind::memory,
+                .max_body = context.options.max_json_bytes,
+                .keeps_answer = true});
+}
+
+}  // namespace strata::net

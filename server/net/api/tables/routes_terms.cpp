@@ -1,0 +1,260 @@
+#include <algorithm>
+
+#include "core/term_list.h"
+#include "core/terms_csv.h"
+#include "core/terms_skos.h"
+#include "net/api/routes.h"
+#include "net/http/answer_book.h"
+#include "net/live/table_events.h"
+#include "net/sheet.h"
+
+namespace strata::net {
+namespace {
+
+using TableChange = store::TableChange;
+
+constexpr std::uint64_t kMaxTermsBytes = 32u << 20;
+constexpr std::size_t kLongestListName = 200;
+
+// By its Content-Type.
+Result<TermList> read_terms(const Request& request) {
+  const std::string type = to_lower(request.header("content-type"));
+  const std::string kind = type.substr(0, std::min(type.find_first_of("; "), type.size()));
+  if (kind == "text/csv") return read_terms_csv(request.body);
+  if (kind == "text/turtle") return read_terms_skos(request.body, RdfSyntax::turtle);
+  if (kind == "application/rdf+xml") return read_terms_skos(request.body, RdfSyntax::rdf_xml);
+  return fail(ErrorCode::unsupported, "Format not known",
+              "Terms come as text/csv, text/turtle or application/rdf+xml.", "Content-Type");
+}
+
+Result<bool> is_dry_run(const Request& request) {
+  const std::string tried = request.query_or("dry_run", "false");
+  if (tried == "true" || tried == "false") return tried == "true";
+  return fail(ErrorCode::invalid, "Bad value", "`dry_run` is true or false.", "dry_run");
+}
+
+nlohmann::json report_of(const TermList& list, const TableChange& change, bool dry_run) {
+  nlohmann::json problems = nlohmann::json::array();
+  const auto add = [&](int line, const std::string& code, const std::string& column,
+                       const Error& problem) {
+    if (problems.size() == store::kMostRowProblems) return;
+    problems.push_back({{"line", line}, {"title", problem.title}, {"detail", problem.detail}});
+    if (!code.empty()) problems.back()["code"] = code;
+    if (!column.empty()) problems.back()["column"] = column;
+  };
+  for (const TermMistake& mistake : list.mistakes)
+    add(mistake.line, mistake.code, mistake.column, mistake.problem);
+  for (const store::RowError& problem : change.problems) {
+    const Term* term = problem.index ? &list.terms[*problem.index] : nullptr;
+    constexpr std::string_view kValues = "values.";
+    const std::string& field = problem.problem.field;
+    add(term ? term->line : 0, term ? term->code : std::string(),
+        field.starts_with(kValues) ? field.substr(kValues.size()) : field, problem.problem);
+  }
+  const bool refused = !problems.empty();
+  const std::size_t created = refused ? 0 : change.created.size(),
+                    changed = refused ? 0 : change.changed.size();
+  nlohmann::json report{{"rows", list.rows},
+                        {"created", created},
+                        {"changed", changed},
+                        {"unchanged", refused ? 0 : list.terms.size() - created - changed},
+                        {"dry_run", dry_run},
+                        {"sequence", refused || dry_run ? 0 : change.sequence},
+                        {"left_out", list.left_out},
+                        {"problems", std::move(problems)}};
+  if (!refused && !dry_run) report["table"] = to_json(change.table);
+  return report;
+}
+
+Result<Response> refusal(const TermList& list, const TableChange& change) {
+  const nlohmann::json report = report_of(list, change, false);
+  const auto& first = report.at("problems").front();
+  const int line = first.at("line").get<int>();
+  const std::string where = line > 0 ? "Line " + std::to_string(line) + ": "
+                            : first.contains("code")
+                                ? "\"" + first.at("code").get<std::string>() + "\": "
+                                : std::string();
+  Response response = problem_response(
+      {ErrorCode::invalid, "Terms refused",
+       "Nothing was written. " + where + first.at("detail").get<std::string>(), "body"});
+  auto body = nlohmann::json::parse(response.body);
+  body["rows"] = report;
+  response.body = body.dump();
+  return response;
+}
+
+Result<Response> create_terms(const RouteContext& context, const Request& request) {
+  auto dry_run = STRATA_TRY(is_dry_run(request));
+  store::Store::NewTable wished;
+  wished.table.name = request.query_or("name", {});
+  if (wished.table.name.empty() || wished.table.name.size() > kLongestListName)
+    return fail(ErrorCode::invalid, "Name missing",
+                "`name` tells what the list is called, in 1 to 200 bytes.", "name");
+  auto slug = STRATA_TRY(slug_of({}, wished.table.name));
+  wished.table.slug = slug;
+  auto project = STRATA_TRY(context.store.project(request.param("project")));
+  wished.table.project_id = project.id;
+  auto list = STRATA_TRY(read_terms(request));
+  std::vector<std::string> languages;
+  for (const std::string& column : list.columns)
+    if (const auto language = label_language(column)) languages.push_back(*language);
+  wished.table.columns = new_term_columns(languages);
+  if (!list.mistakes.empty()) {
+    if (dry_run) return json_response(report_of(list, {}, true));
+    return refusal(list, {});
+  }
+  wished.terms = list;
+  const auto answer = [&list](const std::vector<TableChange>& changes) {
+    return json_response(report_of(list, changes.front(), false), 201)
+        .with("Location", "/api/v1/tables/" + changes.front().table.slug);
+  };
+  auto changes =
+      context.store.create_tables({wished}, dry_run, request.user(), "import",
+                                  first_answer<std::vector<TableChange>>(request, answer));
+  if (!changes) return tl::unexpected(changes.error());
+  if (dry_run) return json_response(report_of(list, changes->front(), true));
+  if (!changes->front().problems.empty()) return refusal(list, changes->front());
+  tell_table(context, protocol::TableEventEvent::created, changes->front().table, request.user());
+  return answer(*changes);
+}
+
+Result<Response> import_terms(const RouteContext& context, const Request& request) {
+  auto dry_run = STRATA_TRY(is_dry_run(request));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  auto list = STRATA_TRY(read_terms(request));
+  if (!list.mistakes.empty()) {
+    if (dry_run) return json_response(report_of(list, {}, true));
+    return refusal(list, {});
+  }
+  const auto answer = [&list](const TableChange& change) {
+    return json_response(report_of(list, change, false));
+  };
+  auto change = STRATA_TRY(context.store.import_terms(table.id, list, dry_run, request.user(),
+                                                      first_answer<TableChange>(request, answer)));
+  if (dry_run) return json_response(report_of(list, change, true));
+  if (!change.problems.empty()) return refusal(list, change);
+  tell_change(context, change, request.user());
+  return answer(change);
+}
+
+// --- reading
+
+std::string hex_of(const Rgba& color) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text = "#";
+  for (int i = 0; i < 3; ++i) text.append({kDigits[color[i] >> 4], kDigits[color[i] & 15]});
+  return text;
+}
+
+// Which of the terms are told: those that have the words, and those above them.
+std::vector<bool> with_those_above(const std::vector<ListedTerm>& terms,
+                                   const std::vector<bool>& match) {
+  std::map<std::int64_t, std::size_t> places;
+  for (std::size_t i = 0; i < terms.size(); ++i) places[terms[i].key] = i;
+  std::vector<bool> told = match;
+  // Those below come later, so that from the end on each tells of itself before the one above it is
+  // asked.
+  for (std::size_t i = terms.size(); i-- > 0;)
+    if (told[i] && terms[i].depth > 0) told[places.at(*terms[i].parent)] = true;
+  return told;
+}
+
+Response tree_response(const Request& request, const std::string& language,
+                       const std::vector<ListedTerm>& terms, const Page& page) {
+  const Palette palette = terms_palette(terms);
+  std::map<std::int64_t, int> below;
+  for (const ListedTerm& listed : terms)
+    if (listed.depth > 0) ++below[*listed.parent];
+  const auto match = terms_with(terms, request.query_or("q", {}));
+  const auto told = with_those_above(terms, match);
+  nlohmann::json list = nlohmann::json::array();
+  int total = 0;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (!told[i]) continue;
+    const int place = total++;
+    if (place < page.offset || place >= page.offset + page.limit) continue;
+    const ListedTerm& listed = terms[i];
+    const Term& term = listed.term;
+    list.push_back({{"key", listed.key},
+                    {"code", term.code},
+                    {"name", label_in(term, language)},
+                    {"label", term.label},
+                    {"labels", term.labels},
+                    {"depth", listed.depth},
+                    {"below", below[listed.key]},
+                    {"match", static_cast<bool>(match[i])},
+                    {"definition", term.definition},
+                    {"uri", term.uri},
+                    {"color", hex_of(color_of(palette, static_cast<double>(listed.key)))},
+                    {"pattern", term.pattern}});
+    if (listed.depth > 0) list.back()["parent"] = *listed.parent;
+  }
+  Response response = json_response({{"terms", std::move(list)}, {"total", total}});
+  add_page_links(response, request, page, total);
+  return response;
+}
+
+Result<Response> list_terms_of(const RouteContext& context, const Request& request) {
+  const std::string format = request.query_or("f", "json");
+  if (format != "json" && format != "csv" && format != "turtle")
+    return fail(ErrorCode::not_acceptable, "Unknown format", "`f` is json, csv or turtle.", "f");
+  auto separator = STRATA_TRY(csv_separator(request));
+  auto shown = STRATA_TRY(page_of(request));
+  const auto language = STRATA_TRY(asked_language(request));
+  auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
+  if (!term_columns(table))
+    return fail(ErrorCode::conflict, "No list of terms",
+                table.name + " is a table of records. Read `/records` of it.");
+  store::Store::RecordQuery all;
+  all.limit = store::kMostRecords;
+  auto page = STRATA_TRY(context.store.records(table.id, request.role(), all));
+  const auto columns = term_columns(page.table);
+  if (!columns)
+    return fail(ErrorCode::conflict, "No list of terms", table.name + " was changed meanwhile.");
+  const auto listed = list_terms(*columns, page.records);
+  Response response;
+  if (format == "json") {
+    response = tree_response(request, language, listed, shown);
+  } else {
+    std::vector<Term> terms;
+    for (const ListedTerm& each : listed) terms.push_back(each.term);
+    if (format == "csv") {
+      response = text_response(terms_csv(terms, separator), kCsvType);
+    } else {
+      auto text = STRATA_TRY(terms_skos(page.table.name, terms));
+      response = text_response(std::move(text), "text/turtle; charset=utf-8");
+    }
+    name_download(response, page.table.slug + (format == "csv" ? ".csv" : ".ttl"));
+  }
+  response.with("Strata-Sequence", std::to_string(page.table.sequence));
+  return response;
+}
+
+}  // namespace
+
+void add_term_routes(Router& router, const RouteContext& context) {
+  const auto write = [&](const std::string& pattern,
+                         Result<Response> (*answer)(const RouteContext&, const Request&),
+                         std::vector<std::string> query) {
+    router.add({.method = Method::post,
+                .pattern = pattern,
+                .handler = answering([&context, answer](const Request& request) {
+                  return answer(context, request);
+                }),
+                .role = Role::curator,
+                .query = std::move(query),
+                .body = BodyKind::memory,
+                .max_body = kMaxTermsBytes,
+                .keeps_answer = true});
+  };
+  write("/api/v1/projects/{project}/terms", create_terms, {"name", "dry_run"});
+  write("/api/v1/tables/{table}/terms", import_terms, {"dry_run"});
+  router.add({.method = Method::get,
+              .pattern = "/api/v1/tables/{table}/terms",
+              .handler = answering(
+                  [&context](const Request& request) { return list_terms_of(context, request); }),
+              .query = {"limit", "offset", "q", "lang", "f", "separator"},
+              .state = state_of_records(context)});
+}
+
+}  // namespace strata::net

@@ -1,0 +1,211 @@
+#include "net/auth/auth.h"
+
+#include "net/http/digest.h"
+#include "net/http/origin.h"
+#include "store/kiosks.h"
+#include "store/password.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::chrono::seconds kRememberFor{10};
+constexpr std::size_t kMaxRemembered = 4096;
+constexpr std::size_t kMaxTokenLength = 512;
+constexpr std::string_view kScheme = "bearer ";
+
+tl::unexpected<Error> unknown_secret() {
+  return fail(
+      ErrorCode::unauthenticated, "Not signed in",
+      "This token or session is unknown, expired or revoked. Sign in again, or make a new token.");
+}
+
+constexpr std::string_view kKioskPrefix = "kiosk ", kHostPrefix = "__Host-";
+
+Principal principal_of(const store::Kiosk& kiosk) {
+  Principal principal{kiosk_name(kiosk.id), Role::guest};
+  principal.roles.in_projects[kiosk.project_id] = Role::viewer;
+  principal.kiosk = KioskPass{kiosk.id, kiosk.model_id, kiosk.tour_id};
+  return principal;
+}
+
+std::string cookie_of(std::string_view name, const std::string& value,
+                      std::chrono::seconds lifetime, bool secure) {
+  return std::string(secure ? kHostPrefix : "") + std::string(name) + "=" + value +
+         "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(lifetime.count()) +
+         (secure ? "; Secure" : "");
+}
+
+}  // namespace
+
+std::string kiosk_name(std::int64_t id) { return std::string(kKioskPrefix) + std::to_string(id); }
+bool is_kiosk_name(const std::string& user) { return user.starts_with(kKioskPrefix); }
+
+Authenticator::Authenticator(store::Store& store, std::string owner_token)
+    : store_(store), owner_token_(std::move(owner_token)) {}
+
+Result<std::optional<Principal>> Authenticator::identify_token(const std::string& token) {
+  if (token.empty() || token.size() > kMaxTokenLength) return std::nullopt;
+  if (!owner_token_.empty() && equal_in_constant_time(token, owner_token_)) return owner_by_token();
+  const auto now = std::chrono::steady_clock::now();
+  const std::string key = sha256_hex(token);
+  std::uint64_t changes = 0;
+  {
+    std::lock_guard lock(mutex_);
+    changes = changes_;
+    if (auto found = remembered_.find(key); found != remembered_.end()) {
+      if (found->second.until > now) return found->second.principal;
+      remembered_.erase(found);
+    }
+  }
+  auto stored = STRATA_TRY(store_.find_token(token));
+  // Links are traded for sessions; they are no tokens of their own.
+  using store::TokenKind;
+  if (stored && stored->kind != TokenKind::session && stored->kind != TokenKind::script)
+    return std::nullopt;
+  Principal principal;
+  if (stored) {
+    const Roles& roles = stored->roles;
+    principal = {stored->user,  roles.everywhere,
+                 false,         stored->kind == TokenKind::script,
+                 stored->token, roles};
+  } else {
+    auto kiosk = STRATA_TRY(store_.kiosks().find(token));
+    if (!kiosk) return std::nullopt;
+    principal = principal_of(*kiosk);
+  }
+  std::lock_guard lock(mutex_);
+  if (changes != changes_) return principal;  // what was read may be of before
+  if (remembered_.size() >= kMaxRemembered) remembered_.clear();
+  remembered_[key] = {principal, now + kRememberFor};
+  return principal;
+}
+
+// Once somebody can sign in who may do everything, the token has done its work: whoever reads the
+// environment must not own the site for ever.
+Result<Principal> Authenticator::owner_by_token() {
+  const auto principal = [](bool is_script) {
+    const Role role = is_script ? Role::administrator : Role::owner;
+    return Principal{.user = "owner", .role = role, .is_script = is_script, .roles = {role, {}}};
+  };
+  const auto now = std::chrono::steady_clock::now();
+  std::uint64_t changes = 0;
+  {
+    std::lock_guard lock(mutex_);
+    changes = changes_;
+    if (owner_token_now_.until > now) return principal(owner_token_now_.is_script);
+  }
+  const auto has_password = STRATA_TRY(store_.administrator_has_password());
+  std::lock_guard lock(mutex_);
+  if (changes == changes_) owner_token_now_ = {has_password, now + kRememberFor};
+  return principal(has_password);
+}
+
+std::string Authenticator::secret_of(const Request& request) {
+  const std::string authorization(request.header("authorization"));
+  if (authorization.empty()) {
+    const std::string cookie(request.as_kiosk ? kKioskCookie : kSessionCookie);
+    std::string secret = cookie_value(request.header("cookie"), std::string(kHostPrefix) + cookie);
+    // By https the plain name counts for nothing: a neighbouring host may have set it.
+    if (secret.empty() && !came_by_https(request))
+      secret = cookie_value(request.header("cookie"), cookie);
+    return secret;
+  }
+  return to_lower(authorization.substr(0, kScheme.size())) == kScheme
+             ? authorization.substr(kScheme.size())
+             : std::string();
+}
+
+Result<std::optional<Principal>> Authenticator::identify(const Request& request) {
+  const bool by_cookie = request.header("authorization").empty();
+  const std::string secret = secret_of(request);
+  if (secret.empty() && by_cookie) return std::nullopt;
+  if (secret.empty())
+    return fail(ErrorCode::unauthenticated, "Not signed in",
+                "The Authorization header is `Bearer TOKEN`.", "Authorization");
+  auto principal = STRATA_TRY(identify_token(secret));
+  if (!principal) return unknown_secret();
+  // A cookie tells only what it is for: whoever can set one makes no kiosk of a person's page by
+  // it, and the other way round.
+  const bool is_kiosk = principal->kiosk.has_value();
+  if (request.as_kiosk ? !is_kiosk : by_cookie && is_kiosk) return unknown_secret();
+  // What scripts are given is no session: it does not end with the browser's, and no page shows it
+  // among the sessions.
+  const bool is_session = principal->secret != 0 && !principal->is_script;
+  if (by_cookie && !is_kiosk && !is_session) return unknown_secret();
+  principal->by_cookie = by_cookie;
+  return principal;
+}
+
+Result<std::string> Authenticator::session_for_password(const std::string& user,
+                                                        const std::string& password,
+                                                        const std::string& agent) {
+  const auto hash = STRATA_TRY(store_.password_of(user));
+  const auto fits = STRATA_TRY(store::password_fits(hash, password));
+  if (!fits)
+    return fail(ErrorCode::unauthenticated, "Not signed in",
+                "Name and password do not fit together. Whoever invited you can send a new link.",
+                "password");
+  auto session = store_.create_token(store::TokenKind::session, user, Role::viewer,
+                                     kSessionLifetime, agent, hash);
+  if (!session)
+    return session.error().code == ErrorCode::not_found ? unknown_secret()
+                                                        : tl::unexpected(session.error());
+  return std::move(session->secret);
+}
+
+Result<std::string> Authenticator::session_for_token(const std::string& token,
+                                                     const std::string& agent) {
+  if (token.size() > kMaxTokenLength) return unknown_secret();
+  auto by_link = STRATA_TRY(store_.redeem_owner_link(token, kSessionLifetime, agent));
+  if (by_link) return *by_link;
+  auto principal = STRATA_TRY(identify_token(token));
+  if (!principal) return unknown_secret();
+  // Another session of a session, or of a token, would outlive what it was made of.
+  if (principal->secret != 0 || principal->is_script || principal->kiosk)
+    return fail(
+        ErrorCode::forbidden, "Not for signing in",
+        "This token is for scripts, as `Authorization: Bearer TOKEN`. In a browser sign in with name and password.",
+        "token");
+  auto session = store_.create_token(store::TokenKind::session, principal->user, Role::owner,
+                                     kSessionLifetime, agent);
+  if (!session) return tl::unexpected(session.error());
+  return std::move(session->secret);
+}
+
+Result<std::string> Authenticator::session_for_link(const std::string& link,
+                                                    const std::string& agent) {
+  auto session = STRATA_TRY(store_.redeem_owner_link(link, kSessionLifetime, agent));
+  if (!session)
+    return fail(
+        ErrorCode::unauthenticated, "Link not valid",
+        "This sign-in link is unknown or revoked. The server prints a valid one when it starts.",
+        "link");
+  return *session;
+}
+
+void Authenticator::forget() {
+  std::lock_guard lock(mutex_);
+  ++changes_;
+  remembered_.clear();
+  owner_token_now_ = {};
+}
+
+Result<void> Authenticator::end_session(const std::string& session_token) {
+  auto ended = store_.revoke_token(session_token);
+  forget();
+  return ended;
+}
+
+std::string Authenticator::set_cookie(const std::string& session_token, bool secure) {
+  return cookie_of(kSessionCookie, session_token, kSessionLifetime, secure);
+}
+
+std::string Authenticator::clear_cookie(bool secure) {
+  return cookie_of(kSessionCookie, {}, std::chrono::seconds(0), secure);
+}
+
+std::string Authenticator::set_kiosk_cookie(const std::string& link, bool secure) {
+  return cookie_of(kKioskCookie, link, kKioskLifetime, secure);
+}
+
+}  // namespace strata::net

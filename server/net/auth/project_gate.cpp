@@ -1,0 +1,129 @@
+#include "net/auth/project_gate.h"
+
+#include <limits>
+
+#include "store/comments.h"
+#include "store/kiosks.h"
+
+namespace strata::net {
+namespace {
+
+template <class T>
+Result<std::int64_t> project_id_of(const Result<T>& found) {
+  if (!found) return tl::unexpected(found.error());
+  return found->project_id;
+}
+
+struct Place {
+  const char* param;  // of a route
+  Result<std::int64_t> (*project)(const RouteContext& context, const std::string& ref);
+};
+
+Result<std::int64_t> project_of_number(
+    const std::string& ref, const std::function<Result<std::int64_t>(std::int64_t id)>& project) {
+  const auto id = parse_integer(ref, 1, std::numeric_limits<std::int64_t>::max(), {});
+  return id ? project(*id) : fail(ErrorCode::not_found, {}, {});
+}
+
+constexpr Place kProject = {
+    "project", [](const RouteContext& context, const std::string& ref) -> Result<std::int64_t> {
+      const auto project = STRATA_TRY(context.store.project(ref));
+      return project.id;
+    }};
+
+// Addresses in projects have one of these.
+constexpr Place kPlaces[] = {
+    kProject,
+    {"model", [](const RouteContext& context,
+                 const std::string& ref) { return project_id_of(context.store.model(ref)); }},
+    {"table",
+     [](const RouteContext& context, const std::string& ref) {
+       return project_id_of(context.store.table(ref, Role::owner));
+     }},
+    {"attachment",
+     [](const RouteContext& context, const std::string& ref) {
+       return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
+         const auto attachment = STRATA_TRY(context.store.attachment(id, {{}, Role::owner}));
+         return project_id_of(
+             context.store.table(std::to_string(attachment.table_id), Role::owner));
+       });
+     }},
+    {"comment",
+     [](const RouteContext& context, const std::string& ref) {
+       return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
+         const auto comment = STRATA_TRY(context.store.comments().comment(id, Role::owner));
+         return project_id_of(context.store.model(std::to_string(comment.model_id)));
+       });
+     }},
+    {"job",
+     [](const RouteContext& context, const std::string& ref) {
+       return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
+         const auto job = context.jobs.status(id);
+         if (!job) return fail(ErrorCode::not_found, {}, {});
+         return job->project;
+       });
+     }},
+    {"kiosk",
+     [](const RouteContext& context, const std::string& ref) {
+       return project_of_number(ref, [&](std::int64_t id) -> Result<std::int64_t> {
+         return project_id_of(context.store.kiosks().kiosk(id));
+       });
+     }},
+};
+
+Result<void> enter(const RouteContext& context, Principal& who, const Place& place,
+                   const std::string& ref, const std::string& field) {
+  const auto project = place.project(context, ref);
+  if (!project && project.error().code != ErrorCode::not_found)
+    return tl::unexpected(project.error());
+  // The same whether it is not there or not for them.
+  if (!project || !who.sees(*project)) return no_such(place.param, ref, field);
+  who.role = who.roles.in(*project);
+  return {};
+}
+
+// Nobody looks anything up for those whose role is the same everywhere.
+bool depends_on_project(const Roles& roles) {
+  return roles.everywhere == Role::guest ||
+         (roles.everywhere < Role::curator && !roles.in_projects.empty());
+}
+
+}  // namespace
+
+Result<std::optional<std::int64_t>> addressed_project(const RouteContext& context,
+                                                      const Request& request) {
+  for (const Place& place : kPlaces) {
+    const auto param = request.params.find(place.param);
+    if (param == request.params.end()) continue;
+    const auto project = place.project(context, param->second);
+    if (!project && project.error().code == ErrorCode::not_found) return std::nullopt;
+    if (!project) return tl::unexpected(project.error());
+    return *project;
+  }
+  return std::nullopt;
+}
+
+Result<std::int64_t> id_of(const Request& request, const std::string& param) {
+  const auto id =
+      parse_integer(request.param(param), 1, std::numeric_limits<std::int64_t>::max(), {});
+  return id ? id : no_such(param, request.param(param));
+}
+
+Result<void> enter_project(const RouteContext& context, Request& request, bool in_query) {
+  Principal& who = *request.principal;
+  if (!depends_on_project(who.roles)) return {};
+  if (in_query)
+    return enter(context, who, kProject, request.query_or("project", "default"), "project");
+  for (const Place& place : kPlaces)
+    if (const auto param = request.params.find(place.param); param != request.params.end())
+      return enter(context, who, place, param->second, {});
+  return {};
+}
+
+Result<void> check_seen(const RouteContext& context, const Request& request,
+                        const std::string& project, const std::string& field) {
+  Principal who = *request.principal;
+  return enter(context, who, kProject, project, field);
+}
+
+}  // namespace strata::net

@@ -1,0 +1,73 @@
+#include "net/http/accept.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "net/http/http_types.h"
+
+namespace strata::net {
+namespace {
+
+// Of a list that `separator` divides: the next part, which is taken away from it.
+std::string_view next_of(std::string_view& list, char separator) {
+  const auto end = std::min(list.find(separator), list.size());
+  const std::string_view part = trim_blanks(list.substr(0, end));
+  list.remove_prefix(std::min(end + 1, list.size()));
+  return part;
+}
+
+double quality_of(std::string_view parameters) {
+  while (!parameters.empty()) {
+    const std::string_view parameter = next_of(parameters, ';');
+    if (!parameter.starts_with("q=") && !parameter.starts_with("Q=")) continue;
+    double quality = 0;
+    const char* end = parameter.data() + parameter.size();
+    const auto read = std::from_chars(parameter.data() + 2, end, quality);
+    return read.ec == std::errc() && read.ptr == end ? quality : 0;
+  }
+  return 1;
+}
+
+// How closely a range such as `text/*` names a type; 0: not at all.
+int closeness(const std::string& range, const std::string& type) {
+  if (range == type) return 4;
+  const bool is_json = type.starts_with("application/") && type.ends_with("+json");
+  if (range == "application/json" && is_json) return 3;
+  if (range.ends_with("/*") && range != "*/*" &&
+      type.starts_with(range.substr(0, range.size() - 1)))
+    return 2;
+  return range == "*/*" || range == "*" ? 1 : 0;
+}
+
+}  // namespace
+
+std::string_view trim_blanks(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+std::vector<Accepted> accepted_values(std::string_view header) {
+  std::vector<Accepted> values;
+  while (!header.empty()) {
+    std::string_view entry = next_of(header, ',');
+    const std::string_view value = next_of(entry, ';');
+    if (!value.empty()) values.push_back({to_lower(value), quality_of(entry)});
+  }
+  return values;
+}
+
+bool accepts_type(std::string_view accept, std::string_view content_type) {
+  if (trim_blanks(accept).empty()) return true;
+  const std::string type = to_lower(trim_blanks(content_type.substr(0, content_type.find(';'))));
+  int closest = 0;
+  double quality = 0;
+  for (const Accepted& range : accepted_values(accept))
+    if (const int close = closeness(range.value, type); close > closest) {
+      closest = close;
+      quality = range.quality;
+    }
+  return quality > 0;
+}
+
+}  // namespace strata::net

@@ -1,0 +1,189 @@
+#include "net/http/entity_tags.h"
+
+#include <set>
+
+#include "core/uuid.h"
+#include "net/api/routes.h"
+#include "net/http/digest.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::size_t kMostHashedBytes = 4u << 20;
+constexpr std::size_t kTagDigits = 32;
+
+std::string tag_of(std::string_view text) {
+  return '"' + sha256_hex(text).substr(0, kTagDigits) + '"';
+}
+
+std::string_view without_weakness(std::string_view tag) {
+  if (tag.starts_with("W/")) tag.remove_prefix(2);
+  return tag;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+// Parts of a text from outside cannot run into one another.
+void add(std::string& text, std::string_view part) {
+  text.append(std::to_string(part.size())).append(":").append(part);
+}
+void add(std::string& text, std::int64_t number) {
+  text.append(std::to_string(number)).append(",");
+}
+
+// The sequence of the model that the query names as `at`.
+std::optional<std::int64_t> past_sequence(const Request& request) {
+  const auto at = request.query.find("at");
+  if (at == request.query.end()) return std::nullopt;
+  const auto sequence = parse_integer(at->second, 0, INT64_MAX, "at");
+  return sequence ? std::optional(*sequence) : std::nullopt;
+}
+
+// What the room has in memory, which follows the database a moment later. `past`: an answer shows
+// that sequence in place of the newest.
+bool add_room(std::string& text, const room::Room& room, std::optional<std::int64_t> past = {}) {
+  const std::int64_t durable = room.durable_sequence();
+  const bool is_past = past && *past <= durable;
+  if (!is_past && room.sequence() != durable) return false;
+  const Model model = room.model();
+  add(text, model.id);
+  add(text, model.version);
+  add(text, is_past ? *past : durable);
+  for (const Layer& layer : room.layers()) {
+    add(text, layer.id);
+    add(text, layer.version);
+    // may come from terms, whose records change by themselves
+    add(text, to_json(layer).at("palette").dump());
+  }
+  text += ';';
+  for (const Look& look : room.looks()) {
+    add(text, look.id);
+    add(text, look.version);
+  }
+  text += ';';
+  return true;
+}
+
+bool add_project(std::string& text, const RouteContext& context, std::int64_t project) {
+  const auto state = context.store.project_state(project);
+  if (!state) return false;
+  add(text, *state);
+  return true;
+}
+
+std::optional<std::string> model_state(const RouteContext& context, const Request& request,
+                                       std::optional<std::int64_t> past = {}) {
+  const auto room = context.rooms.open(request.param("model"), request.role());
+  std::string text;
+  if (!room || !add_room(text, **room, past) ||
+      !add_project(text, context, (*room)->model().project_id))
+    return std::nullopt;
+  return text;
+}
+
+}  // namespace
+
+bool names_tag(std::string_view if_none_match, std::string_view etag) {
+  if (etag.empty()) return false;
+  while (!if_none_match.empty()) {
+    const auto comma = if_none_match.find(',');
+    const auto one = trimmed(if_none_match.substr(0, comma));
+    if (one == "*" || without_weakness(one) == without_weakness(etag)) return true;
+    if_none_match.remove_prefix(comma == std::string_view::npos ? if_none_match.size() : comma + 1);
+  }
+  return false;
+}
+
+Response not_modified(Response response) {
+  Response unchanged = empty_response(304);
+  for (auto& [name, value] : response.headers) {
+    const std::string lower = to_lower(name);
+    if (!lower.starts_with("content-") && lower != "accept-ranges")
+      unchanged.with(std::move(name), std::move(value));
+  }
+  return unchanged;
+}
+
+std::optional<std::string> tag_of_body(const Response& response) {
+  const bool is_in_memory = response.file.empty() && !response.stream && !response.events;
+  const std::size_t size = response.bytes.empty() ? response.body.size() : response.bytes.size();
+  if (!is_in_memory || size == 0 || size > kMostHashedBytes) return std::nullopt;
+  if (!response.header("ETag").empty() || !response.header("Cache-Control").empty())
+    return std::nullopt;
+  if (response.bytes.empty()) return tag_of(response.body);
+  return tag_of({reinterpret_cast<const char*>(response.bytes.data()), size});
+}
+
+std::string tag_of_state(const Request& request, std::string_view state) {
+  static const std::string run = to_string(random_uuid());
+  std::string text = run;
+  if (request.principal) {
+    add(text, request.principal->user);
+    add(text, name(request.principal->role));
+    add(text, request.principal->kiosk ? request.principal->kiosk->id : 0);
+  }
+  for (const std::string& segment : request.segments) add(text, segment);
+  text += '?';
+  for (const auto& [key, value] : request.query) {
+    add(text, key);
+    add(text, value);
+  }
+  add(text, request.header("accept"));
+  add(text, state);
+  return tag_of(text);
+}
+
+StateOf state_of_model(const RouteContext& context) {
+  return [&context](const Request& request) {
+    return model_state(context, request, past_sequence(request));
+  };
+}
+
+StateOf state_of_records(const RouteContext& context) {
+  return [&context](const Request& request) -> std::optional<std::string> {
+    if (request.params.contains("layer")) return model_state(context, request);
+    const auto table = context.store.table(request.param("table"), request.role());
+    std::string text;
+    if (!table || !add_project(text, context, table->project_id)) return std::nullopt;
+    return text;
+  };
+}
+
+StateOf state_of_painted_table(const RouteContext& context) {
+  return [&context](const Request& request) -> std::optional<std::string> {
+    const auto table = context.store.table(request.param("table"), request.role());
+    if (!table) return std::nullopt;
+    const auto layers = context.store.layers_of_table(table->id, request.role());
+    if (!layers) return std::nullopt;
+    std::set<std::int64_t> models;
+    std::string text;
+    for (const Layer& layer : *layers) {
+      add(text, layer.id);
+      if (layer.sequence > 0) models.insert(layer.model_id);  // the others hold nothing yet
+    }
+    for (const std::int64_t model : models) {
+      const auto room = context.rooms.open(std::to_string(model), request.role());
+      if (!room || !add_room(text, **room)) return std::nullopt;
+    }
+    return add_project(text, context, table->project_id) ? std::optional(std::move(text))
+                                                         : std::nullopt;
+  };
+}
+
+StateOf state_of_look(const RouteContext& context) {
+  return [&context](const Request& request) -> std::optional<std::string> {
+    const auto model = context.store.model(request.param("model"));
+    if (!model) return std::nullopt;
+    const auto look = context.store.look(model->id, request.param("look"));
+    if (!look) return std::nullopt;
+    std::string text;
+    for (const std::int64_t number : {model->id, model->version, look->id}) add(text, number);
+    return text;
+  };
+}
+
+}  // namespace strata::net

@@ -1,0 +1,131 @@
+#include "net/http/form_files.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/filename.h"
+#include "net/http/http_types.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::size_t kLongestBoundary = 70;  // RFC 2046
+constexpr std::size_t kLongestPartHead = 8192;
+
+constexpr std::size_t kWindowBytes = 4u << 20;
+
+// std::string_view::find is too slow for gigabytes; memmem is vectorised. What it leaves behind is
+// told, window by window.
+std::size_t find(std::string_view text, std::string_view what, std::size_t from,
+                 const std::function<void(std::string_view)>& passed) {
+  while (from < text.size()) {
+    const std::string_view window = text.substr(from, kWindowBytes + what.size() - 1);
+    const void* found = ::memmem(window.data(), window.size(), what.data(), what.size());
+    if (found) return static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
+    if (passed) passed(window);
+    from += kWindowBytes;
+  }
+  return std::string_view::npos;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+// Folders that the sender names are kept: files of one scan call each other by them. Nothing leads
+// out of them.
+std::string relative_filename(std::string_view name) {
+  std::string path;
+  for (std::string part; !name.empty();) {
+    const auto end = std::min(name.find_first_of("/\\"), name.size());
+    part = base_filename(name.substr(0, end));
+    const bool names_a_folder =
+        !part.empty() && part != "." && part != ".." && !part.ends_with(':');
+    if (names_a_folder) path += (path.empty() ? "" : "/") + part;
+    name.remove_prefix(std::min(end + 1, name.size()));
+  }
+  return path;
+}
+
+// The value of a header among the lines of a part's head; empty when it is not there.
+std::string_view header_of(std::string_view head, std::string_view name) {
+  while (!head.empty()) {
+    const auto end = std::min(head.find("\r\n"), head.size());
+    const std::string_view line = head.substr(0, end);
+    head.remove_prefix(std::min(end + 2, head.size()));
+    const auto colon = line.find(':');
+    if (colon != std::string_view::npos && to_lower(trimmed(line.substr(0, colon))) == name)
+      return trimmed(line.substr(colon + 1));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string header_parameter(std::string_view header, std::string_view name) {
+  for (;;) {
+    const auto semicolon = header.find(';');
+    if (semicolon == std::string_view::npos) return {};
+    header.remove_prefix(semicolon + 1);
+    const auto key_end = header.find_first_of("=;");
+    if (key_end == std::string_view::npos) return {};
+    const std::string key = to_lower(trimmed(header.substr(0, key_end)));
+    header.remove_prefix(key_end);
+    if (header.front() == ';') continue;
+    header = header.substr(std::min(header.find_first_not_of(" \t", 1), header.size()));
+    std::string_view value = trimmed(header.substr(0, header.find(';')));
+    if (header.starts_with('"')) {
+      const auto close = std::min(header.find('"', 1), header.size());
+      value = header.substr(1, close - 1);
+      header.remove_prefix(close);
+    }
+    if (key == name) return std::string(value);
+  }
+}
+
+Result<std::vector<FormFile>> files_of_form(std::string_view content_type, std::string_view body,
+                                            const std::function<void(std::string_view)>& passed) {
+  const auto malformed = [] {
+    return fail(ErrorCode::malformed, "Malformed form",
+                "The multipart/form-data body does not follow its boundary.", "body");
+  };
+  const std::string boundary = header_parameter(content_type, "boundary");
+  if (boundary.empty() || boundary.size() > kLongestBoundary) return malformed();
+  const std::string separator = "\r\n--" + boundary;
+  if (!body.starts_with(separator.substr(2))) return malformed();
+  std::vector<FormFile> files;
+  std::size_t at = separator.size() - 2;
+  while (!body.substr(at).starts_with("--")) {
+    if (body.substr(at, 2) != "\r\n") return malformed();
+    // Both searches start at a line break that is there already: a head may be empty, and so may a
+    // content.
+    const auto head_end = find(body, "\r\n\r\n", at, passed);
+    if (head_end == std::string_view::npos || head_end - at > kLongestPartHead) return malformed();
+    const auto content_begin = head_end + 4;
+    const auto content_end = find(body, separator, content_begin - 2, passed);
+    if (content_end == std::string_view::npos) return malformed();
+    const std::string_view head = body.substr(at, head_end - at);
+    at = content_end + separator.size();
+    const std::string name = header_parameter(header_of(head, "content-disposition"), "filename");
+    if (name.empty()) continue;  // a field of the form
+    if (files.size() >= kMostFormFiles)
+      return fail(
+          ErrorCode::too_large, "Too many files",
+          "A form has at most " + std::to_string(kMostFormFiles) + " files; send them as a zip.",
+          "body");
+    // An empty content ends before it begins: its line break is that of the blank line.
+    FormFile file{relative_filename(name),
+                  body.substr(content_begin, std::max(content_end, content_begin) - content_begin)};
+    if (std::any_of(files.begin(), files.end(),
+                    [&](const auto& other) { return other.filename == file.filename; }))
+      return fail(ErrorCode::invalid, "File sent twice",
+                  "The form holds two files named " + file.filename + ".", "body");
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
+}  // namespace strata::net

@@ -1,0 +1,261 @@
+#include "net/http/http_types.h"
+
+#include "core/utf8.h"
+#include "protocol/parse.h"
+#include "protocol/problem.h"
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+
+namespace strata::net {
+namespace {
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+}  // namespace
+
+std::string_view name(Method method) {
+  static constexpr std::string_view kNames[] = {"GET",   "HEAD",   "POST",    "PUT",
+                                                "PATCH", "DELETE", "OPTIONS", "?"};
+  return kNames[static_cast<int>(method)];
+}
+
+std::string_view Request::header(std::string_view lower_case_name) const {
+  for (const auto& [key, value] : headers)
+    if (key == lower_case_name) return value;
+  return {};
+}
+
+std::string Request::query_or(const std::string& key, std::string fallback) const {
+  auto found = query.find(key);
+  return found == query.end() ? std::move(fallback) : found->second;
+}
+
+Response& Response::with(std::string header_name, std::string value) {
+  headers.emplace_back(std::move(header_name), std::move(value));
+  return *this;
+}
+
+std::string_view Response::header(std::string_view header_name) const {
+  for (const auto& [key, value] : headers)
+    if (key == header_name) return value;
+  return {};
+}
+
+Response json_response(const nlohmann::json& json, int status) {
+  Response response;
+  response.status = status;
+  response.with("Content-Type", "application/json");
+  // Names come from people and files: broken UTF-8 must not turn into an exception here.
+  response.body = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return response;
+}
+
+Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_type) {
+  Response response;
+  response.with("Content-Type", std::move(content_type));
+  response.bytes = std::move(bytes);
+  return response;
+}
+
+Response text_response(std::string text, std::string content_type) {
+  Response response;
+  response.with("Content-Type", std::move(content_type));
+  response.body = std::move(text);
+  return response;
+}
+
+Response empty_response(int status) {
+  Response response;
+  response.status = status;
+  return response;
+}
+
+Response problem_response(const Error& problem) {
+  Response response =
+      json_response(protocol::problem_body(problem), protocol::http_status(problem.code));
+  response.headers = {{"Content-Type", "application/problem+json"}};
+  if (response.status == 401) response.with("WWW-Authenticate", "Bearer realm=\"strata\"");
+  if (response.status == 429 || response.status == 503) response.with("Retry-After", "1");
+  return response;
+}
+
+std::string_view reason_phrase(int status) {
+  switch (status) {
+    case 200: return "OK";
+    case 201: return "Created";
+    case 202: return "Accepted";
+    case 204: return "No Content";
+    case 206: return "Partial Content";
+    case 303: return "See Other";
+    case 304: return "Not Modified";
+    case 308: return "Permanent Redirect";
+    case 400: return "Bad Request";
+    case 401: return "Unauthorized";
+    case 403: return "Forbidden";
+    case 404: return "Not Found";
+    case 405: return "Method Not Allowed";
+    case 406: return "Not Acceptable";
+    case 408: return "Request Timeout";
+    case 409: return "Conflict";
+    case 412: return "Precondition Failed";
+    case 413: return "Content Too Large";
+    case 415: return "Unsupported Media Type";
+    case 416: return "Range Not Satisfiable";
+    case 421: return "Misdirected Request";
+    case 422: return "Unprocessable Content";
+    case 426: return "Upgrade Required";
+    case 428: return "Precondition Required";
+    case 429: return "Too Many Requests";
+    case 431: return "Request Header Fields Too Large";
+    case 499: return "Cancelled";
+    case 500: return "Internal Server Error";
+    case 501: return "Not Implemented";
+    case 503: return "Service Unavailable";
+    case 507: return "Insufficient Storage";
+    default: return status < 400 ? "OK" : status < 500 ? "Refused" : "Failed";
+  }
+}
+
+struct Respond::State {
+  explicit State(std::function<void(Response)> function) : send(std::move(function)) {}
+  ~State() {
+    if (!answered)
+      send(problem_response({ErrorCode::unavailable,
+                             "Request dropped",
+                             "The server stopped before it answered; ask again.",
+                             {}}));
+  }
+  std::function<void(Response)> send;
+  std::atomic<bool> answered{false};
+};
+
+Respond::Respond(std::function<void(Response)> send)
+    : state_(std::make_shared<State>(std::move(send))) {}
+
+void Respond::operator()(Response response) const {
+  if (!state_->answered.exchange(true)) state_->send(std::move(response));
+}
+
+std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space) {
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char c = text[i];
+    if (c == '%') {
+      if (i + 2 >= text.size()) return std::nullopt;
+      const int high = hex_digit(text[i + 1]), low = hex_digit(text[i + 2]);
+      if (high < 0 || low < 0) return std::nullopt;
+      c = static_cast<char>(high * 16 + low);
+      i += 2;
+    } else if (c == '+' && plus_is_space) {
+      c = ' ';
+    }
+    if (c == '\0') return std::nullopt;
+    out += c;
+  }
+  return out;
+}
+
+void name_download(Response& response, const std::string& filename) {
+  std::string value = "attachment; filename*=UTF-8''";
+  response.with("Content-Disposition", value.append(percent_encode(filename)));
+}
+
+std::string percent_encode(std::string_view text) {
+  static constexpr char kDigits[] = "0123456789ABCDEF";
+  std::string out;
+  for (unsigned char c : text) {
+    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' ||
+        c == '.' || c == '_' || c == '~') {
+      out += static_cast<char>(c);
+    } else {
+      out += '%';
+      out += kDigits[c >> 4];
+      out += kDigits[c & 15];
+    }
+  }
+  return out;
+}
+
+std::string to_lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
+Result<void> parse_target(std::string_view target, Request& request) {
+  auto wrong = [](std::string detail) {
+    return fail(ErrorCode::malformed, "Malformed address", std::move(detail));
+  };
+  request.target = target;
+  if (target.empty() || target[0] != '/')
+    return wrong("A request names a path that begins with a slash.");
+  const auto question = target.find('?');
+  const std::string_view path = target.substr(0, question);
+  for (std::size_t begin = 1; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('/', begin), path.size());
+    auto segment = percent_decode(path.substr(begin, end - begin), false);
+    if (!segment) return wrong("The path has a percent escape that is not one.");
+    request.segments.push_back(std::move(*segment));
+    begin = end + 1;
+  }
+  auto decoded = percent_decode(path, false);
+  if (!decoded) return wrong("The path has a percent escape that is not one.");
+  if (!is_utf8(*decoded)) return wrong("The path is not UTF-8.");
+  request.path = std::move(*decoded);
+  if (question == std::string_view::npos) return {};
+  const std::string_view query = target.substr(question + 1);
+  for (std::size_t begin = 0; begin < query.size();) {
+    const std::size_t end = std::min(query.find('&', begin), query.size());
+    const std::string_view pair = query.substr(begin, end - begin);
+    begin = end + 1;
+    if (pair.empty()) continue;
+    const auto equals = pair.find('=');
+    auto key = percent_decode(pair.substr(0, equals), true);
+    auto value = percent_decode(
+        equals == std::string_view::npos ? std::string_view() : pair.substr(equals + 1), true);
+    if (!key || !value) return wrong("The query has a percent escape that is not one.");
+    if (!is_utf8(*key) || !is_utf8(*value)) return wrong("The query is not UTF-8.");
+    if (!request.query.emplace(*key, std::move(*value)).second)
+      return fail(ErrorCode::malformed, "Query parameter given twice", "Give '" + *key + "' once.",
+                  *key);
+  }
+  // No route's own: it says which cookie counts.
+  if (const auto as = request.query.find("as");
+      as != request.query.end() && as->second == "kiosk") {
+    request.as_kiosk = true;
+    request.query.erase(as);
+  }
+  return {};
+}
+
+Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std::int64_t high,
+                                   const std::string& field) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
+    return fail(ErrorCode::invalid, "Number out of range",
+                "'" + field + "' is a whole number from " + std::to_string(low) + " to " +
+                    std::to_string(high) + ".",
+                field);
+  return value;
+}
+
+Result<std::string> asked_language(const Request& request) {
+  constexpr std::size_t kLongest = 35;  // BCP 47
+  std::string language = to_lower(request.query_or("lang", {}));
+  if (language.size() > kLongest)
+    return fail(ErrorCode::invalid, "Not a language",
+                "`lang` is a language such as `es` or `de-AT`, of 35 characters at most.", "lang");
+  return language;
+}
+
+}  // namespace strata::net

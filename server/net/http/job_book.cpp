@@ -1,0 +1,35 @@
+#include "net/http/job_book.h"
+
+#include "net/http/answer_book.h"
+
+namespace strata::net {
+
+Result<std::optional<std::int64_t>> JobBook::find(const Request& request) {
+  std::lock_guard lock(mutex_);
+  const auto found = started_.find(scoped_key(request));
+  if (found == started_.end() || !jobs_.status(found->second.job)) return std::nullopt;
+  if (found->second.fingerprint != fingerprint(request))
+    return fail(ErrorCode::invalid, "Key used for another call",
+                "This Idempotency-Key was used with another body; take a new key for a new call.",
+                "Idempotency-Key");
+  return found->second.job;
+}
+
+void JobBook::started(const Request& request, std::int64_t job) {
+  const std::string key = scoped_key(request);
+  if (key.empty()) return;
+  std::lock_guard lock(mutex_);
+  std::erase_if(started_, [&](const auto& entry) { return !jobs_.status(entry.second.job); });
+  started_[key] = {job, fingerprint(request)};
+}
+
+Result<std::int64_t> JobBook::finished(const Request& request, std::int64_t project,
+                                       jobs::JobResult result) {
+  auto job = jobs_.add(project, [result = std::move(result)](Progress&) -> Result<jobs::JobResult> {
+    return result;
+  });
+  if (job) started(request, *job);
+  return job;
+}
+
+}  // namespace strata::net

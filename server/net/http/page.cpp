@@ -1,0 +1,199 @@
+#include "net/http/page.h"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+
+#include "net/http/digest.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::size_t kLongestCursor = 6000;  // beside the rest of a head of 8 KiB
+
+// RFC 4648, section 5, without padding.
+std::string base64url(std::string_view bytes) {
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
+  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                                   reinterpret_cast<const unsigned char*>(bytes.data()),
+                                   static_cast<int>(bytes.size()));
+  text.resize(static_cast<std::size_t>(size));
+  while (text.ends_with('=')) text.pop_back();
+  std::ranges::replace(text, '+', '-');
+  std::ranges::replace(text, '/', '_');
+  return text;
+}
+
+std::optional<std::string> bytes_of_base64url(std::string text) {
+  const std::string sent = text;
+  std::ranges::replace(text, '-', '+');
+  std::ranges::replace(text, '_', '/');
+  const std::size_t missing = (4 - text.size() % 4) % 4;
+  text.append(missing, '=');
+  std::string bytes(3 * text.size() / 4 + 1, '\0');
+  const int size = EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
+                                   reinterpret_cast<const unsigned char*>(text.data()),
+                                   static_cast<int>(text.size()));
+  if (size < static_cast<int>(missing)) return std::nullopt;
+  bytes.resize(static_cast<std::size_t>(size) - missing);
+  // one text alone stands for the bytes
+  return base64url(bytes) == sent ? std::optional(bytes) : std::nullopt;
+}
+
+bool is_of_page(const std::string& parameter) {
+  return parameter == "limit" || parameter == "offset" || parameter == "after";
+}
+
+// Which list it is, in which order and with which filters.
+std::string list_mark(const Request& request) {
+  std::string text;
+  for (const std::string& segment : request.segments)
+    text += std::to_string(segment.size()) + ":" + segment;
+  for (const auto& [key, value] : request.query)
+    if (!is_of_page(key)) text += "?" + std::to_string(value.size()) + key + "=" + value;
+  return sha256_hex(text).substr(0, 8);
+}
+
+bool is_value(const nlohmann::json& value) {
+  return value.is_string() || value.is_number_integer() || value.is_number_float() ||
+         value.is_null();
+}
+
+std::string text_of(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+// As `cursor_of` writes it, to the character.
+Result<ListPlace> place_in(const Request& request, const std::string& cursor) {
+  if (cursor.empty() || cursor.size() > kLongestCursor) return wrong_place();
+  const auto text = bytes_of_base64url(cursor);
+  if (!text) return wrong_place();
+  auto read = nlohmann::json::parse(*text, nullptr, false);
+  if (!read.is_array() || read.size() < 2 || read.front() != list_mark(request) ||
+      !std::ranges::all_of(read, is_value) || text_of(read) != *text)
+    return wrong_place();
+  read.erase(read.begin());
+  return read;
+}
+
+std::string link_to(const Request& request, const Page& page, const std::string& where,
+                    const char* relation) {
+  std::string target;  // encoded anew: as sent it may hold bytes that a header may not
+  for (const auto& segment : request.segments) target += "/" + percent_encode(segment);
+  target += "?";
+  for (const auto& [key, value] : request.query)
+    if (!is_of_page(key)) target += percent_encode(key) + "=" + percent_encode(value) + "&";
+  return "<" + target + "limit=" + std::to_string(page.limit) + "&" + where + ">; rel=\"" +
+         relation + "\"";
+}
+
+std::string offset_link(const Request& request, const Page& page, int offset,
+                        const char* relation) {
+  return link_to(request, page, "offset=" + std::to_string(offset), relation);
+}
+
+void add_links(Response& response, const Request& request, const Page& page, std::string links) {
+  if (page.offset > 0)
+    links += (links.empty() ? "" : ", ") +
+             offset_link(request, page, std::max(0, page.offset - page.limit), "prev");
+  if (!links.empty()) response.with("Link", links);
+}
+
+Slice slice_from(std::size_t begin, std::size_t count, const Page& page,
+                 const std::function<ListPlace(std::size_t)>& place) {
+  Slice slice;
+  slice.begin = std::min(begin, count);
+  slice.end = std::min(count, slice.begin + static_cast<std::size_t>(page.limit));
+  if (slice.end < count && slice.end > slice.begin) slice.last = place(slice.end - 1);
+  return slice;
+}
+
+}  // namespace
+
+Result<Page> page_of(const Request& request, int default_limit) {
+  Page page;
+  page.limit = default_limit;
+  if (auto found = request.query.find("limit"); found != request.query.end()) {
+    auto limit = parse_integer(found->second, 1, kMaxPage, "limit");
+    if (!limit) return tl::unexpected(limit.error());
+    page.limit = static_cast<int>(*limit);
+  }
+  if (auto found = request.query.find("offset"); found != request.query.end()) {
+    auto offset = parse_integer(found->second, 0, 1'000'000'000, "offset");
+    if (!offset) return tl::unexpected(offset.error());
+    page.offset = static_cast<int>(*offset);
+  }
+  if (auto found = request.query.find("after"); found != request.query.end()) {
+    if (request.query.contains("offset"))
+      return fail(ErrorCode::invalid, "after and offset together",
+                  "Give one of `after` and `offset`.", "after");
+    auto place = STRATA_TRY(place_in(request, found->second));
+    page.after = std::move(place);
+  }
+  return page;
+}
+
+std::optional<std::string> cursor_of(const Request& request, const ListPlace& place) {
+  nlohmann::json marked = nlohmann::json::array({list_mark(request)});
+  for (const auto& value : place) marked.push_back(value);
+  std::string cursor = base64url(text_of(marked));
+  return cursor.size() <= kLongestCursor ? std::optional(std::move(cursor)) : std::nullopt;
+}
+
+void add_page_links(Response& response, const Request& request, const Page& page,
+                    const std::optional<ListPlace>& last) {
+  std::string next;
+  if (last) {
+    const auto cursor = cursor_of(request, *last);
+    next = cursor ? link_to(request, page, "after=" + *cursor, "next")
+                  : offset_link(request, page, page.offset + page.limit, "next");
+  }
+  add_links(response, request, page, std::move(next));
+}
+
+void add_page_links(Response& response, const Request& request, const Page& page,
+                    std::int64_t total) {
+  const bool goes_on = std::int64_t{page.offset} + page.limit < total;
+  add_links(response, request, page,
+            goes_on ? offset_link(request, page, page.offset + page.limit, "next") : std::string());
+}
+
+Result<std::int64_t> number_after(const Page& page, std::int64_t first) {
+  if (!page.after) return first;
+  if (page.after->size() != 1 || !page.after->front().is_number_integer()) return wrong_place();
+  return page.after->front().get<std::int64_t>();
+}
+
+Result<Slice> slice_of(const Page& page, std::span<const NumberKey> sorted) {
+  std::size_t begin = static_cast<std::size_t>(page.offset);
+  if (page.after) {
+    NumberKey after;
+    for (const auto& value : *page.after) {
+      if (!value.is_number_integer()) return wrong_place();
+      after.push_back(value.get<std::int64_t>());
+    }
+    if (!sorted.empty() && sorted.front().size() != after.size()) return wrong_place();
+    begin = static_cast<std::size_t>(std::ranges::upper_bound(sorted, after) - sorted.begin());
+  }
+  return slice_from(begin, sorted.size(), page,
+                    [&](std::size_t at) { return ListPlace(sorted[at]); });
+}
+
+Result<Slice> slice_of(const Page& page, std::span<const store::Store::NamedId> sorted,
+                       store::Store& store) {
+  std::size_t begin = static_cast<std::size_t>(page.offset);
+  if (page.after) {
+    const ListPlace& after = *page.after;
+    if (after.size() != 2 || !after[0].is_string() || !after[1].is_number_integer())
+      return wrong_place();
+    auto until =
+        store.names_until({after[0].get<std::string>(), after[1].get<std::int64_t>()}, sorted);
+    if (!until) return tl::unexpected(until.error());
+    begin = *until;
+  }
+  return slice_from(begin, sorted.size(), page, [&](std::size_t at) {
+    return ListPlace::array({sorted[at].name, sorted[at].id});
+  });
+}
+
+}  // namespace strata::net

@@ -1,0 +1,181 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include "net/api/metrics.h"
+#include "net/editor_book.h"
+#include "net/http/http_types.h"
+#include "net/http/token_bucket.h"
+#include "net/http/worker_pool.h"
+#include "net/serialization/wire.h"
+#include "net/stroke_book.h"
+#include "protocol/messages.h"
+#include "protocol/parse.h"
+#include "room/room.h"
+
+namespace strata::net {
+
+// The connection as a session sees it. Thread-safe; nothing blocks. What is sent too fast for the
+// other side closes it.
+class LiveSocket {
+ public:
+  virtual ~LiveSocket() = default;
+  virtual void send_text(std::string text) = 0;
+  virtual void send_frame(stream::FrameBytes frame) = 0;
+  virtual void close(int code, std::string reason) = 0;
+  // on the socket's strand
+  virtual void run_after(std::chrono::milliseconds delay, std::function<void()> work) = 0;
+};
+
+struct LiveLimits {
+  std::size_t message_bytes = 256 * 1024;
+  double messages_per_second = 500;
+  double burst = 1000;
+  int max_refusals = 2000;  // more refused for speed than taken, then the connection is closed
+  int views = room::Member::kMaxViews;
+  std::chrono::milliseconds presence_every{50};
+  // more make it rarer: to one session goes the same in a second, however many are there
+  int presence_people = 8;
+};
+
+class LiveSockets;
+
+// 404 (`table`, `key`) for a record that the project has not. May block.
+using CheckRecord =
+    std::function<Result<void>(std::int64_t project_id, const EditorBook::Record& record)>;
+
+// What all sessions share; outlives the rooms' callbacks by being shared.
+struct LiveShared {
+  std::shared_ptr<Metrics> metrics;
+  std::shared_ptr<StrokeBook> strokes;
+  std::shared_ptr<WorkerPool> queries;  // picks: they may be slow the first time
+  std::shared_ptr<LiveSockets> sockets;
+  std::shared_ptr<EditorBook> editors;
+  store::Store* store = nullptr;
+  FindTool find_tool;
+  CheckRecord check_record;
+  LiveLimits limits;
+};
+
+// WebSocket close codes (RFC 6455).
+constexpr int kCloseGoingAway = 1001;
+constexpr int kClosePolicy = 1008;
+constexpr int kCloseTryAgain = 1013;
+
+// One person at one model: subprotocol strata.v1, see protocol/messages. `on_text` and `on_closed`
+// are called on the socket's strand; what the room tells arrives on the room's.
+class LiveSession final : public room::Listener, public std::enable_shared_from_this<LiveSession> {
+ public:
+  // `personal_view`: what they keep of how they show the layers (net/api/models/personal_view.h).
+  LiveSession(std::shared_ptr<const LiveShared> shared, std::shared_ptr<room::Room> room,
+              std::string project_slug, Principal principal, room::Portrait portrait,
+              std::optional<protocol::PersonalView> personal_view,
+              std::weak_ptr<LiveSocket> socket);
+  ~LiveSession() override;
+
+  // Work that is returned must run on a worker, and end, before the next message is given.
+  using Work = std::function<void()>;
+  Work on_text(const std::string& text);
+  void on_binary();
+  void on_closed();
+  std::int64_t model_id() const { return owner_.model_id; }
+  std::int64_t project_id() const { return room_->model().project_id; }  // of the model; any thread
+  const std::string& user() const { return principal_.user; }
+  Role role() const { return principal_.role; }  // in that project
+  // What concerns the whole site or project; only who was welcomed hears it. Any thread.
+  void tell(const protocol::ServerMessage& message);
+
+  // --- room::Listener
+  void edit_applied(const Edit& edit) override;
+  void edits_unsaved(const std::vector<Edit>& edits, const Error& why) override;
+  void layer_changed(LayerChange change, const Layer& layer) override;
+  void model_changed(const Model& model) override;
+  void look_changed(LayerChange change, const Look& look) override;
+  void model_deleted() override;
+  void presence_changed() override;
+  void view_refused(std::uint32_t view_id, const Error& why) override;
+
+ private:
+  struct BatchName {
+    Uuid stroke;
+    int n = 0;
+  };
+  void on(const protocol::Hello& message);
+  void on(const protocol::CameraUpdate& message);
+  void on(const protocol::LayersUpdate& message);
+  void on(const protocol::StrokeBegin& message);
+  void on(const protocol::StrokeExtend& message);
+  void on(const protocol::StrokeEnd& message);
+  void on(const protocol::EditRequest& message);
+  void on(const protocol::Undo& message);
+  void on(const protocol::Redo& message);
+  void on(const protocol::RecordEdit& message);
+  void on(const protocol::Ack& message);
+  void on(const protocol::PresenceUpdate& message);
+  void on(const protocol::Pick& message);
+
+  void begin(const protocol::StrokeBegin& message);
+  void edit(const protocol::EditRequest& message);
+  void edit_record(const protocol::RecordEdit& message);
+  void paint(const protocol::StrokeExtend& message);
+  void find_start(const protocol::StrokeExtend& message);
+  template <class Message>
+  void step_through_history(const Message& message);
+  void submit(room::EditRequest request, std::optional<BatchName> batch);
+  void on_applied(const Uuid& id, const std::optional<BatchName>& batch,
+                  const room::EditAnswer& answer);
+  void on_saved(const Uuid& id, const std::optional<BatchName>& batch,
+                const Result<room::EditAnswer>& answer);
+  Author author() const { return {principal_.user, principal_.role}; }
+  EditorBook::Tell tell_project() const;
+  bool may_edit(const std::string& ref);
+  bool may_edit(const Uuid& id) { return may_edit(to_string(id)); }
+  bool has_view(int view_id, const std::string& ref);
+  Result<Layer> layer_of(const protocol::LayerRef& ref) const;
+  bool has_records(const protocol::LayerRef& ref) const;
+  std::shared_ptr<room::Member> member() const;
+  void resolve_pointer();
+  void send_presence();
+  void send(const protocol::ServerMessage& message);
+  void refuse(const Error& problem, const std::string& ref);
+  void refuse(const Error& problem, const Uuid& id) { refuse(problem, to_string(id)); }
+
+  const std::shared_ptr<const LiveShared> shared_;
+  const std::shared_ptr<room::Room> room_;
+  const std::string project_slug_;
+  const Principal principal_;
+  const room::Portrait portrait_;
+  const std::optional<protocol::PersonalView> personal_view_;
+  const StrokeBook::Owner owner_;
+  const std::weak_ptr<LiveSocket> socket_;
+
+  // On the socket's strand.
+  TokenBucket bucket_;
+  int refusals_ = 0;
+  Work work_;
+  std::map<int, Camera> cameras_;
+
+  mutable std::mutex mutex_;
+  std::shared_ptr<room::Member> member_;
+  std::unordered_map<Uuid, bool> own_edits_;  // on their way; true: applied
+  bool presence_scheduled_ = false;
+  std::chrono::steady_clock::time_point presence_sent_{};
+  int people_told_ = 0;  // by that one
+  struct Pointer {
+    Camera camera;
+    glm::dvec2 pixel;
+    std::optional<double> radius;
+  };
+  std::optional<Pointer> pointer_;
+  bool pointer_busy_ = false;
+};
+
+}  // namespace strata::net

@@ -1,0 +1,101 @@
+#include "net/live/model_events.h"
+
+#include "net/auth/still_welcome.h"
+#include "net/serialization/activity_wire.h"
+
+namespace strata::net {
+namespace {
+
+// A transaction has the time at which it began, and is seen when it ends: one that took no longer
+// than this is told.
+constexpr std::chrono::microseconds kLongest = std::chrono::seconds(30);
+constexpr std::chrono::seconds kCheckEvery{10};
+constexpr int kFirstPage = 20;  // mostly nothing is new
+constexpr int kPage = 200;
+constexpr int kMostPages = 51;  // of what a reader missed who comes back
+
+std::int64_t microseconds(const store::Activity& line) {
+  return std::chrono::duration_cast<std::chrono::microseconds>(line.time.time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+ModelEvents::ModelEvents(const RouteContext& context, const Request& request, const Model& model,
+                         const std::optional<store::ActivityPlace>& after)
+    : context_(context),
+      secret_(Authenticator::secret_of(request)),
+      role_(request.role()),
+      project_(model.project_id),
+      model_(model.id),
+      last_(after) {
+  if (after) told_us_[after->id] = after->time_us;
+}
+
+bool ModelEvents::is_still_welcome() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - checked_ < kCheckEvery) return true;
+  checked_ = now;
+  const auto model = context_.store.model(std::to_string(model_));
+  if (!model) return model.error().code != ErrorCode::not_found;
+  return model->project_id == project_ &&
+         net::is_still_welcome(context_.auth, secret_, project_, role_);
+}
+
+// Newest first; nothing: the database is away.
+std::optional<ModelEvents::Lines> ModelEvents::lines_since(std::int64_t time_us) {
+  store::ActivityQuery query;
+  query.model = model_;
+  Lines lines;
+  for (int page = 0; page < kMostPages; ++page) {
+    query.limit = page == 0 ? kFirstPage : kPage;
+    auto found = context_.store.activity(project_, role_, query);
+    if (!found) return std::nullopt;
+    for (store::Activity& line : found->lines) {
+      if (microseconds(line) < time_us) return lines;
+      lines.push_back(std::move(line));
+    }
+    if (!found->next) break;
+    query.before = found->next;
+  }
+  return lines;
+}
+
+// What was there before anybody listened is not told.
+void ModelEvents::remember(const Lines& lines) {
+  last_ = store::ActivityPlace{};
+  if (!lines.empty()) last_ = {microseconds(lines.front()), lines.front().id};
+  for (const store::Activity& line : lines) told_us_[line.id] = microseconds(line);
+}
+
+std::string ModelEvents::tell(const Lines& lines) {
+  std::string text;
+  for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
+    const std::int64_t time = microseconds(*line);
+    if (const auto told = told_us_.find(line->id); told != told_us_.end() && told->second >= time)
+      continue;
+    told_us_[line->id] = time;
+    if (time >= last_->time_us) last_ = store::ActivityPlace{time, line->id};
+    text += "event: " + line->kind + "\nid: " + to_text(*last_) +
+            "\ndata: " + to_json(*line).dump() + "\n\n";
+  }
+  std::erase_if(told_us_, [&](const auto& entry) {
+    return entry.second + 2 * kLongest.count() < last_->time_us;
+  });
+  return text;
+}
+
+std::optional<std::string> ModelEvents::next() {
+  if (!is_still_welcome()) return std::nullopt;
+  const auto now = std::chrono::duration_cast<std::chrono::microseconds>(
+      std::chrono::system_clock::now().time_since_epoch());
+  const auto lines = lines_since((last_ ? last_->time_us : now.count()) - kLongest.count());
+  if (!lines) return std::string();
+  if (last_) return tell(*lines);
+  remember(*lines);
+  // Who is cut off before anything happens comes back to here.
+  last_->time_us = std::max<std::int64_t>(last_->time_us, now.count());
+  return "id: " + to_text(*last_) + "\n\n";
+}
+
+}  // namespace strata::net

@@ -1,0 +1,55 @@
+#include "net/live/table_events.h"
+
+#include <algorithm>
+
+namespace strata::net {
+namespace {
+
+constexpr std::size_t kMostTold = 100;  // records; more are told as a change of the table
+constexpr Visibility kSights[] = {Visibility::everyone, Visibility::team, Visibility::curators};
+
+}  // namespace
+
+void tell_table(const RouteContext& context, protocol::TableEventEvent event, const Table& table,
+                const std::string& user) {
+  protocol::TableEvent message;
+  message.event = event;
+  message.table_id = table.id;
+  message.user = user;
+  for (const Visibility sight : kSights) {
+    if (event != protocol::TableEventEvent::deleted)
+      message.table = to_json(seen_by(table, least_role(sight)));
+    context.live_sockets.tell_project(table.project_id, sight, message);
+  }
+}
+
+void tell_change(const RouteContext& context, const store::TableChange& change,
+                 const std::string& user) {
+  if (change.sequence == 0) return;
+  context.rooms.admit_keys(change.table.id, change.created);
+  context.rooms.records_changed(change.table.id);
+  if (change.columns_changed || change.records.size() + change.deleted.size() > kMostTold)
+    return tell_table(context, protocol::TableEventEvent::changed, change.table, user);
+  protocol::RecordEvent message;
+  message.table = change.table.id;
+  message.user = user;
+  for (const Record& record : change.records) {
+    const bool is_new =
+        std::find(change.created.begin(), change.created.end(), record.key) != change.created.end();
+    message.event =
+        is_new ? protocol::RecordEventEvent::created : protocol::RecordEventEvent::changed;
+    message.key = record.key;
+    for (const Visibility sight : kSights) {
+      message.record = to_json(record, seen_by(change.table, least_role(sight)).columns);
+      context.live_sockets.tell_project(change.table.project_id, sight, message);
+    }
+  }
+  message.event = protocol::RecordEventEvent::deleted;
+  message.record.reset();
+  for (const auto key : change.deleted) {
+    message.key = key;
+    context.live_sockets.tell_project(change.table.project_id, message);
+  }
+}
+
+}  // namespace strata::net

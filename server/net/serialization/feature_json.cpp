@@ -1,0 +1,129 @@
+#include "net/serialization/feature_json.h"
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "core/question.h"
+
+namespace strata::net {
+namespace {
+
+constexpr std::size_t kPieceBytes = 1u << 16;
+constexpr int kDecimals = 6;  // a micrometre of a model in metres
+
+void append_number(std::string& text, double value) {
+  char digits[400];  // the widest double has 309 digits before its point
+  char* end =
+      std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, kDecimals).ptr;
+  while (end[-1] == '0') --end;
+  if (end[-1] == '.') --end;
+  const std::string_view number(digits, static_cast<std::size_t>(end - digits));
+  text += number == "-0" ? "0" : number;
+}
+
+void append_place(std::string& text, const glm::dvec3& place) {
+  for (int axis = 0; axis < 3; ++axis) {
+    text += axis == 0 ? '[' : ',';
+    append_number(text, place[axis]);
+  }
+  text += ']';
+}
+
+void append_path(std::string& text, const query::FlatRing& ring, bool closed) {
+  for (std::size_t i = 0; i < ring.size() + (closed ? 1 : 0); ++i) {
+    text += i == 0 ? '[' : ',';
+    append_place(text, ring[i % ring.size()]);
+  }
+  text += ']';
+}
+
+void append_geometry(std::string& text, FeatureKind kind,
+                     const std::vector<query::FlatPolygon>& geometry) {
+  if (geometry.empty()) return void(text += "null");
+  if (kind != FeatureKind::areas) {
+    const query::FlatRing& path = geometry.front().rings.front();
+    text += kind == FeatureKind::points ? R"({"type":"Point","coordinates":)"
+                                        : R"({"type":"LineString","coordinates":)";
+    if (kind == FeatureKind::points)
+      append_place(text, path.front());
+    else
+      append_path(text, path, false);
+    return void(text += '}');
+  }
+  text += R"({"type":"MultiPolygon","coordinates":[)";
+  for (const query::FlatPolygon& polygon : geometry) {
+    if (&polygon != &geometry.front()) text += ',';
+    for (const query::FlatRing& ring : polygon.rings) {
+      text += &ring == &polygon.rings.front() ? '[' : ',';
+      append_path(text, ring, true);
+    }
+    text += ']';
+  }
+  text += "]}";
+}
+
+nlohmann::json json_of(const FeatureValue& value) {
+  return std::visit(
+      []<class T>(const T& held) -> nlohmann::json {
+        if constexpr (std::is_same_v<T, std::monostate>)
+          return nullptr;
+        else
+          return held;
+      },
+      value);
+}
+
+std::string head(const FeatureSet& set) {
+  nlohmann::json members{
+      {"type", "FeatureCollection"}, {"name", set.name}, {"unit", set.unit}, {"axes", set.axes}};
+  if (set.epsg != 0)
+    members["crs"] = {
+        {"type", "name"},
+        {"properties", {{"name", "urn:ogc:def:crs:EPSG::" + std::to_string(set.epsg)}}}};
+  std::string text = members.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  text.back() = ',';
+  return text + R"("features":[)";
+}
+
+void append_feature(std::string& text, const FeatureTable& table, const Feature& feature) {
+  nlohmann::json properties = nlohmann::json::object();
+  properties["kind"] = table.name;
+  for (std::size_t i = 0; i < table.fields.size(); ++i)
+    properties[table.fields[i].name] = json_of(feature.values[i]);
+  text += R"({"type":"Feature","properties":)";
+  text += properties.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  text += R"(,"geometry":)";
+  append_geometry(text, table.kind, feature.geometry);
+  text += '}';
+}
+
+bool write(const FeatureSet& set, const Response::Sink& sink) {
+  std::string text = head(set);
+  bool is_first = true;
+  for (const FeatureTable& table : set.tables)
+    for (const Feature& feature : table.features) {
+      check_question();
+      text += is_first ? "\n" : ",\n";
+      is_first = false;
+      append_feature(text, table, feature);
+      if (text.size() < kPieceBytes) continue;
+      if (!sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) return false;
+      text.clear();
+    }
+  text += "\n]}\n";
+  return sink({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+}  // namespace
+
+Response feature_json(FeatureSet set) {
+  const auto held = std::make_shared<const FeatureSet>(std::move(set));
+  Response response;
+  response.with("Content-Type", kGeoJsonType);
+  name_download(response, held->name + ".geojson");
+  response.stream =
+      Response::Stream{{}, [held](const Response::Sink& sink) { return write(*held, sink); }};
+  return response;
+}
+
+}  // namespace strata::net

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "net/live/live_session.h"
+
+namespace strata::net {
+
+struct ServerOptions {
+  std::string host = "127.0.0.1";            // IPv6 without brackets
+  std::uint16_t port = 8080;                 // 0: any free one
+  std::vector<std::string> allowed_origins;  // beside the server's own: "https://museum.example"
+  std::filesystem::path static_dir;          // the built page (web-client/dist)
+  std::filesystem::path protocol_dir;        // folder of openapi.json
+  std::filesystem::path templates_dir;       // of tables and layers; empty: there are none
+  std::filesystem::path upload_dir;          // uploads on their way in; emptied at start
+  std::filesystem::path tls_chain, tls_key;  // PEM; empty: plain HTTP
+  std::string owner_token;                   // STRATA_OWNER_TOKEN: empty or at least 32 characters
+  int http_threads = 2;                      // for sockets; nothing on them blocks
+  int worker_threads = 8;                    // for what blocks
+  int question_threads = 8;                  // for questions; few of one person at once
+  int query_threads = 2;                     // for picks of the live connections
+  std::size_t max_waiting_requests = 256;    // more get a 503
+  std::size_t max_connections = 2048;
+  std::uint64_t max_upload_bytes = 8ull << 30;
+  std::uint64_t max_rasters_at_once = 2ull << 30;  // bytes of those being read and written
+  std::uint64_t max_json_bytes = 1u << 20;
+  std::uint64_t max_positions_bytes = 16u << 20;
+  double requests_per_second = 1000;  // of one connection
+  double request_burst = 2000;
+  int bin_days = 30;  // for which deleted things can be restored; 0: they are erased at once
+  LiveLimits live;
+};
+
+}  // namespace strata::net
