@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "core/temporary_file.h"
 
 namespace strata::store {
 class Jobs;
@@ -20,19 +21,6 @@ namespace strata::jobs {
 enum class JobKind { import, layers, look, figure };
 enum class JobState { queued, running, done, failed, cancelled };
 
-// A file that a job made, for who started it; goes with this.
-struct JobFile {
-  std::filesystem::path path;
-  std::string name, media_type;
-  std::uint64_t bytes = 0;
-  JobFile() = default;
-  JobFile(const JobFile&) = delete;
-  ~JobFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path, ignored);
-  }
-};
-
 // What a job made.
 struct JobResult {
   JobResult(std::int64_t the_model)
@@ -42,7 +30,7 @@ struct JobResult {
   std::optional<std::int64_t> look;  // a new one on it
   // what else is to be told, see the schema `TransferReport`; null: nothing
   nlohmann::json report;
-  std::shared_ptr<const JobFile> file;
+  std::shared_ptr<const TemporaryFile> file;
 };
 
 struct JobStatus {

@@ -1,5 +1,7 @@
 #include "room/computed_edit.h"
 
+#include "core/overloaded.h"
+
 #include <algorithm>
 #include <set>
 
@@ -9,13 +11,6 @@
 
 namespace strata::room {
 namespace {
-
-template <class... Visitors>
-struct Overloaded : Visitors... {
-  using Visitors::operator()...;
-};
-template <class... Visitors>
-Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 // What becomes of edits. What is not told stays as it is.
 struct Turn {

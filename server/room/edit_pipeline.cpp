@@ -8,6 +8,7 @@
 #include <new>
 
 #include "core/log.h"
+#include "core/overloaded.h"
 #include "room/gpu_problem.h"
 #include "room/provisional.h"
 
@@ -17,13 +18,6 @@ namespace {
 constexpr int kStrokesInFlight = 8;  // keeps the GPU fed; more would only lengthen a rollback
 constexpr int kKeyTileEvery = 64;    // revisions of a tile between two whole copies
 constexpr auto kRepairPause = std::chrono::milliseconds(500);
-
-template <class... Visitors>
-struct Overloaded : Visitors... {
-  using Visitors::operator()...;
-};
-template <class... Visitors>
-Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 const char* op_name(const EditRequest& request) {
   return std::visit(

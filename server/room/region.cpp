@@ -1,6 +1,7 @@
 #include "room/region.h"
 
 #include "core/mask_texels.h"
+#include "core/overloaded.h"
 #include "core/polygon_area.h"
 #include "mesh/slot_bits.h"
 #include "query/flood.h"
@@ -9,13 +10,6 @@
 
 namespace strata::room {
 namespace {
-
-template <class... Visitors>
-struct Overloaded : Visitors... {
-  using Visitors::operator()...;
-};
-template <class... Visitors>
-Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 WrittenValue written_value(bool erase, std::uint32_t bits) {
   return erase ? WrittenValue() : WrittenValue(bits);

@@ -7,12 +7,12 @@
 #include <future>
 #include <thread>
 
+#include "core/byte_budget.h"
+#include "core/digest.h"
 #include "core/uuid.h"
 #include "net/api/docs_page.h"
 #include "net/api/metrics.h"
-#include "net/byte_budget.h"
 #include "net/http/accept.h"
-#include "net/http/digest.h"
 #include "net/http/form_files.h"
 #include "net/http/http_types.h"
 #include "net/http/origin.h"

@@ -242,12 +242,12 @@ struct Live : testing::Test {
   Live() {
     shared = std::make_shared<LiveShared>();
     shared->metrics = std::make_shared<Metrics>();
-    shared->strokes = std::make_shared<StrokeBook>();
+    shared->strokes = std::make_shared<app::StrokeBook>();
     shared->queries = std::make_shared<WorkerPool>(1, 16);
     shared->sockets = std::make_shared<LiveSockets>();
-    shared->editors = std::make_shared<EditorBook>();
+    shared->editors = std::make_shared<app::EditorBook>();
     shared->check_record = [](std::int64_t project_id,
-                              const EditorBook::Record& record) -> Result<void> {
+                              const app::EditorBook::Record& record) -> Result<void> {
       if (project_id == 1 && record.table == 4) return {};
       return fail(ErrorCode::not_found, "No such table", "There is none.", "table");
     };
@@ -294,9 +294,9 @@ struct Live : testing::Test {
 
 TEST_F(Live, a_tool_of_the_site_is_looked_for_on_a_worker_before_the_stroke_begins) {
   const auto shape = test::shape(test::in_flag);
-  shared->find_tool = [&](const std::string& ref) -> Result<FoundTool> {
+  shared->find_tool = [&](const std::string& ref) -> Result<app::FoundTool> {
     if (ref != "12") return fail(ErrorCode::not_found, "Not found", "There is no such tool.");
-    return FoundTool{12, shape};
+    return app::FoundTool{12, shape};
   };
   hello();
   auto begun = begin(stroke);
@@ -530,7 +530,7 @@ TEST_F(Live, a_stroke_is_applied_then_saved_under_its_number) {
   room->edits[0].saved(room::EditAnswer{1, 4, 0.1, false});
   ASSERT_EQ(socket->of("saved").size(), 1u);
   EXPECT_EQ(socket->of("saved")[0]["sequence"], 1);
-  EXPECT_EQ(shared->metrics->edits_saved, 1u);
+  EXPECT_EQ(shared->metrics->edits.saved, 1u);
 }
 
 TEST_F(Live, after_a_reconnect_the_resent_batch_is_joined_as_before) {
@@ -596,7 +596,7 @@ TEST_F(Live, an_edit_that_is_refused_is_a_problem_with_its_id) {
   ASSERT_EQ(socket->of("problem").size(), 1u);
   EXPECT_EQ(socket->of("problem")[0]["ref"], id);
   EXPECT_EQ(socket->of("problem")[0]["status"], 429);
-  EXPECT_EQ(shared->metrics->edits_refused, 1u);
+  EXPECT_EQ(shared->metrics->edits.refused, 1u);
 }
 
 TEST_F(Live, others_hear_that_the_layer_was_edited_and_the_author_does_not) {

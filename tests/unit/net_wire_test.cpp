@@ -191,21 +191,21 @@ TEST(Wire, a_batch_keeps_in_the_journal_all_that_made_it) {
   EXPECT_EQ(request.record["radius_px"], 4);
   EXPECT_EQ(request.record["camera"]["width"], 640);
   EXPECT_FALSE(request.record.contains("id"));
-  EXPECT_EQ(end_of_path(request.record), (StrokeBook::End{{2, 3}}));
+  EXPECT_EQ(end_of_path(request.record), (app::StrokeBook::End{{2, 3}}));
   auto pressed = request.record;
   pressed["widths"] = {0.5, 0.25};
-  EXPECT_EQ(end_of_path(pressed), (StrokeBook::End{{2, 3}, 0.25}));
+  EXPECT_EQ(end_of_path(pressed), (app::StrokeBook::End{{2, 3}, 0.25}));
 }
 
 TEST(Wire, a_tool_of_the_site_gives_its_shape_and_its_id_to_the_record) {
   const auto shape = test::shape(test::in_flag);
   std::string asked;
-  const FindTool find = [&](const std::string& ref) -> Result<FoundTool> {
+  const app::FindTool find = [&](const std::string& ref) -> Result<app::FoundTool> {
     asked = ref;
     if (ref == "gone") return fail(ErrorCode::unavailable, "Database unavailable", "Wait.");
     if (ref != "flag" && ref != "12")
       return fail(ErrorCode::not_found, "Not found", "There is no such tool.");
-    return FoundTool{12, shape};
+    return app::FoundTool{12, shape};
   };
   auto edit = stroke(1);
   const auto with_shape = [&](const protocol::ToolShape& of) {

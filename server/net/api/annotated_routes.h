@@ -4,7 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "net/api/routes.h"
+#include "net/api/route_help.h"
+#include "net/transport/server_options.h"
 
 namespace strata::net {
 

@@ -5,6 +5,8 @@
 #include "core/log.h"
 #include "core/no_such.h"
 #include "net/api/models/personal_view.h"
+#include "net/api/route_help.h"
+#include "net/api/routes.h"
 #include "net/auth/kiosk_gate.h"
 #include "net/auth/project_gate.h"
 #include "net/auth/still_welcome.h"
@@ -26,7 +28,7 @@ bool changes(Method method) {
 }
 
 Result<void> check_record(store::Store& store, std::int64_t project_id,
-                          const EditorBook::Record& record) {
+                          const app::EditorBook::Record& record) {
   const auto table = store.table(std::to_string(record.table), Role::viewer);
   if (!table && table.error().code != ErrorCode::not_found) return tl::unexpected(table.error());
   if (!table || table->project_id != project_id)
@@ -37,17 +39,17 @@ Result<void> check_record(store::Store& store, std::int64_t project_id,
 }
 
 std::shared_ptr<LiveShared> make_shared_state(const ServerOptions& options, store::Store& store,
-                                              const std::shared_ptr<ToolShelf>& tools) {
+                                              const std::shared_ptr<app::ToolShelf>& tools) {
   auto shared = std::make_shared<LiveShared>();
   shared->metrics = std::make_shared<Metrics>();
-  shared->strokes = std::make_shared<StrokeBook>();
+  shared->strokes = std::make_shared<app::StrokeBook>();
   shared->queries = std::make_shared<WorkerPool>(options.query_threads, kMaxWaitingQueries);
   shared->sockets = std::make_shared<LiveSockets>();
-  shared->editors = std::make_shared<EditorBook>();
+  shared->editors = std::make_shared<app::EditorBook>();
   shared->store = &store;
   shared->limits = options.live;
   shared->find_tool = [tools](const std::string& ref) { return tools->find(ref); };
-  shared->check_record = [&store](std::int64_t project_id, const EditorBook::Record& record) {
+  shared->check_record = [&store](std::int64_t project_id, const app::EditorBook::Record& record) {
     return check_record(store, project_id, record);
   };
   return shared;
@@ -72,7 +74,7 @@ const Headers& security_headers() {
 }
 
 Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
-         render::Renderer& renderer, TemplateShelf templates)
+         render::Renderer& renderer, app::TemplateShelf templates)
     : options_(std::move(options)),
       own_names_(own_names(options_.host, options_.allowed_origins)),
       store_(store),
@@ -81,16 +83,26 @@ Api::Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::J
       answers_(store),
       edit_book_(store),
       files_(options_.static_dir),
-      tools_(std::make_shared<ToolShelf>(store)),
+      tools_(std::make_shared<app::ToolShelf>(store)),
       templates_(std::move(templates)),
       shared_(make_shared_state(options_, store, tools_)),
       workers_(options_.worker_threads, options_.max_waiting_requests),
       questions_({.threads = options_.question_threads, .waiting = options_.max_waiting_requests}),
       bin_keeper_(store.bin(), std::chrono::days(options_.bin_days)),
-      context_{options_,          store,      rooms,      jobs,
-               renderer,          auth_,      edit_book_, *shared_->sockets,
-               *shared_->metrics, workers_,   questions_, *tools_,
-               templates_,        bin_keeper_},
+      table_events_(rooms, *shared_->sockets),
+      context_{{store, rooms, shared_->metrics->edits, table_events_},
+               options_,
+               jobs,
+               renderer,
+               auth_,
+               edit_book_,
+               *shared_->sockets,
+               *shared_->metrics,
+               workers_,
+               questions_,
+               *tools_,
+               templates_,
+               bin_keeper_},
       recomputer_(context_) {
   add_system_routes(router_, context_);
   add_auth_routes(router_, context_);

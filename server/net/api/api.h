@@ -5,17 +5,23 @@
 #include <optional>
 #include <string>
 
+#include "app/bin_keeper.h"
+#include "app/layers/recomputer.h"
+#include "app/strokes/tool_shelf.h"
+#include "app/template_shelf.h"
 #include "jobs/job_queue.h"
-#include "net/api/routes.h"
+#include "net/api/metrics.h"
+#include "net/api/route_context.h"
 #include "net/auth/auth.h"
 #include "net/http/answer_book.h"
+#include "net/http/edit_book.h"
 #include "net/http/question_desk.h"
 #include "net/http/router.h"
 #include "net/http/static_files.h"
 #include "net/http/worker_pool.h"
 #include "net/live/live_session.h"
 #include "net/live/live_sockets.h"
-#include "net/recomputer.h"
+#include "net/live/table_events.h"
 #include "net/transport/server_options.h"
 #include "protocol/messages.h"
 #include "render/renderer.h"
@@ -29,7 +35,7 @@ namespace strata::net {
 class Api {
  public:
   Api(ServerOptions options, store::Store& store, room::Rooms& rooms, jobs::JobQueue& jobs,
-      render::Renderer& renderer, TemplateShelf templates);
+      render::Renderer& renderer, app::TemplateShelf templates);
   ~Api();
 
   const ServerOptions& options() const { return options_; }
@@ -83,17 +89,18 @@ class Api {
   AnswerBook answers_;
   EditBook edit_book_;
   StaticFiles files_;
-  const std::shared_ptr<ToolShelf> tools_;
-  const TemplateShelf templates_;
+  const std::shared_ptr<app::ToolShelf> tools_;
+  const app::TemplateShelf templates_;
   std::shared_ptr<LiveShared> shared_;
   WorkerPool workers_;
   QuestionDesk questions_;
   Router router_;
   Route page_;  // everything that is no API address
   Route live_;  // the live connections, which no handler answers
-  BinKeeper bin_keeper_;
+  app::BinKeeper bin_keeper_;
+  const TableEvents table_events_;
   const RouteContext context_;
-  Recomputer recomputer_;
+  app::Recomputer recomputer_;
 };
 
 // Headers that every answer carries.

@@ -37,11 +37,11 @@ std::string metrics_text(const Metrics& metrics, const Gauges& gauges) {
         gauges.questions_under_way);
   gauge("strata_gpu_bytes", "GPU memory in use.", gauges.gpu_bytes);
   gauge("strata_memory_bytes", "Main memory that open models hold.", gauges.memory_bytes);
-  counter("strata_edits_applied_total", "Edits that became visible.", metrics.edits_applied);
-  counter("strata_edits_saved_total", "Edits that became durable.", metrics.edits_saved);
+  counter("strata_edits_applied_total", "Edits that became visible.", metrics.edits.applied);
+  counter("strata_edits_saved_total", "Edits that became durable.", metrics.edits.saved);
   counter("strata_edits_unsaved_total", "Edits that were visible and had to be taken back.",
-          metrics.edits_unsaved);
-  counter("strata_edits_refused_total", "Edits that were refused.", metrics.edits_refused);
+          metrics.edits.unsaved);
+  counter("strata_edits_refused_total", "Edits that were refused.", metrics.edits.refused);
   counter("strata_frames_sent_total", "Encoded pictures sent to viewers.", metrics.frames_sent);
   counter("strata_frame_bytes_sent_total", "Bytes of the pictures.", metrics.frame_bytes_sent);
   counter("strata_messages_received_total", "WebSocket messages received.",

@@ -5,14 +5,16 @@
 #include <cstdint>
 #include <string>
 
+#include "app/edits.h"
+
 namespace strata::net {
 
-// Counters of this room, added to from any thread.
+// Counters of this module. Any thread adds to them.
 struct Metrics {
   std::array<std::atomic<std::uint64_t>, 6> requests{};  // by the first digit of the status
   std::atomic<std::int64_t> open_connections{0};
   std::atomic<std::int64_t> open_sockets{0};  // WebSockets
-  std::atomic<std::uint64_t> edits_applied{0}, edits_saved{0}, edits_unsaved{0}, edits_refused{0};
+  app::EditCounters edits;
   std::atomic<std::uint64_t> frames_sent{0}, frame_bytes_sent{0};
   std::atomic<std::uint64_t> messages_received{0}, messages_refused{0};
   std::atomic<std::uint64_t> questions_left{0};  // by their clients

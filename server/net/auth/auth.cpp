@@ -1,6 +1,6 @@
 #include "net/auth/auth.h"
 
-#include "net/http/digest.h"
+#include "core/digest.h"
 #include "net/http/origin.h"
 #include "store/kiosks.h"
 #include "store/password.h"

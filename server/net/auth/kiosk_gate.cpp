@@ -6,6 +6,7 @@
 
 #include "net/auth/project_gate.h"
 #include "store/named_parts.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -2,8 +2,10 @@
 
 #include <limits>
 
+#include "jobs/job_queue.h"
 #include "store/comments.h"
 #include "store/kiosks.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/no_such.h"
-#include "net/api/routes.h"
+#include "net/api/route_help.h"
 
 namespace strata::net {
 

@@ -1,6 +1,6 @@
 #include "net/http/answer_book.h"
 
-#include "net/http/digest.h"
+#include "core/digest.h"
 
 namespace strata::net {
 

@@ -2,9 +2,11 @@
 
 #include <set>
 
+#include "core/digest.h"
 #include "core/uuid.h"
-#include "net/api/routes.h"
-#include "net/http/digest.h"
+#include "net/api/route_help.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -71,6 +71,15 @@ Response text_response(std::string text, std::string content_type) {
   return response;
 }
 
+Response file_response(std::shared_ptr<const TemporaryFile> file) {
+  Response response;
+  response.with("Content-Type", file->media_type);
+  name_download(response, file->name);
+  response.file = file->path;
+  response.held = std::move(file);
+  return response;
+}
+
 Response empty_response(int status) {
   Response response;
   response.status = status;
@@ -184,13 +193,6 @@ std::string percent_encode(std::string_view text) {
   return out;
 }
 
-std::string to_lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
-
 Result<void> parse_target(std::string_view target, Request& request) {
   auto wrong = [](std::string detail) {
     return fail(ErrorCode::malformed, "Malformed address", std::move(detail));
@@ -235,18 +237,6 @@ Result<void> parse_target(std::string_view target, Request& request) {
     request.query.erase(as);
   }
   return {};
-}
-
-Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std::int64_t high,
-                                   const std::string& field) {
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
-    return fail(ErrorCode::invalid, "Number out of range",
-                "'" + field + "' is a whole number from " + std::to_string(low) + " to " +
-                    std::to_string(high) + ".",
-                field);
-  return value;
 }
 
 Result<std::string> asked_language(const Request& request) {

@@ -13,8 +13,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/ascii.h"
 #include "core/error.h"
+#include "core/number_text.h"
 #include "core/role.h"
+#include "core/temporary_file.h"
 
 namespace strata::net {
 
@@ -106,6 +109,8 @@ Response bytes_response(std::vector<std::uint8_t> bytes, std::string content_typ
 Response text_response(std::string text, std::string content_type);
 Response empty_response(int status);              // 204, 304
 Response problem_response(const Error& problem);  // RFC 9457
+// A download. The file is kept while it is sent.
+Response file_response(std::shared_ptr<const TemporaryFile> file);
 // For a file that is kept and not shown; any characters will do.
 void name_download(Response& response, const std::string& filename);
 std::string_view reason_phrase(int status);
@@ -128,13 +133,8 @@ class Respond {
 Result<void> parse_target(std::string_view target, Request& request);
 std::optional<std::string> percent_decode(std::string_view text, bool plus_is_space);
 std::string percent_encode(std::string_view text);
-std::string to_lower(std::string_view text);
 
 // `lang`, a language tag in lower case; empty: any. Refused (422, `lang`): one that is too long.
 Result<std::string> asked_language(const Request& request);
-
-// Whole number in a query parameter or path; refused with the field's name otherwise.
-Result<std::int64_t> parse_integer(std::string_view text, std::int64_t low, std::int64_t high,
-                                   const std::string& field);
 
 }  // namespace strata::net

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "net/http/digest.h"
+#include "core/digest.h"
 
 namespace strata::net {
 namespace {

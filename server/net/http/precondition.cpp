@@ -1,6 +1,7 @@
 #include "net/http/precondition.h"
 
 #include "net/auth/project_gate.h"
+#include "store/store.h"
 
 namespace strata::net {
 

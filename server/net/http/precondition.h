@@ -1,6 +1,6 @@
 #pragma once
 
-#include "net/api/routes.h"
+#include "net/api/route_help.h"
 
 namespace strata::net {
 

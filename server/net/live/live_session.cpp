@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
+#include "app/records/painted_keys.h"
 #include "net/auth/auth.h"
 #include "net/auth/kiosk_gate.h"
 #include "net/live/live_sockets.h"
-#include "net/painted_keys.h"
 #include "net/serialization/wire.h"
 #include "protocol/problem.h"
+#include "room/room.h"
 
 namespace strata::net {
 namespace {
@@ -24,7 +25,7 @@ std::string ref_of(const std::optional<std::string>& id) { return id.value_or(st
 constexpr std::size_t kMostEditorsTold = 1000;  // in a message
 
 std::vector<protocol::RecordEditors> editor_messages(
-    const std::vector<EditorBook::Entry>& entries) {
+    const std::vector<app::EditorBook::Entry>& entries) {
   std::vector<protocol::RecordEditors> messages;
   for (const auto& [record, editor] : entries) {
     if (messages.empty() || messages.back().records.size() == kMostEditorsTold)
@@ -148,7 +149,7 @@ void LiveSession::on(const protocol::Hello& message) {
   welcome.personal_view = personal_view_;
   const LiveLimits& limits = shared_->limits;
   welcome.limits.message_bytes = static_cast<int>(limits.message_bytes);
-  welcome.limits.path_points = static_cast<int>(StrokeBook::kMaxPath - 1);
+  welcome.limits.path_points = static_cast<int>(app::StrokeBook::kMaxPath - 1);
   welcome.limits.view_size = kMaxViewSize;
   welcome.limits.views = limits.views;
   welcome.limits.frames_in_flight = stream::Viewer::Options{}.window;
@@ -161,7 +162,7 @@ void LiveSession::on(const protocol::Hello& message) {
     member_ = std::move(joined);
   }
   shared_->editors->list(project_id(),
-                         [this](std::int64_t, const std::vector<EditorBook::Entry>& entries) {
+                         [this](std::int64_t, const std::vector<app::EditorBook::Entry>& entries) {
                            for (const auto& each : editor_messages(entries)) send(each);
                          });
   presence_changed();
@@ -200,7 +201,7 @@ void LiveSession::begin(const protocol::StrokeBegin& message) {
   auto tool = stroke_tool(message, *layer, room_->model(), shared_->find_tool);
   if (!tool) return refuse(tool.error(), message.id);
   if (layer->table && !tool->batch.erase)
-    if (auto known = check_keys(*shared_->store, *layer, {tool->batch.value_bits}); !known)
+    if (auto known = app::check_keys(*shared_->store, *layer, {tool->batch.value_bits}); !known)
       return refuse(known.error(), message.id);
   if (auto begun = shared_->strokes->begin(owner_, message.stroke, std::move(*tool)); !begun)
     refuse(begun.error(), message.id);
@@ -235,7 +236,7 @@ void LiveSession::edit(const protocol::EditRequest& message) {
       edit_request(message.edit, *layer, room_->model(), message.id, author(), shared_->find_tool);
   if (!request) return refuse(request.error(), message.id);
   if (layer->table)
-    if (auto known = check_keys(*shared_->store, *layer, room::painted_by(*layer, *request));
+    if (auto known = app::check_keys(*shared_->store, *layer, room::painted_by(*layer, *request));
         !known)
       return refuse(known.error(), message.id);
   submit(std::move(*request), std::nullopt);
@@ -277,7 +278,7 @@ void LiveSession::on(const protocol::RecordEdit& message) {
 void LiveSession::edit_record(const protocol::RecordEdit& message) {
   const auto here = member();
   if (!here) return;
-  const EditorBook::Record record{message.table, message.key};
+  const app::EditorBook::Record record{message.table, message.key};
   auto begun = shared_->check_record(project_id(), record);
   if (begun)
     begun = shared_->editors->begin(project_id(), record, {here->session(), principal_.user},
@@ -375,13 +376,13 @@ void LiveSession::submit(room::EditRequest request, std::optional<BatchName> bat
   room_->edit(
       std::move(request),
       [weak = weak_from_this(), shared = shared_, id, batch](const room::EditAnswer& answer) {
-        if (!answer.repeated) ++shared->metrics->edits_applied;
+        if (!answer.repeated) ++shared->metrics->edits.applied;
         if (auto self = weak.lock()) self->on_applied(id, batch, answer);
       },
       [weak = weak_from_this(), shared = shared_, owner = owner_, id,
        batch](Result<room::EditAnswer> answer) {
         if (answer && batch) shared->strokes->saved(owner, batch->stroke, batch->n);
-        if (answer && !answer->repeated) ++shared->metrics->edits_saved;
+        if (answer && !answer->repeated) ++shared->metrics->edits.saved;
         if (auto self = weak.lock()) self->on_saved(id, batch, answer);
       });
 }
@@ -442,10 +443,10 @@ void LiveSession::on_saved(const Uuid& id, const std::optional<BatchName>& batch
     return send(edit_message<protocol::Saved>(id, batch.has_value(), batch ? batch->stroke : Uuid{},
                                               batch ? batch->n : 0, *answer));
   if (!applied) {
-    ++shared_->metrics->edits_refused;
+    ++shared_->metrics->edits.refused;
     return refuse(answer.error(), id);
   }
-  ++shared_->metrics->edits_unsaved;
+  ++shared_->metrics->edits.unsaved;
   protocol::Unsaved unsaved;
   unsaved.ids = {id};
   unsaved.detail = answer.error().detail;
@@ -610,9 +611,9 @@ bool LiveSession::may_edit(const std::string& ref) {
   return false;
 }
 
-EditorBook::Tell LiveSession::tell_project() const {
+app::EditorBook::Tell LiveSession::tell_project() const {
   return [sockets = shared_->sockets](std::int64_t project_id,
-                                      const std::vector<EditorBook::Entry>& entries) {
+                                      const std::vector<app::EditorBook::Entry>& entries) {
     for (const auto& message : editor_messages(entries)) sockets->tell_project(project_id, message);
   };
 }

@@ -10,16 +10,17 @@
 #include <string>
 #include <unordered_map>
 
+#include "app/strokes/editor_book.h"
+#include "app/strokes/stroke_book.h"
 #include "net/api/metrics.h"
-#include "net/editor_book.h"
 #include "net/http/http_types.h"
 #include "net/http/token_bucket.h"
 #include "net/http/worker_pool.h"
 #include "net/serialization/wire.h"
-#include "net/stroke_book.h"
 #include "protocol/messages.h"
 #include "protocol/parse.h"
 #include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 
@@ -50,17 +51,17 @@ class LiveSockets;
 
 // 404 (`table`, `key`) for a record that the project has not. May block.
 using CheckRecord =
-    std::function<Result<void>(std::int64_t project_id, const EditorBook::Record& record)>;
+    std::function<Result<void>(std::int64_t project_id, const app::EditorBook::Record& record)>;
 
 // What all sessions share; outlives the rooms' callbacks by being shared.
 struct LiveShared {
   std::shared_ptr<Metrics> metrics;
-  std::shared_ptr<StrokeBook> strokes;
+  std::shared_ptr<app::StrokeBook> strokes;
   std::shared_ptr<WorkerPool> queries;  // picks: they may be slow the first time
   std::shared_ptr<LiveSockets> sockets;
-  std::shared_ptr<EditorBook> editors;
+  std::shared_ptr<app::EditorBook> editors;
   store::Store* store = nullptr;
-  FindTool find_tool;
+  app::FindTool find_tool;
   CheckRecord check_record;
   LiveLimits limits;
 };
@@ -135,7 +136,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   void on_saved(const Uuid& id, const std::optional<BatchName>& batch,
                 const Result<room::EditAnswer>& answer);
   Author author() const { return {principal_.user, principal_.role}; }
-  EditorBook::Tell tell_project() const;
+  app::EditorBook::Tell tell_project() const;
   bool may_edit(const std::string& ref);
   bool may_edit(const Uuid& id) { return may_edit(to_string(id)); }
   bool has_view(int view_id, const std::string& ref);
@@ -154,7 +155,7 @@ class LiveSession final : public room::Listener, public std::enable_shared_from_
   const Principal principal_;
   const room::Portrait portrait_;
   const std::optional<protocol::PersonalView> personal_view_;
-  const StrokeBook::Owner owner_;
+  const app::StrokeBook::Owner owner_;
   const std::weak_ptr<LiveSocket> socket_;
 
   // On the socket's strand.

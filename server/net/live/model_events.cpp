@@ -2,6 +2,7 @@
 
 #include "net/auth/still_welcome.h"
 #include "net/serialization/activity_wire.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

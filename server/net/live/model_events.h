@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "net/api/routes.h"
+#include "net/api/route_help.h"
+#include "store/store.h"
 
 namespace strata::net {
 

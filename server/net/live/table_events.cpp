@@ -10,7 +10,7 @@ constexpr Visibility kSights[] = {Visibility::everyone, Visibility::team, Visibi
 
 }  // namespace
 
-void tell_table(const RouteContext& context, protocol::TableEventEvent event, const Table& table,
+void tell_table(LiveSockets& sockets, protocol::TableEventEvent event, const Table& table,
                 const std::string& user) {
   protocol::TableEvent message;
   message.event = event;
@@ -19,17 +19,16 @@ void tell_table(const RouteContext& context, protocol::TableEventEvent event, co
   for (const Visibility sight : kSights) {
     if (event != protocol::TableEventEvent::deleted)
       message.table = to_json(seen_by(table, least_role(sight)));
-    context.live_sockets.tell_project(table.project_id, sight, message);
+    sockets.tell_project(table.project_id, sight, message);
   }
 }
 
-void tell_change(const RouteContext& context, const store::TableChange& change,
-                 const std::string& user) {
+void TableEvents::records_changed(const store::TableChange& change, const std::string& user) const {
   if (change.sequence == 0) return;
-  context.rooms.admit_keys(change.table.id, change.created);
-  context.rooms.records_changed(change.table.id);
+  rooms_.admit_keys(change.table.id, change.created);
+  rooms_.records_changed(change.table.id);
   if (change.columns_changed || change.records.size() + change.deleted.size() > kMostTold)
-    return tell_table(context, protocol::TableEventEvent::changed, change.table, user);
+    return tell_table(sockets_, protocol::TableEventEvent::changed, change.table, user);
   protocol::RecordEvent message;
   message.table = change.table.id;
   message.user = user;
@@ -41,14 +40,14 @@ void tell_change(const RouteContext& context, const store::TableChange& change,
     message.key = record.key;
     for (const Visibility sight : kSights) {
       message.record = to_json(record, seen_by(change.table, least_role(sight)).columns);
-      context.live_sockets.tell_project(change.table.project_id, sight, message);
+      sockets_.tell_project(change.table.project_id, sight, message);
     }
   }
   message.event = protocol::RecordEventEvent::deleted;
   message.record.reset();
   for (const auto key : change.deleted) {
     message.key = key;
-    context.live_sockets.tell_project(change.table.project_id, message);
+    sockets_.tell_project(change.table.project_id, message);
   }
 }
 

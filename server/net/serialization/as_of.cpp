@@ -3,6 +3,8 @@
 #include <charconv>
 
 #include "core/timestamp.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 

@@ -3,7 +3,8 @@
 #include <memory>
 #include <optional>
 
-#include "net/api/routes.h"
+#include "net/api/route_help.h"
+#include "room/room.h"
 
 namespace strata::net {
 

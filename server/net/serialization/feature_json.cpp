@@ -37,14 +37,14 @@ void append_path(std::string& text, const query::FlatRing& ring, bool closed) {
   text += ']';
 }
 
-void append_geometry(std::string& text, FeatureKind kind,
+void append_geometry(std::string& text, app::FeatureKind kind,
                      const std::vector<query::FlatPolygon>& geometry) {
   if (geometry.empty()) return void(text += "null");
-  if (kind != FeatureKind::areas) {
+  if (kind != app::FeatureKind::areas) {
     const query::FlatRing& path = geometry.front().rings.front();
-    text += kind == FeatureKind::points ? R"({"type":"Point","coordinates":)"
-                                        : R"({"type":"LineString","coordinates":)";
-    if (kind == FeatureKind::points)
+    text += kind == app::FeatureKind::points ? R"({"type":"Point","coordinates":)"
+                                             : R"({"type":"LineString","coordinates":)";
+    if (kind == app::FeatureKind::points)
       append_place(text, path.front());
     else
       append_path(text, path, false);
@@ -62,7 +62,7 @@ void append_geometry(std::string& text, FeatureKind kind,
   text += "]}";
 }
 
-nlohmann::json json_of(const FeatureValue& value) {
+nlohmann::json json_of(const app::FeatureValue& value) {
   return std::visit(
       []<class T>(const T& held) -> nlohmann::json {
         if constexpr (std::is_same_v<T, std::monostate>)
@@ -73,7 +73,7 @@ nlohmann::json json_of(const FeatureValue& value) {
       value);
 }
 
-std::string head(const FeatureSet& set) {
+std::string head(const app::FeatureSet& set) {
   nlohmann::json members{
       {"type", "FeatureCollection"}, {"name", set.name}, {"unit", set.unit}, {"axes", set.axes}};
   if (set.epsg != 0)
@@ -85,7 +85,8 @@ std::string head(const FeatureSet& set) {
   return text + R"("features":[)";
 }
 
-void append_feature(std::string& text, const FeatureTable& table, const Feature& feature) {
+void append_feature(std::string& text, const app::FeatureTable& table,
+                    const app::Feature& feature) {
   nlohmann::json properties = nlohmann::json::object();
   properties["kind"] = table.name;
   for (std::size_t i = 0; i < table.fields.size(); ++i)
@@ -97,11 +98,11 @@ void append_feature(std::string& text, const FeatureTable& table, const Feature&
   text += '}';
 }
 
-bool write(const FeatureSet& set, const Response::Sink& sink) {
+bool write(const app::FeatureSet& set, const Response::Sink& sink) {
   std::string text = head(set);
   bool is_first = true;
-  for (const FeatureTable& table : set.tables)
-    for (const Feature& feature : table.features) {
+  for (const app::FeatureTable& table : set.tables)
+    for (const app::Feature& feature : table.features) {
       check_question();
       text += is_first ? "\n" : ",\n";
       is_first = false;
@@ -116,8 +117,8 @@ bool write(const FeatureSet& set, const Response::Sink& sink) {
 
 }  // namespace
 
-Response feature_json(FeatureSet set) {
-  const auto held = std::make_shared<const FeatureSet>(std::move(set));
+Response feature_json(app::FeatureSet set) {
+  const auto held = std::make_shared<const app::FeatureSet>(std::move(set));
   Response response;
   response.with("Content-Type", kGeoJsonType);
   name_download(response, held->name + ".geojson");

@@ -2,9 +2,24 @@
 
 #include <charconv>
 
-#include "query/map_features.h"
+#include "net/http/upload.h"
 
 namespace strata::net {
+namespace {
+
+constexpr const char* kMapUpload =
+    "Send the map as the body (GeoJSON, TIFF, PNG, JPEG, or a zip), or its files together (such as .shp, .dbf and .prj) in "
+    "a multipart/form-data form.";
+constexpr double kLargestFloat = 3.4028234663852886e38;
+constexpr int kMostBands = 65535;  // of a TIFF
+
+// Nothing: it is absent.
+std::optional<std::string> text_of(const Request& request, const std::string& name) {
+  const auto found = request.query.find(name);
+  return found == request.query.end() ? std::nullopt : std::optional(found->second);
+}
+
+}  // namespace
 
 Result<double> number_of(const Request& request, const std::string& name, double low, double high,
                          std::optional<double> fallback) {
@@ -22,70 +37,32 @@ Result<double> number_of(const Request& request, const std::string& name, double
   return value;
 }
 
-Result<MapAxis> axis_of(const Request& request) {
-  const std::string text = request.query_or("along", "-z");
-  const int axis = text.size() == 2 ? text[1] - 'x' : -1;
-  if (axis < 0 || axis > 2 || (text[0] != '-' && text[0] != '+'))
-    return fail(ErrorCode::invalid, "Unknown direction",
-                "`along` is one of -x, +x, -y, +y, -z, +z: the way that the map is looked at.",
-                "along");
-  MapAxis made{glm::dvec3(0), axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
-  made.direction[axis] = text[0] == '-' ? -1 : 1;
-  return made;
+Result<app::MapAxis> map_axis(const Request& request) {
+  return app::parse_map_axis(request.query_or("along", "-z"));
 }
 
-Result<query::WorldFile> world_of(const Request& request, const MapFiles& files,
-                                  const std::optional<query::WorldFile>& own) {
-  if (const auto asked = request.query.find("world"); asked != request.query.end())
-    return query::parse_world_file(asked->second, "world");
-  if (const auto text = files.companion_text({"tfw", "tifw", "pgw", "jgw", "wld"}); !text.empty())
-    return query::parse_world_file(text, "body");
-  if (own) return *own;
-  return fail(
-      ErrorCode::invalid, "Place missing",
-      "The picture does not say where it lies. Give `world`, the six numbers of its world file, or send that file "
-      "with it.",
-      "world");
+Result<app::MapOptions> map_options(const Request& request) {
+  app::MapOptions options;
+  options.world = text_of(request, "world");
+  options.crs = request.query_or("crs", {});
+  options.attribute = request.query_or("attribute", {});
+  options.names = request.query_or("names", {});
+  options.colors = text_of(request, "colors");
+  if (request.query.contains("value"))
+    options.value = STRATA_TRY(number_of(request, "value", -kLargestFloat, kLargestFloat));
+  if (const auto band = text_of(request, "band"))
+    options.band = static_cast<int>(STRATA_TRY(parse_integer(*band, 1, kMostBands, "band")));
+  options.tolerance = STRATA_TRY(number_of(request, "tolerance", app::kLeastTolerance,
+                                           app::kMostTolerance, query::kUsualTolerance));
+  return options;
 }
 
-Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_degrees) {
-  if (in_degrees)
-    return fail(
-        ErrorCode::invalid, "Coordinates in degrees",
-        "The map lies in longitude and latitude. Save it in the plane coordinates of the model" +
-            (model.crs.empty() ? "." : ", " + model.crs + "."),
-        "body");
-  if (!crs.empty() && !model.crs.empty() && crs != model.crs)
-    return fail(ErrorCode::invalid, "Other coordinates",
-                "The map lies in " + crs + ", the model in " + model.crs + "; save the map in " +
-                    model.crs + ".",
-                "body");
-  return {};
-}
-
-Result<void> confirm_map_crs(const Request& request, const Model& model, const std::string& crs) {
-  const std::string asked = request.query_or("crs", {});
-  for (const auto& [system, whose] : {std::pair(crs, "map"), std::pair(model.crs, "model")})
-    if (!asked.empty() && !system.empty() && asked != system)
-      return fail(ErrorCode::invalid, "Other coordinates",
-                  "`crs` says " + asked + ", but the " + whose + " lies in " + system + ".", "crs");
-  if (!asked.empty() || crs.empty() || !model.crs.empty()) return {};
-  return fail(
-      ErrorCode::invalid, "Model without coordinate system",
-      "The map lies in " + crs +
-          ", and the model has no coordinate system. If the model's coordinates are those of " +
-          crs + ", repeat the request with `crs=" + crs +
-          "`; a curator can also give the model this system.",
-      "crs");
-}
-
-Result<std::uint32_t> bits_of(const Layer& layer, double value, const std::string& where) {
-  auto bits = encode_value(layer.type, value);
-  if (bits) return *bits;
-  Error problem = bits.error();
-  problem.detail = where + query::number_text(value) + " does not fit. " + problem.detail;
-  problem.field = "body";
-  return tl::unexpected(std::move(problem));
+Result<app::MapFiles> take_map(const Request& request, const std::filesystem::path& folder) {
+  const auto uploads = STRATA_TRY(take_upload(request, folder, kMapUpload));
+  std::vector<app::MapFile> files;
+  for (const Upload& upload : uploads)
+    files.push_back({upload.file, upload.filename, upload.file != request.body_file});
+  return app::MapFiles::open(files, folder);
 }
 
 }  // namespace strata::net

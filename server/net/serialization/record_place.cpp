@@ -1,13 +1,14 @@
 #include "net/serialization/record_place.h"
 
 #include "core/no_such.h"
+#include "store/store.h"
 
 namespace strata::net {
 
-Result<RecordPlace> record_place(const RouteContext& context, const Request& request) {
+Result<app::RecordPlace> record_place(const RouteContext& context, const Request& request) {
   if (!request.params.contains("layer")) {
     auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
-    return RecordPlace{std::move(table), {}, {}};
+    return app::RecordPlace{std::move(table), {}, {}};
   }
   auto model = STRATA_TRY(context.store.model(request.param("model")));
   auto layer = STRATA_TRY(context.store.layer(model.id, request.param("layer"), request.role()));
@@ -16,7 +17,7 @@ Result<RecordPlace> record_place(const RouteContext& context, const Request& req
                 layer.name + " holds numbers; only database layers have records.", "layer");
   auto table = context.store.table(std::to_string(*layer.table), request.role());
   if (!table) return tl::unexpected(table.error());
-  return RecordPlace{std::move(*table), std::move(model), std::move(layer)};
+  return app::RecordPlace{std::move(*table), std::move(model), std::move(layer)};
 }
 
 Result<std::int64_t> record_key(const Request& request) {

@@ -3,18 +3,14 @@
 #include <cstdint>
 #include <optional>
 
-#include "net/api/routes.h"
+#include "app/records/record_place.h"
+#include "net/api/route_help.h"
 
 // What the addresses of records have in common.
 namespace strata::net {
 
-// The table of the address, as who asks sees it: its own, or that of a layer.
-struct RecordPlace {
-  Table table;
-  std::optional<Model> model;
-  std::optional<Layer> layer;
-};
-Result<RecordPlace> record_place(const RouteContext& context, const Request& request);
+// The table of the address: its own, or that of a layer.
+Result<app::RecordPlace> record_place(const RouteContext& context, const Request& request);
 
 // Of the address; 404 for what is none.
 Result<std::int64_t> record_key(const Request& request);

@@ -6,6 +6,7 @@
 #include "net/serialization/at_field.h"
 #include "net/serialization/table_wire.h"
 #include "net/serialization/wire.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

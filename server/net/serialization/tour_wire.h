@@ -1,7 +1,8 @@
 #pragma once
 
-#include "net/api/routes.h"
+#include "net/api/route_help.h"
 #include "store/named_parts.h"
+#include "store/store.h"
 
 namespace strata::net {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "query/expression_parser.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -2,9 +2,11 @@
 
 #include <memory>
 
-#include "net/api/routes.h"
+#include "net/api/route_help.h"
 #include "net/serialization/wire.h"
+#include "room/room.h"
 #include "store/named_parts.h"
+#include "store/store.h"
 
 namespace strata::net {
 

@@ -38,10 +38,10 @@ bool is_tool(const protocol::ToolShape& shape) {
 }
 
 // Nothing for discs and squares.
-Result<FoundTool> tool_of(const protocol::ToolShape& shape, const FindTool& find_tool) {
-  if (!is_tool(shape)) return FoundTool{};
+Result<app::FoundTool> tool_of(const protocol::ToolShape& shape, const app::FindTool& find_tool) {
+  if (!is_tool(shape)) return app::FoundTool{};
   const std::string ref = protocol::to_ref(shape);
-  Result<FoundTool> found = find_tool ? find_tool(ref) : fail(ErrorCode::not_found, {}, {});
+  Result<app::FoundTool> found = find_tool ? find_tool(ref) : fail(ErrorCode::not_found, {}, {});
   if (found || found.error().code != ErrorCode::not_found) return found;
   return fail(ErrorCode::invalid, "Unknown tool",
               "There is no tool `" + ref.substr(0, 100) +
@@ -52,7 +52,7 @@ Result<FoundTool> tool_of(const protocol::ToolShape& shape, const FindTool& find
 // The brush members that EditStroke and StrokeBegin share.
 template <class Stroke>
 Result<StrokeBatch> brush_of(const Stroke& stroke, const Layer& layer, const Model& model,
-                             const FoundTool& tool) {
+                             const app::FoundTool& tool) {
   auto bits = STRATA_TRY(value_bits(layer, stroke.value, stroke.erase));
   StrokeBatch batch;
   batch.camera = stroke.camera;
@@ -125,7 +125,7 @@ double in_millimetres(double length, Unit unit) { return length * metres_per(uni
 
 Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer,
                                        const Model& model, const Uuid& id, Author author,
-                                       const FindTool& find_tool) {
+                                       const app::FindTool& find_tool) {
   room::EditRequest request{id, std::move(author), layer.id};
   request.record = protocol::to_json(edit);
   if (const auto* stroke = std::get_if<protocol::EditStroke>(&edit)) {
@@ -150,11 +150,11 @@ Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& 
   return request;
 }
 
-Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer,
-                               const Model& model, const FindTool& find_tool) {
+Result<app::StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer,
+                                    const Model& model, const app::FindTool& find_tool) {
   auto found = STRATA_TRY(tool_of(begin.shape, find_tool));
   auto batch = STRATA_TRY(brush_of(begin, layer, model, found));
-  StrokeTool tool;
+  app::StrokeTool tool;
   tool.layer_id = layer.id;
   tool.batch = std::move(batch);
   tool.record = protocol::to_json(begin);
@@ -164,8 +164,8 @@ Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& 
   return tool;
 }
 
-room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n,
-                                Author author) {
+room::EditRequest batch_request(app::StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id,
+                                int n, Author author) {
   room::EditRequest request{id, std::move(author), batch.tool.layer_id};
   request.record = std::move(batch.tool.record);
   request.record["n"] = n;
@@ -264,14 +264,14 @@ Result<room::ViewSettings> view_settings(
   return settings;
 }
 
-std::optional<StrokeBook::End> end_of_path(const nlohmann::json& record) {
+std::optional<app::StrokeBook::End> end_of_path(const nlohmann::json& record) {
   if (!record.is_object()) return std::nullopt;
   const auto path = record.find("path");
   if (path == record.end() || !path->is_array() || path->empty()) return std::nullopt;
   const auto& point = path->back();
   if (!point.is_array() || point.size() != 2 || !point[0].is_number() || !point[1].is_number())
     return std::nullopt;
-  StrokeBook::End end{{point[0].get<double>(), point[1].get<double>()}};
+  app::StrokeBook::End end{{point[0].get<double>(), point[1].get<double>()}};
   const auto widths = record.find("widths");
   if (widths != record.end() && widths->is_array() && !widths->empty() &&
       widths->back().is_number())

@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "app/strokes/stroke_book.h"
+#include "app/strokes/tool_shelf.h"
 #include "core/layer.h"
 #include "core/model.h"
 #include "jobs/job_queue.h"
-#include "net/stroke_book.h"
 #include "protocol/parse.h"
 #include "query/statistics.h"
 #include "query/values.h"
@@ -25,13 +26,6 @@ namespace strata::net {
 double in_model_units(double millimetres, Unit unit);
 double in_millimetres(double length, Unit unit);
 
-// A tool of the site, ready to paint with.
-struct FoundTool {
-  std::int64_t id = 0;
-  std::shared_ptr<const ShapeTexture> shape;
-};
-// by id or slug; may block
-using FindTool = std::function<Result<FoundTool>(const std::string& ref)>;
 // Whether the brush is a tool of the site, so that `find_tool` will be called.
 bool names_tool(const protocol::Edit& edit);
 bool names_tool(const protocol::StrokeBegin& begin);
@@ -40,11 +34,11 @@ bool names_tool(const protocol::StrokeBegin& begin);
 // tool that is not there is refused (422, `shape`); without `find_tool`, any.
 Result<room::EditRequest> edit_request(const protocol::Edit& edit, const Layer& layer,
                                        const Model& model, const Uuid& id, Author author,
-                                       const FindTool& find_tool = {});
-Result<StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer,
-                               const Model& model, const FindTool& find_tool = {});
-room::EditRequest batch_request(StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id, int n,
-                                Author author);
+                                       const app::FindTool& find_tool = {});
+Result<app::StrokeTool> stroke_tool(const protocol::StrokeBegin& begin, const Layer& layer,
+                                    const Model& model, const app::FindTool& find_tool = {});
+room::EditRequest batch_request(app::StrokeBook::Batch batch, const Uuid& stroke, const Uuid& id,
+                                int n, Author author);
 
 room::Place place_of(const protocol::SurfacePlace& place);
 
@@ -65,7 +59,7 @@ Result<room::Highlight> highlight_of(const protocol::Highlight& asked, const Lay
 
 // Where the path of a stroke's batch ended, from its journal record; nothing when the record is of
 // another kind.
-std::optional<StrokeBook::End> end_of_path(const nlohmann::json& record);
+std::optional<app::StrokeBook::End> end_of_path(const nlohmann::json& record);
 
 protocol::SurfacePoint to_protocol(const query::SurfacePoint& point);
 protocol::Picked to_picked(const query::SurfacePoint& point, const std::optional<std::string>& id);

@@ -1,13 +1,15 @@
 #include "net/api/layers/layer_jobs.h"
 
-#include <algorithm>
-
+#include "app/edits.h"
+#include "jobs/job_queue.h"
 #include "net/http/answer_book.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
 
-Result<jobs::JobResult> run(room::Room& room, NewLayers& layers, const MakeLayers& make,
+Result<jobs::JobResult> run(room::Room& room, app::NewLayers& layers, const MakeLayers& make,
                             const std::string& key, const std::string& print, Progress& progress) {
   auto report = STRATA_TRY(make(layers, progress));
   if (progress.cancelled()) return cancelled_problem();
@@ -35,10 +37,10 @@ Result<Response> start_layer_job(const RouteContext& context, JobBook& book, con
   if (known) return std::move(job_response(context, *known).with("Idempotency-Replayed", "true"));
   auto job = context.jobs.add(
       room->model().project_id,
-      [&metrics = context.metrics, room, make = std::move(make), author = request.author(),
+      [&edits = context.edits, room, make = std::move(make), author = request.author(),
        key = scoped_key(request),
        print = fingerprint(request)](Progress& progress) -> Result<jobs::JobResult> {
-        NewLayers layers(room, metrics, author);
+        app::NewLayers layers(room, edits, author);
         auto done = run(*room, layers, make, key, print, progress);
         if (!done) layers.take_back();
         return done;
@@ -59,12 +61,6 @@ Result<Response> repeat_layer_job(const RouteContext& context, JobBook& book,
   const auto model = STRATA_TRY(context.store.model(request.param("model")));
   auto job = STRATA_TRY(book.finished(request, model.project_id, std::move(result)));
   return job_response(context, job);
-}
-
-int order_on_top(const std::vector<Layer>& others) {
-  int top = -1;
-  for (const Layer& other : others) top = std::max(top, other.order);
-  return top + 1;
 }
 
 }  // namespace strata::net

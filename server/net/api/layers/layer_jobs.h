@@ -1,13 +1,15 @@
 #pragma once
 
-#include "net/api/routes.h"
+#include "app/layers/new_layers.h"
+#include "net/api/route_help.h"
 #include "net/http/job_book.h"
-#include "net/new_layers.h"
+#include "room/room.h"
 
 namespace strata::net {
 
 // Makes and paints layers; returns the job's report (null: none). On the job's thread.
-using MakeLayers = std::function<Result<nlohmann::json>(NewLayers& layers, Progress& progress)>;
+using MakeLayers =
+    std::function<Result<nlohmann::json>(app::NewLayers& layers, Progress& progress)>;
 
 // Answers 202 with a job that makes layers of the room: all of them or, where it fails or is
 // cancelled, none. With an Idempotency-Key the job is known to repeats, also once another server
@@ -17,8 +19,5 @@ Result<Response> start_layer_job(const RouteContext& context, JobBook& book, con
 // For a route's `replay`: what was kept of a job that succeeded.
 Result<Response> repeat_layer_job(const RouteContext& context, JobBook& book,
                                   const Request& request, const nlohmann::json& kept);
-
-// One above the highest of the others.
-int order_on_top(const std::vector<Layer>& others);
 
 }  // namespace strata::net

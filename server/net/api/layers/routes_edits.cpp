@@ -1,7 +1,13 @@
+#include "app/authorization/show_through.h"
+#include "app/strokes/tool_shelf.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
+#include "net/http/page.h"
 #include "net/serialization/people_wire.h"
 #include "net/serialization/wire.h"
-#include "net/show_through.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -18,8 +24,8 @@ Result<Response> history(const RouteContext& context, const Request& request) {
     nlohmann::json told = to_json(row);
     // An expression of then may name what fewer people see now.
     if (told.contains("expression")) {
-      const auto seen = STRATA_TRY(sees_all_of(context, request.role(), layer.model_id,
-                                               told.at("expression").get<std::string>()));
+      const auto seen = STRATA_TRY(app::sees_all_of(context.store, request.role(), layer.model_id,
+                                                    told.at("expression").get<std::string>()));
       if (!seen) told.erase("expression");
     }
     list.push_back(std::move(told));

@@ -1,9 +1,13 @@
 #include <set>
 
 #include "core/compensated_sum.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/wire.h"
+#include "net/transport/server_options.h"
 #include "room/record_colors.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -1,9 +1,13 @@
+#include "app/layers/geopackage.h"
+#include "app/layers/layer_features.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/geopackage.h"
-#include "net/layer_features.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/feature_json.h"
 #include "net/serialization/map_query.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -15,7 +19,7 @@ enum class FeatureFormat { geojson, gpkg };
 Result<FeatureFormat> feature_format(const Request& request) {
   const auto asked = request.query.find("f");
   if (asked == request.query.end())
-    return request.header("accept").find(kGeoPackageType) == std::string_view::npos
+    return request.header("accept").find(app::kGeoPackageType) == std::string_view::npos
                ? FeatureFormat::geojson
                : FeatureFormat::gpkg;
   if (asked->second == "geojson") return FeatureFormat::geojson;
@@ -25,18 +29,19 @@ Result<FeatureFormat> feature_format(const Request& request) {
 
 Result<Response> read_features(const RouteContext& context, const Request& request) {
   const auto format = STRATA_TRY(feature_format(request));
-  const auto axis = STRATA_TRY(axis_of(request));
+  const auto axis = STRATA_TRY(map_axis(request));
   const auto language = STRATA_TRY(asked_language(request));
   const auto asked = STRATA_TRY(LayerQuery::from(context, request));
-  auto set = STRATA_TRY(layer_features(context, {asked.room,
-                                                 asked.layer,
-                                                 asked.at,
-                                                 {axis.u, axis.v, 3 - axis.u - axis.v},
-                                                 request.role(),
-                                                 language}));
-  auto response =
-      STRATA_TRY(format == FeatureFormat::geojson ? feature_json(std::move(set))
-                                                  : geopackage(set, context.options.upload_dir));
+  auto set = STRATA_TRY(app::layer_features(context.store, {asked.room,
+                                                            asked.layer,
+                                                            asked.at,
+                                                            {axis.u, axis.v, 3 - axis.u - axis.v},
+                                                            request.role(),
+                                                            language}));
+  Response response =
+      format == FeatureFormat::geojson
+          ? feature_json(std::move(set))
+          : file_response(STRATA_TRY(app::geopackage(set, context.options.upload_dir)));
   add_sequences(response, asked.sequence, asked.room->durable_sequence());
   response.with("Vary", "Accept");
   return response;

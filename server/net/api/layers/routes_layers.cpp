@@ -1,14 +1,20 @@
 #include <algorithm>
 
+#include "app/authorization/show_through.h"
+#include "app/bin_keeper.h"
+#include "app/layers/formula_layers.h"
 #include "core/term_list.h"
-#include "net/api/layers/layer_jobs.h"
+#include "jobs/job_queue.h"
+#include "net/api/layers/create_computed.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/computed_layers.h"
-#include "net/formula_layers.h"
 #include "net/http/answer_book.h"
+#include "net/http/page.h"
 #include "net/live/comment_events.h"
 #include "net/serialization/table_wire.h"
-#include "net/show_through.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -41,7 +47,7 @@ Result<Palette> palette_of(const std::optional<nlohmann::json>& asked, ValueType
 // A condition is told by one value, where it holds.
 bool computes_numbers(const protocol::LayerCreate& asked) {
   if (!asked.expression) return asked.compute.has_value();
-  const auto expression = parse_formula(*asked.expression);
+  const auto expression = app::parse_formula(*asked.expression);
   return !expression || !expression->is_condition();
 }
 
@@ -117,7 +123,8 @@ Result<Layer> new_layer(const protocol::LayerCreate& asked, const Model& model,
   layer.locked = asked.locked.value_or(is_computed);
   layer.review = asked.review;
   layer.visibility = asked.visibility.value_or(Visibility::everyone);
-  layer.order = asked.order.value_or(is_computed ? order_at_bottom(others) : order_on_top(others));
+  layer.order =
+      asked.order.value_or(is_computed ? order_at_bottom(others) : app::order_on_top(others));
   return layer;
 }
 
@@ -137,15 +144,16 @@ Result<Response> create_layer(const RouteContext& context, JobBook& book, const 
   Result<std::vector<Column>> columns = std::vector{name};
   if (asked.columns) columns = new_columns(context.store, model.project_id, *asked.columns);
   if (!columns) return tl::unexpected(columns.error());
-  if (asked.compute) return start_computing(context, book, request, room, asked, std::move(layer));
+  if (asked.compute)
+    return create_shape_layer(context, book, request, room, asked, std::move(layer));
   if (asked.expression) {
-    auto formula =
-        read_formula(*room, *asked.expression, is_automatic(asked.recompute), layer.visibility);
+    auto formula = app::read_formula(*room, *asked.expression, is_automatic(asked.recompute),
+                                     layer.visibility);
     if (!formula) return tl::unexpected(formula.error());
     layer.formula = std::move(*formula);
     layer.origin = LayerOrigin::expression;
   }
-  STRATA_TRY(check_shows_nothing(context, layer, {}));
+  STRATA_TRY(app::check_shows_nothing(context.store, layer, {}));
   const auto answer = [model_slug = model.slug](const Layer& made) {
     return json_response(to_json(made), 201)
         .with("Location", "/api/v1/models/" + model_slug + "/layers/" + made.slug)
@@ -182,8 +190,8 @@ Result<void> set_formula(const room::Room& room, const protocol::LayerPatch& ask
   const bool automatic =
       asked.recompute ? is_automatic(asked.recompute) : layer.formula && layer.formula->automatic;
   auto formula =
-      read_formula(room, asked.expression ? *asked.expression : layer.formula->expression,
-                   automatic, layer.visibility, layer.id);
+      app::read_formula(room, asked.expression ? *asked.expression : layer.formula->expression,
+                        automatic, layer.visibility, layer.id);
   if (!formula) return tl::unexpected(formula.error());
   // Another expression: what was painted is going to be overwritten.
   const bool is_other = !layer.formula || layer.formula->expression != formula->expression;
@@ -208,7 +216,7 @@ Result<Response> compute(const RouteContext& context, const Request& request) {
                 "Only curators have what was edited by hand computed again.", "overwrite");
   Progress progress;
   auto computed =
-      compute_layer(context, room, *layer, request.author(), progress, overwrite == "true");
+      app::compute_layer(context, room, *layer, request.author(), progress, overwrite == "true");
   if (!computed) return tl::unexpected(computed.error());
   return json_response(to_json(*computed)).with("ETag", etag_of(computed->version));
 }
@@ -259,7 +267,7 @@ Result<Response> change_layer(const RouteContext& context, const Request& reques
       return fail(ErrorCode::conflict, "Edits wait for review",
                   "Accept or reject what waits on this layer before it is computed.", "expression");
   }
-  STRATA_TRY(check_shows_nothing(context, *layer, room->layers()));
+  STRATA_TRY(app::check_shows_nothing(context.store, *layer, room->layers()));
   auto changed = room->update_layer(std::move(*layer), first_answer<Layer>(request, answer));
   if (!changed) return tl::unexpected(changed.error());
   tell_threads(context, *changed, before, request.user());

@@ -1,16 +1,21 @@
 // Maps and measurements, painted as one edit.
+#include "app/maps/map_contents.h"
+#include "app/maps/map_legend.h"
+#include "app/maps/map_values.h"
+#include "app/records/painted_keys.h"
+#include "core/byte_budget.h"
+#include "core/digest.h"
 #include "core/mapped_file.h"
 #include "core/value_type.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/byte_budget.h"
-#include "net/http/digest.h"
-#include "net/map_contents.h"
-#include "net/map_legend.h"
-#include "net/map_values.h"
-#include "net/painted_keys.h"
+#include "net/serialization/map_json.h"
 #include "net/serialization/map_query.h"
 #include "net/serialization/wire.h"
+#include "net/transport/server_options.h"
 #include "query/readings.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -45,8 +50,8 @@ Handler painting(const RouteContext& context, std::string op, Paint paint) {
     // With the names that the map brought.
     const auto named = (*room)->layer(std::to_string(layer->id));
     if (!named) return respond(named.error());
-    if (auto made =
-            records_from_legend(context, *named, room::painted_by(*named, edit), request.author());
+    if (auto made = app::records_from_legend(context, *named, room::painted_by(*named, edit),
+                                             request.author());
         !made)
       return respond(made.error());
     apply_edit(context, request, *room, std::move(edit), respond);
@@ -64,7 +69,7 @@ Result<Painted> paint_readings(const Request& request, const Target& target) {
   std::vector<room::Room::PlacedValue> values;
   for (const query::Reading& reading : readings) {
     const auto bits =
-        bits_of(target.layer, reading.value, "Line " + std::to_string(reading.line) + ": ");
+        app::bits_of(target.layer, reading.value, "Line " + std::to_string(reading.line) + ": ");
     if (!bits) return tl::unexpected(bits.error());
     values.push_back({reading.position, *bits, reading.line});
   }
@@ -77,29 +82,42 @@ Result<Painted> paint_readings(const Request& request, const Target& target) {
 }
 
 // What a map paints at a place, and the keys that it brings to the layer's legend.
-using MakeValues = Result<MapValues> (*)(const Request& request, const MapFiles& files,
-                                         const MapTarget& target, ByteBudget& budget);
+using MakeValues = Result<app::MapValues> (*)(const app::MapOptions& options,
+                                              const app::MapFiles& files,
+                                              const app::MapTarget& target, ByteBudget& budget);
 
 Result<Painted> paint_map(const RouteContext& context, ByteBudget& budget, MakeValues make,
                           const Request& request, const Target& target) {
-  const auto axis = STRATA_TRY(axis_of(request));
-  auto files = STRATA_TRY(MapFiles::take(request, context.options.upload_dir));
-  MapTarget map_target{*target.room, target.layer};
+  const auto axis = STRATA_TRY(map_axis(request));
+  const auto options = STRATA_TRY(map_options(request));
+  auto files = STRATA_TRY(take_map(request, context.options.upload_dir));
+  app::MapTarget map_target{*target.room, target.layer};
   if (target.layer.table) {
     auto page = STRATA_TRY(context.store.records(*target.layer.table, request.role(),
                                                  {{}, {}, {}, store::kMostRecords, 0}));
     for (const Record& record : page.records)
       map_target.records.insert(static_cast<double>(record.key));
   }
-  auto values = STRATA_TRY(make(request, files, map_target, budget));
+  auto values = STRATA_TRY(make(options, files, map_target, budget));
   auto tiles = target.room->project(target.layer, axis.direction, [&](const glm::dvec3& world) {
     return values.bits_at(axis.on_map(world));
   });
   if (!tiles) return tl::unexpected(tiles.error());
   if (values.keys)
-    if (auto extended = extend_legend(request, *target.room, target.layer, *values.keys); !extended)
+    if (auto extended =
+            app::extend_legend(request.role(), *target.room, target.layer, *values.keys);
+        !extended)
       return tl::unexpected(extended.error());
   return Painted{std::move(*tiles), files.record()};
+}
+
+Result<Response> map_contents(const RouteContext& context, ByteBudget& budget,
+                              const Request& request) {
+  const auto model = STRATA_TRY(context.store.model(request.param("model")));
+  const auto options = STRATA_TRY(map_options(request));
+  const auto files = STRATA_TRY(take_map(request, context.options.upload_dir));
+  return json_response(
+      to_json(STRATA_TRY(app::map_contents(files, model, options.tolerance, budget))));
 }
 
 }  // namespace
@@ -125,9 +143,9 @@ void add_map_routes(Router& router, const RouteContext& context) {
   };
   add(layer + "/readings", painting(context, "readings", paint_readings),
       {"radius_mm", "tolerance_mm"});
-  add(layer + "/polygons", painting(context, "polygons", map(polygon_values)),
+  add(layer + "/polygons", painting(context, "polygons", map(app::polygon_values)),
       {"along", "value", "attribute", "names", "crs"});
-  add(layer + "/picture", painting(context, "picture", map(picture_values)),
+  add(layer + "/picture", painting(context, "picture", map(app::picture_values)),
       {"along", "world", "band", "colors", "tolerance", "crs"});
   add(model + "/map-contents", answering([&context, budget](const Request& request) {
         return map_contents(context, *budget, request);

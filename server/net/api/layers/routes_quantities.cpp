@@ -1,19 +1,23 @@
 #include <algorithm>
 #include <set>
 
+#include "app/figures/class_names.h"
+#include "app/records/painted_keys.h"
+#include "app/records/record_measures.h"
 #include "core/compensated_sum.h"
 #include "core/term_list.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/class_names.h"
-#include "net/painted_keys.h"
-#include "net/record_measures.h"
 #include "net/serialization/as_of.h"
-#include "net/sheet.h"
+#include "net/serialization/sheet_response.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
 
-using Names = RecordNames;
+using Names = app::RecordNames;
 
 // What records have besides texels: lines and points, of those that have some. Names as in
 // RecordMeasures.
@@ -46,7 +50,7 @@ Result<OfMarks> marks_of(const RouteContext& context, const Table& table, Role s
     return OfMarks{};
   const auto page = STRATA_TRY(context.store.records(table.id, seen_by, query));
   const auto measures =
-      RecordMeasures::of_place(context, {page.table, model, {}}, page.table.columns);
+      app::RecordMeasures::of_place(context, {page.table, model, {}}, page.table.columns);
   if (!measures) return tl::unexpected(measures.error());
   OfMarks marks{measures->names(), {}};
   for (const Record& record : page.records) {
@@ -74,13 +78,13 @@ nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const N
   };
   for (const query::Quantity& quantity : all.classes) {
     nlohmann::json json = add_share(sums_json(quantity), quantity);
-    const std::string label = quantity_label(quantity, layer, names);
-    json["class"] = quantity_text(quantity, label);
+    const std::string label = app::quantity_label(quantity, layer, names);
+    json["class"] = app::quantity_text(quantity, label);
     if (quantity.value && layer.kind == LayerKind::database) {
       const auto key = static_cast<std::int64_t>(*quantity.value);
       json["key"] = key;
       json["has_record"] = names.contains(key);
-      add_measures(json, marks.names, marks.of(key));
+      app::add_measures(json, marks.names, marks.of(key));
     } else if (quantity.value) {
       json["value"] = *quantity.value;
     }
@@ -90,16 +94,16 @@ nlohmann::json to_json(const query::Quantities& all, const Layer& layer, const N
   }
   const std::size_t count = list.size();
   nlohmann::json sum = add_share(sums_json(all.sum), all.sum);
-  add_measures(sum, marks.names, marks.sum());
+  app::add_measures(sum, marks.names, marks.sum());
   return {{"quantities", std::move(list)},
           {"total", count},
           {"sum", std::move(sum)},
           {"surface_m2", all.surface_m2}};
 }
 
-Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& names,
-               const OfMarks& marks, const std::string& name) {
-  Sheet sheet{name, {"class"}, {}};
+app::Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& names,
+                    const OfMarks& marks, const std::string& name) {
+  app::Sheet sheet{name, {"class"}, {}};
   const bool has_keys = layer.kind == LayerKind::database,
              has_values = query::classes_of(layer).each;
   if (has_keys)
@@ -112,11 +116,11 @@ Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& na
   sheet.heads.insert(sheet.heads.end(), marks.names.begin(), marks.names.end());
   sheet.heads.emplace_back("percent_of_surface");
   const auto number = [](const std::optional<double>& value) {
-    return value ? SheetCell(*value) : SheetCell();
+    return value ? app::SheetCell(*value) : app::SheetCell();
   };
-  const auto add = [&](const query::Quantity& quantity, SheetCell name_cell,
+  const auto add = [&](const query::Quantity& quantity, app::SheetCell name_cell,
                        const std::vector<double>& marked) {
-    std::vector<SheetCell> row{std::move(name_cell)};
+    std::vector<app::SheetCell> row{std::move(name_cell)};
     if (has_keys || has_values)
       row.push_back(number(quantity.value));
     else
@@ -127,10 +131,10 @@ Sheet to_sheet(const query::Quantities& all, const Layer& layer, const Names& na
     sheet.rows.push_back(std::move(row));
   };
   for (const query::Quantity& quantity : all.classes) {
-    const std::string label = quantity_label(quantity, layer, names);
+    const std::string label = app::quantity_label(quantity, layer, names);
     add(quantity,
-        label.empty() && quantity.value ? SheetCell(*quantity.value)
-                                        : quantity_text(quantity, label),
+        label.empty() && quantity.value ? app::SheetCell(*quantity.value)
+                                        : app::quantity_text(quantity, label),
         has_keys ? marks.of(static_cast<std::int64_t>(*quantity.value)) : std::vector<double>());
   }
   add(all.sum, "total", marks.sum());
@@ -150,9 +154,9 @@ void add_classes(query::Quantities& all, const OfMarks& marks) {
                            [](const query::Quantity& quantity) { return *quantity.value; });
 }
 
-Result<Response> quantity_sheet(const RouteContext& context, Sheet sheet, SheetFormat format,
+Result<Response> quantity_sheet(const RouteContext& context, app::Sheet sheet, SheetFormat format,
                                 char separator) {
-  add_readable_areas(sheet);
+  app::add_readable_areas(sheet);
   return sheet_response(sheet, format, separator, context.options.upload_dir);
 }
 
@@ -182,8 +186,8 @@ Result<Response> layer_quantities(const RouteContext& context, const Request& re
     std::vector<std::int64_t> keys;
     for (const query::Quantity& quantity : all->classes)
       keys.push_back(static_cast<std::int64_t>(*quantity.value));
-    auto found = record_names(context, *asked.layer.table, request.role(), std::move(keys),
-                              records_at, language);
+    auto found = app::record_names(context.store, *asked.layer.table, request.role(),
+                                   std::move(keys), records_at, language);
     if (!found) return tl::unexpected(found.error());
     names = std::move(*found);
   }
@@ -259,7 +263,7 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
   std::vector<std::int64_t> keys;
   for (const auto& [key, quantity] : of_key) keys.push_back(key);
   const auto names =
-      STRATA_TRY(record_names(context, table.id, request.role(), keys, {}, language));
+      STRATA_TRY(app::record_names(context.store, table.id, request.role(), keys, {}, language));
   const auto text_of = [&](std::int64_t key) {
     const auto name = names.find(key);
     return name == names.end() || name->second.empty() ? std::to_string(key) : name->second;
@@ -277,34 +281,35 @@ Result<Response> table_quantities(const RouteContext& context, const Request& re
       json["class"] = text_of(key);
       json["key"] = key;
       json["has_record"] = names.contains(key);
-      add_measures(json, marks.names, marks.of(key));
+      app::add_measures(json, marks.names, marks.of(key));
       json["layers"] = std::move(parts);
       list.push_back(std::move(json));
     }
     const std::size_t count = list.size();
     nlohmann::json total = sums_json(sum);
-    add_measures(total, marks.names, marks.sum());
+    app::add_measures(total, marks.names, marks.sum());
     return json_response(
                {{"quantities", std::move(list)}, {"total", count}, {"sum", std::move(total)}})
         .with("Vary", "Accept");
   }
-  Sheet sheet{table.slug + "-quantities", {"class", "key", "pieces", "texels", "area_m2"}, {}};
+  app::Sheet sheet{table.slug + "-quantities", {"class", "key", "pieces", "texels", "area_m2"}, {}};
   sheet.heads.insert(sheet.heads.end(), marks.names.begin(), marks.names.end());
   for (const OfLayer& layer : layers)
     sheet.heads.push_back(layer.model.slug + "/" + layer.layer.slug + " area_m2");
   for (const auto& [key, of_one] : of_key) {
     const query::Quantity& quantity = of_one.sum();
-    std::vector<SheetCell> row{text_of(key), double(key), double(quantity.pieces),
-                               double(quantity.texels), quantity.area_m2};
+    std::vector<app::SheetCell> row{text_of(key), double(key), double(quantity.pieces),
+                                    double(quantity.texels), quantity.area_m2};
     const auto marked = marks.of(key);
     row.insert(row.end(), marked.begin(), marked.end());
     for (const OfLayer& layer : layers) {
       const auto part = layer.of_key.find(key);
-      row.push_back(part == layer.of_key.end() ? SheetCell() : SheetCell(part->second.area_m2));
+      row.push_back(part == layer.of_key.end() ? app::SheetCell()
+                                               : app::SheetCell(part->second.area_m2));
     }
     sheet.rows.push_back(std::move(row));
   }
-  std::vector<SheetCell> last{
+  std::vector<app::SheetCell> last{
       std::string("total"), {}, double(sum.pieces), double(sum.texels), sum.area_m2};
   const auto marked = marks.sum();
   last.insert(last.end(), marked.begin(), marked.end());

@@ -1,8 +1,11 @@
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/point_text.h"
+#include "net/serialization/sheet_response.h"
 #include "net/serialization/wire.h"
-#include "net/sheet.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
 
 namespace strata::net {
 namespace {

@@ -1,13 +1,18 @@
+#include "app/layers/mark_transfer.h"
+#include "core/digest.h"
 #include "core/mapped_file.h"
 #include "core/number_text.h"
+#include "jobs/job_queue.h"
 #include "jobs/shape_layer.h"
 #include "jobs/transfer.h"
 #include "mesh/input_files.h"
 #include "mesh/vertex_properties.h"
 #include "net/api/layers/layer_jobs.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/http/digest.h"
-#include "net/mark_transfer.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -84,10 +89,10 @@ Layer copy_of(const Layer& from, int resolution, int order, const jobs::Transfer
 
 Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room,
                                 const jobs::TransferRequest& request, const std::string& user,
-                                NewLayers& layers, Progress& progress) {
+                                app::NewLayers& layers, Progress& progress) {
   jobs::TransferTarget target{room.model(), room.geometry(), room.search_tree(),
                               [&room](int resolution) { return room.surface_map(resolution); }};
-  int order = order_on_top(room.layers());
+  int order = app::order_on_top(room.layers());
   nlohmann::json report{{"from", request.source.id}, {"layers", nlohmann::json::array()}};
   const auto deliver = [&](jobs::TransferredLayer transferred) -> Result<void> {
     Layer layer = copy_of(*transferred.from, transferred.resolution, order++, request);
@@ -110,7 +115,7 @@ Result<nlohmann::json> transfer(const RouteContext& context, room::Room& room,
       STRATA_TRY(jobs::transfer_layers(context.store, target, request, deliver, progress));
   report["area_m2"] = summary.area_m2;
   report["matched_m2"] = summary.matched_m2;
-  const auto brought = STRATA_TRY(bring_marks(context, target, request, user));
+  const auto brought = STRATA_TRY(app::bring_marks(context, target, request, user));
   report["marks"] = brought.marks;
   report["lost_marks"] = brought.lost_marks;
   return report;
@@ -125,7 +130,7 @@ Result<Response> start_transfer(const RouteContext& context, JobBook& book,
   if (!wish) return tl::unexpected(wish.error());
   return start_layer_job(context, book, request, *room,
                          [&context, room = *room, wish = std::move(*wish), user = request.user()](
-                             NewLayers& layers, Progress& progress) {
+                             app::NewLayers& layers, Progress& progress) {
                            return transfer(context, *room, wish, user, layers, progress);
                          });
 }

@@ -1,11 +1,15 @@
+#include "app/figures/class_names.h"
+#include "app/records/readable_area.h"
 #include "core/compensated_sum.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/class_names.h"
-#include "net/readable_area.h"
 #include "net/serialization/as_of.h"
+#include "net/serialization/sheet_response.h"
 #include "net/serialization/wire.h"
-#include "net/sheet.h"
+#include "net/transport/server_options.h"
 #include "query/expression_parser.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -146,28 +150,28 @@ Result<std::vector<std::string>> side_names(const RouteContext& context, const r
         STRATA_TRY(context.store.table_sequence_when(*layer.table, room.model().id, *at));
     records_at = found;
   }
-  auto names = class_names(context, layer, role, values, records_at, language);
+  auto names = app::class_names(context.store, layer, role, values, records_at, language);
   if (names && values.size() < side.size()) names->emplace_back(kNoValue);  // nothing is the last
   return names;
 }
 
 // With names and sums, as people read it: in the unit that suits the sum of all.
-Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Layer& columns,
-               const std::vector<std::string>& row_names,
-               const std::vector<std::string>& column_names) {
+app::Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Layer& columns,
+                    const std::vector<std::string>& row_names,
+                    const std::vector<std::string>& column_names) {
   CompensatedSum all_m2;
   for (const auto& row : table.area_m2)
     for (const double area_m2 : row) all_m2 += area_m2;
-  const AreaUnit unit = readable_area(all_m2.value());
-  Sheet sheet{rows.slug + "-" + columns.slug,
-              {rows.name + " / " + columns.name + ", " + unit.name},
-              {},
-              {}};
+  const app::AreaUnit unit = app::readable_area(all_m2.value());
+  app::Sheet sheet{rows.slug + "-" + columns.slug,
+                   {rows.name + " / " + columns.name + ", " + unit.name},
+                   {},
+                   {}};
   sheet.heads.insert(sheet.heads.end(), column_names.begin(), column_names.end());
   sheet.heads.emplace_back("total");
   std::vector<CompensatedSum> sums(column_names.size() + 1);
   for (std::size_t row = 0; row < row_names.size(); ++row) {
-    std::vector<SheetCell> cells{row_names[row]};
+    std::vector<app::SheetCell> cells{row_names[row]};
     CompensatedSum sum;
     for (std::size_t column = 0; column < column_names.size(); ++column) {
       const double area = table.area_m2[row][column] * unit.per_m2;
@@ -179,10 +183,10 @@ Sheet sheet_of(const query::CrossTable& table, const Layer& rows, const Layer& c
     sums.back() += sum;
     sheet.rows.push_back(std::move(cells));
   }
-  std::vector<SheetCell> last{std::string("total")};
+  std::vector<app::SheetCell> last{std::string("total")};
   for (const CompensatedSum& sum : sums) last.emplace_back(sum.value());
   sheet.rows.push_back(std::move(last));
-  sheet.number_formats.assign(sheet.heads.size(), number_format(all_m2.value() * unit.per_m2));
+  sheet.number_formats.assign(sheet.heads.size(), app::number_format(all_m2.value() * unit.per_m2));
   return sheet;
 }
 

@@ -1,15 +1,19 @@
 #include <set>
 
+#include "app/records/texel_csv.h"
+#include "core/byte_budget.h"
+#include "core/digest.h"
 #include "core/mapped_file.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
-#include "net/byte_budget.h"
-#include "net/http/digest.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/point_text.h"
-#include "net/sheet.h"
-#include "net/texel_csv.h"
+#include "net/serialization/sheet_response.h"
+#include "net/transport/server_options.h"
 #include "query/expression_parser.h"
 #include "query/raster.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -121,7 +125,7 @@ std::vector<std::int64_t> keys_of(const query::SurfaceTexels& texels) {
 // Columns of the records behind the keys, with what they were at `at`.
 Result<void> add_columns(const RouteContext& context, Role seen_by,
                          const std::vector<std::string>& wanted, const query::SurfaceTexels& texels,
-                         std::optional<std::int64_t> at, TexelCsv& csv) {
+                         std::optional<std::int64_t> at, app::TexelCsv& csv) {
   const Layer& layer = texels.view.layer;
   if (!layer.table)
     return fail(ErrorCode::invalid, "Numeric layer",
@@ -165,7 +169,7 @@ Result<Response> read_texel_lines(const RouteContext& context, const Request& re
   auto found = asked.room->surface_texels(asked.layer.slug, selection);
   if (!found) return tl::unexpected(found.error());
   const auto texels = std::make_shared<const query::SurfaceTexels>(std::move(*found));
-  auto csv = std::make_shared<TexelCsv>(asked.room->model().unit, separator);
+  auto csv = std::make_shared<app::TexelCsv>(asked.room->model().unit, separator);
   if (const auto wanted = split_list(request.query_or("columns", {})); !wanted.empty())
     STRATA_TRY(add_columns(context, request.role(), wanted, *texels, asked.at, *csv));
   std::shared_ptr<std::vector<query::TexelSample>> cells;

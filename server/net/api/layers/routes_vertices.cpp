@@ -1,8 +1,10 @@
+#include "app/layers/vertex_colors.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
-#include "net/sheet.h"
-#include "net/vertex_colors.h"
+#include "net/serialization/sheet_response.h"
 #include "query/vertex_ply.h"
+#include "room/room.h"
 
 namespace strata::net {
 namespace {
@@ -65,7 +67,8 @@ Result<Response> read_vertices(const RouteContext& context, const Request& reque
   MemoryLedger::Share memory;
   std::optional<query::VertexColors> colors;
   if (by_layers) {
-    auto composed = compose_vertices(context, *room, request.role(), shown_layers(request, views));
+    auto composed =
+        app::compose_vertices(context, *room, request.role(), shown_layers(request, views));
     if (!composed) return tl::unexpected(composed.error());
     memory = std::move(composed->memory);
     colors = std::move(composed->colors);

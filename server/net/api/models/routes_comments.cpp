@@ -6,12 +6,17 @@
 #include "core/no_such.h"
 #include "core/timestamp.h"
 #include "net/api/annotated_routes.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
+#include "net/http/page.h"
 #include "net/live/comment_events.h"
+#include "net/live/live_sockets.h"
 #include "net/serialization/people_wire.h"
 #include "net/serialization/wire.h"
+#include "room/room.h"
 #include "store/comments.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -1,7 +1,11 @@
 // Measured figures: drawings to scale as files.
 #include <boost/algorithm/string/predicate.hpp>
 
-#include "net/figures.h"
+#include "jobs/job_queue.h"
+#include "net/api/models/figure_request.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -21,7 +25,7 @@ bool wants_job(const Request& request) {
 
 Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteBudget>& budget,
                         const Request& request) {
-  auto wish = figure_wish(context, request);
+  auto wish = read_figure_request(context, request);
   if (!wish) return tl::unexpected(wish.error());
   if (wants_job(request)) {
     const Model model = wish->room->model();
@@ -29,7 +33,8 @@ Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteB
         model.project_id,
         [&context, budget, wish = std::move(*wish),
          id = model.id](Progress& progress) -> Result<jobs::JobResult> {
-          auto file = STRATA_TRY(make_figure(context, *budget, wish, progress));
+          auto file = STRATA_TRY(
+              app::make_figure(context.store, *budget, wish, context.options.upload_dir, progress));
           jobs::JobResult result(id);
           result.file = std::move(file);
           return result;
@@ -39,7 +44,8 @@ Result<Response> answer(const RouteContext& context, const std::shared_ptr<ByteB
     return std::move(job_response(context, *job).with("Preference-Applied", "respond-async"));
   }
   Progress unwatched;
-  auto file = STRATA_TRY(make_figure(context, *budget, *wish, unwatched));
+  auto file = STRATA_TRY(
+      app::make_figure(context.store, *budget, *wish, context.options.upload_dir, unwatched));
   Response response = file_response(std::move(file));
   add_sequences(response, *wish->shown.at, wish->room->durable_sequence());
   return response;

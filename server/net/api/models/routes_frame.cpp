@@ -1,7 +1,10 @@
 #include "net/api/models/picture_response.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/serialization/as_of.h"
 #include "net/serialization/wire.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
 
 namespace strata::net {
 namespace {

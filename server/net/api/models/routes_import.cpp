@@ -2,36 +2,24 @@
 #include <memory>
 
 #include "core/filename.h"
-#include "core/log.h"
+#include "core/temporary_file.h"
 #include "core/uuid.h"
 #include "jobs/import_job.h"
+#include "jobs/job_queue.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
 #include "net/http/job_book.h"
 #include "net/http/upload.h"
 #include "net/serialization/wire.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A file that goes away with its last owner, also when the job never runs.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
-  ~TemporaryFile() {
-    std::error_code error;
-    fs::remove(path_, error);
-    if (error) log::warning("an upload could not be removed: " + error.message());
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 // Everything but the file, from the query.
 Result<jobs::ImportRequest> import_request(const RouteContext& context, const Request& request) {
@@ -112,7 +100,7 @@ Result<Response> start_import(const RouteContext& context, JobBook& book, const 
   for (const Upload& upload : uploads) {
     auto file = STRATA_TRY(keep_upload(request, upload.file, context.options.upload_dir));
     kept.push_back(std::move(file));
-    asked->files.push_back({upload.filename, kept.back()->path()});
+    asked->files.push_back({upload.filename, kept.back()->path});
   }
   // One file goes by the name that the query gives it, whatever a form calls it.
   if (asked->files.size() == 1 && !named.empty()) asked->files[0].filename = named;

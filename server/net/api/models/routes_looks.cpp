@@ -5,8 +5,13 @@
 #include "core/mapped_file.h"
 #include "core/picture.h"
 #include "core/thumbnail.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
+#include "net/http/page.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -1,7 +1,12 @@
 #include <map>
 
+#include "app/bin_keeper.h"
 #include "net/auth/project_gate.h"
 #include "net/http/answer_book.h"
+#include "net/http/page.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -2,23 +2,28 @@
 #include <algorithm>
 #include <bit>
 
+#include "jobs/job_queue.h"
 #include "jobs/orthophoto.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
 #include "net/http/job_book.h"
-#include "net/map_values.h"
+#include "net/serialization/map_query.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
 
 struct Wish {
   Look look;
-  MapAxis axis;
+  app::MapAxis axis;
   int resolution = 0;
 };
 
 Result<Wish> wish_of(const Request& request) {
-  const auto axis = STRATA_TRY(axis_of(request));
+  const auto axis = STRATA_TRY(map_axis(request));
   Wish wish{{}, axis, 0};
   wish.look.name = request.query_or("name", {});
   if (wish.look.name.empty() || wish.look.name.size() > 200)
@@ -40,7 +45,7 @@ double texel_area(const Model& model, int resolution) {
   return texels > 0 ? model.area / texels : 0;
 }
 
-Result<Look> bake(room::Room& room, const Wish& wish, const MapPicture& map,
+Result<Look> bake(room::Room& room, const Wish& wish, const app::MapPicture& map,
                   const store::FirstAnswer<Look>& answer, Progress& progress) {
   progress.report(0, "Finding what is seen");
   const jobs::OrthophotoSampler sampler(map.picture, map.world,
@@ -91,8 +96,9 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
                 "Pictures of this model have at least " +
                     std::to_string(model.atlas.lowest_resolution) + " texels a side.",
                 "resolution");
-  const auto files = STRATA_TRY(MapFiles::take(request, context.options.upload_dir));
-  auto map = map_picture(request, files, model, budget);
+  const auto files = STRATA_TRY(take_map(request, context.options.upload_dir));
+  const auto options = STRATA_TRY(map_options(request));
+  auto map = app::map_picture(options, files, model, budget);
   if (!map) return tl::unexpected(map.error());
   if (wish->resolution == 0) wish->resolution = jobs::orthophoto_resolution(model, map->world);
 
@@ -105,7 +111,7 @@ Result<Response> start_orthophoto(const RouteContext& context, JobBook& book, By
   auto job = context.jobs.add(
       model.project_id,
       [room = *room, wish = std::move(*wish), answer,
-       map = std::make_shared<const MapPicture>(std::move(*map))](
+       map = std::make_shared<const app::MapPicture>(std::move(*map))](
           Progress& progress) -> Result<jobs::JobResult> {
         store::FirstAnswer<Look> kept = answer;
         kept.job = progress.job();

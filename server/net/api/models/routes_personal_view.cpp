@@ -1,6 +1,9 @@
 // How a person shows the layers of a model, kept for them alone.
 #include "net/api/models/personal_view.h"
 #include "net/serialization/view_wire.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 

@@ -1,9 +1,13 @@
 // Tours of a model. Everybody reads them, curators make and change them.
 #include "net/api/annotated_routes.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
+#include "net/http/page.h"
 #include "net/serialization/tour_wire.h"
+#include "net/serialization/wire.h"
 #include "store/kiosks.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -5,10 +5,15 @@
 
 #include "net/api/annotated_routes.h"
 #include "net/api/models/picture_response.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
+#include "net/http/page.h"
+#include "net/live/live_sockets.h"
 #include "net/serialization/view_wire.h"
 #include "protocol/json_values.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

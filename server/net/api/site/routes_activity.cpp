@@ -1,7 +1,9 @@
 // What was done in a project.
+#include "net/http/page.h"
 #include "net/live/model_events.h"
 #include "net/serialization/activity_wire.h"
 #include "net/serialization/people_wire.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

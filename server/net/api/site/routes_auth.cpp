@@ -2,13 +2,19 @@
 #include <memory>
 
 #include "core/utf8.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
+#include "net/auth/auth.h"
 #include "net/auth/project_gate.h"
 #include "net/auth/sign_in_gate.h"
 #include "net/http/origin.h"
+#include "net/http/page.h"
+#include "net/live/live_sockets.h"
 #include "net/serialization/people_wire.h"
 #include "net/serialization/wire.h"
+#include "net/transport/server_options.h"
 #include "store/password.h"
+#include "store/store.h"
 
 namespace strata::net {
 

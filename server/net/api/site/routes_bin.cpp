@@ -1,11 +1,17 @@
 // What was deleted in a project and can be restored. Who may delete such things may restore them.
 #include <charconv>
 
+#include "app/bin_keeper.h"
+#include "app/change_notifier.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
-#include "net/live/table_events.h"
+#include "net/http/page.h"
 #include "net/serialization/people_wire.h"
 #include "net/serialization/wire.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -128,7 +134,7 @@ Result<Response> restore(const RouteContext& context, const Request& request) {
     const auto respond = [&](const store::TableChange&) { return to_response({entry, {}, {}}); };
     const auto change = STRATA_TRY(context.store.bin().restore_record(
         entry, request.user(), first_answer<store::TableChange>(request, respond)));
-    tell_change(context, change, request.user());
+    context.changes.records_changed(change, request.user());
     return respond(change);
   }
   const auto answer = first_answer<BinRestored>(request, to_response);

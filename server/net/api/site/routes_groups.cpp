@@ -1,8 +1,12 @@
 // Groups of people, and the roles that projects give them.
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/auth/project_gate.h"
+#include "net/http/page.h"
 #include "net/serialization/wire.h"
+#include "net/transport/server_options.h"
 #include "store/groups.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

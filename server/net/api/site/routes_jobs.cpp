@@ -1,4 +1,7 @@
+#include "jobs/job_queue.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
+#include "net/http/page.h"
 #include "net/serialization/wire.h"
 
 namespace strata::net {

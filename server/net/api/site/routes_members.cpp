@@ -1,10 +1,16 @@
 // Who may do more in a project than everywhere, and who sees it.
 #include <set>
 
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
+#include "net/auth/auth.h"
+#include "net/http/page.h"
+#include "net/live/live_sockets.h"
 #include "net/serialization/people_wire.h"
 #include "net/serialization/wire.h"
+#include "net/transport/server_options.h"
 #include "store/groups.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

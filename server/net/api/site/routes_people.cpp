@@ -1,9 +1,16 @@
 // Accounts: who there is, what they may do, and how they come in.
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
+#include "net/auth/auth.h"
 #include "net/http/origin.h"
+#include "net/http/page.h"
+#include "net/live/live_sockets.h"
 #include "net/serialization/people_wire.h"
 #include "net/serialization/wire.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
 #include "store/password.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -1,6 +1,10 @@
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
+#include "net/http/page.h"
+#include "net/transport/server_options.h"
 #include "store/groups.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -3,7 +3,15 @@
 
 #include "core/version.h"
 #include "net/api/docs_page.h"
+#include "net/api/metrics.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
+#include "net/http/question_desk.h"
+#include "net/http/worker_pool.h"
+#include "net/transport/server_options.h"
+#include "render/renderer.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -1,14 +1,21 @@
 #include <algorithm>
 
+#include "app/edits.h"
+#include "app/layers/new_layers.h"
+#include "app/template_shelf.h"
 #include "core/log.h"
 #include "core/search_text.h"
 #include "core/term_list.h"
 #include "net/api/layers/layer_jobs.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
+#include "net/http/page.h"
+#include "net/live/live_sockets.h"
 #include "net/live/table_events.h"
-#include "net/new_layers.h"
-#include "net/template_shelf.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -44,13 +51,13 @@ Result<std::vector<WishedLayer>> wished_layers(const protocol::Template& of, con
                                                const std::optional<std::string>& language) {
   const Model model = room.model();
   const auto others = room.layers();
-  int order = order_on_top(others);
+  int order = app::order_on_top(others);
   std::vector<WishedLayer> wished;
   for (const protocol::TemplateLayer& told : of.layers) {
     WishedLayer next;
     next.layer.model_id = model.id;
-    next.layer.name = name_in(told.name, told.labels, language);
-    next.layer.labels = labels_with(told.name, told.labels);
+    next.layer.name = app::name_in(told.name, told.labels, language);
+    next.layer.labels = app::labels_with(told.name, told.labels);
     const std::string plain = search_text(next.layer.name);
     for (const Layer& other : others)
       if (search_text(other.name) == plain)
@@ -89,7 +96,7 @@ Result<std::vector<Layer>> make_layers(const RouteContext& context, const Reques
                                        const std::shared_ptr<room::Room>& room,
                                        std::vector<WishedLayer> wished,
                                        const std::vector<Table>& tables) {
-  NewLayers layers(room, context.metrics, request.author());
+  app::NewLayers layers(room, context.edits, request.author());
   std::vector<Layer> made;
   const auto refuse = [&](const Error& problem) {
     layers.take_back();
@@ -125,7 +132,7 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
   if (!of)
     return fail(ErrorCode::not_found, "Not found",
                 "There is no template `" + request.param("template").substr(0, 100) + "`.");
-  auto tables = STRATA_TRY(new_tables(*of, project.id, asked.language));
+  auto tables = STRATA_TRY(app::new_tables(*of, project.id, asked.language));
   std::shared_ptr<room::Room> room;
   std::vector<WishedLayer> wished;
   if (asked.model) {
@@ -165,7 +172,7 @@ Result<Response> use_template(const RouteContext& context, const Request& reques
     layers = std::move(*added);
   }
   for (const Table& table : made)
-    tell_table(context, protocol::TableEventEvent::created, table, request.user());
+    tell_table(context.live_sockets, protocol::TableEventEvent::created, table, request.user());
   return answer_with(made, layers);
 }
 

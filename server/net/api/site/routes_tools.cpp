@@ -1,8 +1,13 @@
 #include "core/mapped_file.h"
 #include "core/picture.h"
 #include "core/slug.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
+#include "net/http/page.h"
+#include "net/live/live_sockets.h"
+#include "net/transport/server_options.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -5,7 +5,10 @@
 #include "core/column_value.h"
 #include "core/filename.h"
 #include "core/name_pattern.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
+#include "net/transport/server_options.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <mutex>
 
+#include "app/change_notifier.h"
 #include "core/filename.h"
 #include "core/media_type.h"
 #include "core/no_such.h"
@@ -11,9 +12,12 @@
 #include "net/http/answer_book.h"
 #include "net/http/byte_range.h"
 #include "net/http/upload.h"
+#include "net/live/live_sockets.h"
 #include "net/live/table_events.h"
 #include "net/serialization/record_place.h"
 #include "net/serialization/table_wire.h"
+#include "net/transport/server_options.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -121,7 +125,7 @@ Result<Response> attach(const RouteContext& context, const Request& request) {
   auto attached =
       STRATA_TRY(context.store.attach(place.table.id, key, column_id, files, version,
                                       request.author(), first_answer<Attached>(request, answer)));
-  tell_change(context, attached.change, request.user());
+  context.changes.records_changed(attached.change, request.user());
   return answer(attached);
 }
 
@@ -289,7 +293,7 @@ Result<Response> change_attachment(const RouteContext& context, const Request& r
   auto now = STRATA_TRY(context.store.show_attachment(id, asked.visibility,
                                                       first_answer<Attachment>(request, answer)));
   if (auto table = context.store.table(std::to_string(now.table_id), Role::owner))
-    tell_table(context, protocol::TableEventEvent::changed, *table, request.user());
+    tell_table(context.live_sockets, protocol::TableEventEvent::changed, *table, request.user());
   return answer(now);
 }
 
@@ -300,7 +304,7 @@ Result<Response> detach(const RouteContext& context, const Request& request) {
   auto change =
       context.store.detach(id, request.user(), first_answer<store::TableChange>(request, answer));
   if (!change) return tl::unexpected(change.error());
-  tell_change(context, *change, request.user());
+  context.changes.records_changed(*change, request.user());
   return answer(*change);
 }
 

@@ -1,18 +1,23 @@
 #include <algorithm>
 #include <map>
 
+#include "app/change_notifier.h"
+#include "app/records/painted_keys.h"
+#include "app/records/readable_area.h"
+#include "app/records/record_csv.h"
+#include "app/records/record_measures.h"
+#include "app/records/workbook.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
-#include "net/live/table_events.h"
-#include "net/painted_keys.h"
-#include "net/readable_area.h"
-#include "net/record_csv.h"
-#include "net/record_measures.h"
+#include "net/http/page.h"
 #include "net/serialization/record_place.h"
+#include "net/serialization/sheet_response.h"
 #include "net/serialization/table_wire.h"
-#include "net/sheet.h"
-#include "net/workbook.h"
+#include "net/transport/server_options.h"
 #include "query/expression_parser.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -47,8 +52,8 @@ Result<std::vector<std::pair<std::string, bool>>> order_of(const std::string& te
 // Sorted by what they measure, such as the area that they have on the layer: all other order is the
 // database's.
 Result<store::Store::RecordPage> page_by_measure(const RouteContext& context,
-                                                 const RecordPlace& place,
-                                                 const RecordMeasures& measures,
+                                                 const app::RecordPlace& place,
+                                                 const app::RecordMeasures& measures,
                                                  std::size_t measure, Role seen_by,
                                                  store::Store::RecordQuery query) {
   const bool descending = query.order.front().second;
@@ -98,35 +103,37 @@ Result<store::Store::RecordPage> page_by_measure(const RouteContext& context,
 // The columns of `records_csv`, with values of their own types; under a layer the last one has
 // areas in a unit that people read.
 Result<Response> records_book(const RouteContext& context, const store::Store::RecordPage& page,
-                              const RecordMeasures& measures, const WordsOfTables& words) {
-  std::vector<BookColumn> heads{{"key", {}}};
+                              const app::RecordMeasures& measures,
+                              const app::WordsOfTables& words) {
+  std::vector<app::BookColumn> heads{{"key", {}}};
   for (const Column& column : page.table.columns) heads.push_back({column.slug, {}});
   for (const std::string& name : measures.names()) heads.push_back({name, {}});
-  const bool has_area = std::ranges::count(measures.names(), kAreaMeasure) > 0;
+  const bool has_area = std::ranges::count(measures.names(), app::kAreaMeasure) > 0;
   double largest_m2 = 0;
   for (const Record& record : page.records)
     largest_m2 = std::max(largest_m2, measures.area_m2(record.key));
-  const AreaUnit unit = readable_area(largest_m2);
+  const app::AreaUnit unit = app::readable_area(largest_m2);
   if (has_area) {
-    std::ranges::find(heads, kAreaMeasure, &BookColumn::head)->number_format =
-        number_format(largest_m2);
-    heads.push_back({readable_head(kAreaMeasure, unit), number_format(largest_m2 * unit.per_m2)});
+    std::ranges::find(heads, app::kAreaMeasure, &app::BookColumn::head)->number_format =
+        app::number_format(largest_m2);
+    heads.push_back({app::readable_head(app::kAreaMeasure, unit),
+                     app::number_format(largest_m2 * unit.per_m2)});
   }
-  Workbook book(context.options.upload_dir, page.table.slug, heads);
-  std::vector<BookCell> cells;
+  app::Workbook book(context.options.upload_dir, page.table.slug, heads);
+  std::vector<app::BookCell> cells;
   for (const Record& record : page.records) {
     cells.assign(1, double(record.key));
     for (const Column& column : page.table.columns) {
-      if (auto word = term_word(record, column, words))
+      if (auto word = app::term_word(record, column, words))
         cells.emplace_back(std::move(*word));
       else
-        cells.push_back(book_cell(record, column));
+        cells.push_back(app::book_cell(record, column));
     }
     for (const double value : measures.of(record)) cells.emplace_back(value);
     if (has_area) cells.emplace_back(measures.area_m2(record.key) * unit.per_m2);
     book.add_row(cells);
   }
-  return book.finish(page.table.slug + ".xlsx");
+  return file_response(STRATA_TRY(book.finish(page.table.slug + ".xlsx")));
 }
 
 Result<Response> list_records(const RouteContext& context, const Request& request) {
@@ -158,7 +165,7 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
     query.at = sequence;
   }
   // Of the columns as they are now: what was a line and is none any more has no length.
-  auto measures = STRATA_TRY(RecordMeasures::of_place(context, place, place.table.columns));
+  auto measures = STRATA_TRY(app::RecordMeasures::of_place(context, place, place.table.columns));
   const auto& names = measures.names();
   const auto measure =
       query.order.empty() ? names.end() : std::ranges::find(names, query.order.front().first);
@@ -167,10 +174,10 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
                                 : page_by_measure(context, place, measures,
                                                   static_cast<std::size_t>(measure - names.begin()),
                                                   request.role(), query));
-  WordsOfTables words;
+  app::WordsOfTables words;
   if (format != SheetFormat::json && terms == "words") {
     auto known =
-        STRATA_TRY(words_of(context.store, records.table.columns, request.role(), language));
+        STRATA_TRY(app::words_of(context.store, records.table.columns, request.role(), language));
     words = std::move(known);
   }
   if (page.after && records.last && !cursor_of(request, *records.last))
@@ -185,15 +192,16 @@ Result<Response> list_records(const RouteContext& context, const Request& reques
   } else if (format == SheetFormat::csv) {
     std::vector<std::vector<double>> values;
     for (const Record& record : records.records) values.push_back(measures.of(record));
-    response = text_response(records_csv(records.records, records.table.columns,
-                                         {measures.names(), std::move(values)}, separator, words),
-                             kCsvType);
+    response =
+        text_response(app::records_csv(records.records, records.table.columns,
+                                       {measures.names(), std::move(values)}, separator, words),
+                      kCsvType);
     name_download(response, place.table.slug + ".csv");
   } else {
     nlohmann::json list = nlohmann::json::array();
     for (const Record& record : records.records) {
       nlohmann::json json = to_json(record, records.table.columns);
-      add_measures(json, measures.names(), measures.of(record));
+      app::add_measures(json, measures.names(), measures.of(record));
       list.push_back(std::move(json));
     }
     response = json_response({{"records", std::move(list)}, {"total", records.total}});
@@ -214,8 +222,8 @@ Result<Response> read_record(const RouteContext& context, const Request& request
   Table then;
   auto record = STRATA_TRY(stored_record(context, place.table, request.role(), key, at, &then));
   nlohmann::json json = to_json(record, then.columns);
-  const auto measures = STRATA_TRY(RecordMeasures::of_place(context, place, then.columns));
-  add_measures(json, measures.names(), measures.of(record));
+  const auto measures = STRATA_TRY(app::RecordMeasures::of_place(context, place, then.columns));
+  app::add_measures(json, measures.names(), measures.of(record));
   if (!place.layer) return with_etag(json_response(json), request, record.version);
   return json_response(json).with("ETag", etag_of(record.version));
 }
@@ -231,7 +239,7 @@ Error first_problem(const TableChange& change, bool is_list) {
 }
 
 Result<Response> create_from_json(const RouteContext& context, const Request& request,
-                                  const RecordPlace& place) {
+                                  const app::RecordPlace& place) {
   auto asked = STRATA_TRY(body_of<protocol::RecordsCreate>(request, kMaxRecordsBytes));
   if (asked.records && (asked.key || asked.values))
     return fail(ErrorCode::invalid, "One or several",
@@ -268,18 +276,18 @@ Result<Response> create_from_json(const RouteContext& context, const Request& re
   auto change = STRATA_TRY(context.store.write_records(place.table.id, write, request.user(),
                                                        first_answer<TableChange>(request, answer)));
   if (!change.problems.empty()) return tl::unexpected(first_problem(change, is_list));
-  tell_change(context, change, request.user());
+  context.changes.records_changed(change, request.user());
   return answer(change);
 }
 
-nlohmann::json report_of(const RecordRows& rows, const TableChange& change, bool dry_run) {
+nlohmann::json report_of(const app::RecordRows& rows, const TableChange& change, bool dry_run) {
   nlohmann::json problems = nlohmann::json::array();
   const auto add = [&](int line, const std::string& column, const Error& problem) {
     if (problems.size() == store::kMostRowProblems) return;
     problems.push_back({{"line", line}, {"title", problem.title}, {"detail", problem.detail}});
     if (!column.empty()) problems.back()["column"] = column;
   };
-  for (const RowMistake& mistake : rows.mistakes)
+  for (const app::RowMistake& mistake : rows.mistakes)
     add(mistake.line, mistake.column, mistake.problem);
   for (const store::RowError& problem : change.problems) {
     std::string head = problem.problem.field;
@@ -304,12 +312,13 @@ nlohmann::json report_of(const RecordRows& rows, const TableChange& change, bool
 }
 
 Result<Response> import_csv(const RouteContext& context, const Request& request,
-                            const RecordPlace& place) {
+                            const app::RecordPlace& place) {
   const std::string tried = request.query_or("dry_run", "false");
   if (tried != "true" && tried != "false")
     return fail(ErrorCode::invalid, "Bad value", "`dry_run` is true or false.", "dry_run");
-  const auto words = STRATA_TRY(words_of(context.store, place.table.columns, request.role(), {}));
-  auto rows = STRATA_TRY(read_records_csv(request.body, place.table, words));
+  const auto words =
+      STRATA_TRY(app::words_of(context.store, place.table.columns, request.role(), {}));
+  auto rows = STRATA_TRY(app::read_records_csv(request.body, place.table, words));
   store::WriteRecords write;
   write.records = rows.records;
   write.op = "import";
@@ -336,7 +345,7 @@ Result<Response> import_csv(const RouteContext& context, const Request& request,
     response.body = body.dump();
     return response;
   }
-  tell_change(context, change, request.user());
+  context.changes.records_changed(change, request.user());
   return answer(change);
 }
 
@@ -376,7 +385,7 @@ Result<Response> change_record(const RouteContext& context, const Request& reque
   auto change = STRATA_TRY(context.store.write_records(place.table.id, write, request.user(),
                                                        first_answer<TableChange>(request, keep)));
   if (!change.problems.empty()) return tl::unexpected(first_problem(change, false));
-  tell_change(context, change, request.user());
+  context.changes.records_changed(change, request.user());
   return keep(change);
 }
 
@@ -385,18 +394,18 @@ Result<Response> delete_retired(const RouteContext& context, const Request& requ
                                 const Table& table, std::int64_t key,
                                 std::optional<std::int64_t> version, const std::string& texels,
                                 std::optional<std::int64_t> to) {
-  auto painted = STRATA_TRY(painted_layers(context, table.id, request.role()));
-  const std::string where = where_painted(painted, {key});
+  auto painted = STRATA_TRY(app::painted_layers(context, table.id, request.role()));
+  const std::string where = app::where_painted(painted, {key});
   if (!where.empty() && texels == "refuse")
     return fail(ErrorCode::conflict, "Record is painted",
                 "Record " + std::to_string(key) + " covers " + where +
                     ". Say what becomes of it: texels=clear, or texels=reassign&to=KEY.",
                 "texels");
-  STRATA_TRY(repaint_key(context, painted, key, to, request.author()));
+  STRATA_TRY(app::repaint_key(context, painted, key, to, request.author()));
   const auto answer = [](const TableChange&) { return empty_response(204); };
   auto change = STRATA_TRY(context.store.delete_record(
       table.id, key, version, request.user(), false, first_answer<TableChange>(request, answer)));
-  tell_change(context, change, request.user());
+  context.changes.records_changed(change, request.user());
   return answer(change);
 }
 

@@ -1,16 +1,23 @@
 #include <algorithm>
 #include <map>
 
+#include "app/authorization/show_through.h"
+#include "app/change_notifier.h"
+#include "app/records/painted_keys.h"
 #include "core/classification.h"
 #include "core/compensated_sum.h"
 #include "core/key_colors.h"
 #include "core/relation_cycles.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
+#include "net/http/page.h"
+#include "net/live/live_sockets.h"
 #include "net/live/table_events.h"
-#include "net/painted_keys.h"
 #include "net/serialization/table_wire.h"
-#include "net/show_through.h"
+#include "net/transport/server_options.h"
+#include "room/room.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -53,7 +60,7 @@ Result<Response> create_table(const RouteContext& context, const Request& reques
   };
   auto created =
       STRATA_TRY(context.store.create_table(table, first_answer<Table>(request, answer)));
-  tell_table(context, protocol::TableEventEvent::created, created, request.user());
+  tell_table(context.live_sockets, protocol::TableEventEvent::created, created, request.user());
   return answer(created);
 }
 
@@ -77,7 +84,7 @@ Result<Response> change_table(const RouteContext& context, const Request& reques
   };
   auto changed =
       STRATA_TRY(context.store.update_table(table, first_answer<Table>(request, answer)));
-  tell_table(context, protocol::TableEventEvent::changed, changed, request.user());
+  tell_table(context.live_sockets, protocol::TableEventEvent::changed, changed, request.user());
   return answer(changed);
 }
 
@@ -86,7 +93,7 @@ Result<Response> delete_table(const RouteContext& context, const Request& reques
   STRATA_TRY(check_if_match(request, table.version));
   STRATA_TRY(context.store.delete_table(
       table.id, first_answer<>(request, [] { return empty_response(204); })));
-  tell_table(context, protocol::TableEventEvent::deleted, table, request.user());
+  tell_table(context.live_sockets, protocol::TableEventEvent::deleted, table, request.user());
   return empty_response(204);
 }
 
@@ -141,7 +148,7 @@ Result<Response> create_column(const RouteContext& context, const Request& reque
   };
   auto change = STRATA_TRY(context.store.create_column(table.id, column, request.user(),
                                                        first_answer<TableChange>(request, answer)));
-  tell_change(context, change, request.user());
+  context.changes.records_changed(change, request.user());
   return answer(change);
 }
 
@@ -185,7 +192,7 @@ Result<void> change(const RouteContext& context, const Request& request,
 
 Result<Response> show_column(const RouteContext& context, const Request& request,
                              const Table& table, const Column& column, Visibility visibility) {
-  STRATA_TRY(check_shows_nothing(context, table, column, visibility));
+  STRATA_TRY(app::check_shows_nothing(context.store, table, column, visibility));
   const auto answer = [id = column.id](const Table& now) {
     TableChange shown;
     shown.table = now;
@@ -195,7 +202,7 @@ Result<Response> show_column(const RouteContext& context, const Request& request
                                                   first_answer<Table>(request, answer)));
   // Colours, lines and points that are drawn from it are others for who does not see it any more.
   context.rooms.records_changed(now.id);
-  tell_table(context, protocol::TableEventEvent::changed, now, request.user());
+  tell_table(context.live_sockets, protocol::TableEventEvent::changed, now, request.user());
   return answer(now);
 }
 
@@ -222,7 +229,7 @@ Result<Response> change_column(const RouteContext& context, const Request& reque
       context.store.update_column(table.id, column, wished_version(request, table), request.user(),
                                   first_answer<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
-  tell_change(context, *done, request.user());
+  context.changes.records_changed(*done, request.user());
   return answer(*done);
 }
 
@@ -234,7 +241,7 @@ Result<Response> drop_column(const RouteContext& context, const Request& request
   auto done = context.store.drop_column(table.id, column->id, wished_version(request, table),
                                         request.user(), first_answer<TableChange>(request, answer));
   if (!done) return tl::unexpected(done.error());
-  tell_change(context, *done, request.user());
+  context.changes.records_changed(*done, request.user());
   return answer(*done);
 }
 
@@ -341,8 +348,8 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
   auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
   auto plan = STRATA_TRY(context.store.plan_table_undo(table.id, request.user(), redo));
   if (!plan.vanishing.empty()) {
-    auto painted = STRATA_TRY(painted_layers(context, table.id, request.role()));
-    if (const std::string where = where_painted(painted, plan.vanishing); !where.empty())
+    auto painted = STRATA_TRY(app::painted_layers(context, table.id, request.role()));
+    if (const std::string where = app::where_painted(painted, plan.vanishing); !where.empty())
       return fail(ErrorCode::conflict, "Record is painted",
                   "This would take away records that are painted: " + where +
                       ". Delete those records instead, which asks what to do with their texels.");
@@ -357,7 +364,7 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
   auto done =
       STRATA_TRY(context.store.undo_table(table.id, request.user(), redo, plan.table_sequence,
                                           first_answer<TableChange>(request, answer)));
-  tell_change(context, done, request.user());
+  context.changes.records_changed(done, request.user());
   return answer(done);
 }
 
@@ -365,13 +372,13 @@ Result<Response> undo(const RouteContext& context, const Request& request, bool 
 
 Result<Response> areas(const RouteContext& context, const Request& request) {
   auto table = STRATA_TRY(context.store.table(request.param("table"), request.role()));
-  auto painted = STRATA_TRY(painted_layers(context, table.id, request.role()));
+  auto painted = STRATA_TRY(app::painted_layers(context, table.id, request.role()));
   struct Sum {
     CompensatedSum area_m2;
     std::map<std::int64_t, std::pair<CompensatedSum, nlohmann::json>> models;
   };
   std::map<std::int64_t, Sum> sums;
-  for (const PaintedLayer& layer : painted)
+  for (const app::PaintedLayer& layer : painted)
     for (const auto& [key, area] : layer.areas) {
       Sum& sum = sums[key];
       sum.area_m2 += area.area_m2;

@@ -1,12 +1,17 @@
 #include <algorithm>
 
+#include "app/change_notifier.h"
 #include "core/term_list.h"
 #include "core/terms_csv.h"
 #include "core/terms_skos.h"
+#include "net/api/route_help.h"
 #include "net/api/routes.h"
 #include "net/http/answer_book.h"
+#include "net/http/page.h"
+#include "net/live/live_sockets.h"
 #include "net/live/table_events.h"
-#include "net/sheet.h"
+#include "net/serialization/sheet_response.h"
+#include "store/store.h"
 
 namespace strata::net {
 namespace {
@@ -114,7 +119,8 @@ Result<Response> create_terms(const RouteContext& context, const Request& reques
   if (!changes) return tl::unexpected(changes.error());
   if (dry_run) return json_response(report_of(list, changes->front(), true));
   if (!changes->front().problems.empty()) return refusal(list, changes->front());
-  tell_table(context, protocol::TableEventEvent::created, changes->front().table, request.user());
+  tell_table(context.live_sockets, protocol::TableEventEvent::created, changes->front().table,
+             request.user());
   return answer(*changes);
 }
 
@@ -133,7 +139,7 @@ Result<Response> import_terms(const RouteContext& context, const Request& reques
                                                       first_answer<TableChange>(request, answer)));
   if (dry_run) return json_response(report_of(list, change, true));
   if (!change.problems.empty()) return refusal(list, change);
-  tell_change(context, change, request.user());
+  context.changes.records_changed(change, request.user());
   return answer(change);
 }
 

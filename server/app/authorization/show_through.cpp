@@ -1,0 +1,104 @@
+#include "app/authorization/show_through.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "app/layers/formula_layers.h"
+#include "store/store.h"
+
+namespace strata::app {
+namespace {
+
+tl::unexpected<Error> shows_through(const Layer& layer) {
+  return fail(
+      ErrorCode::conflict, "Would show through",
+      "The layer " + layer.name + " is " + std::string(name(layer.visibility)) +
+          " and made of this, so that more people would see it. Let fewer see that layer first, or take this out of it.",
+      "visibility");
+}
+
+// Whether the expression reads the column of the record behind the keys of one of these layers.
+bool reads_column(const Expression& e, const std::set<std::string>& layers,
+                  const std::string& column) {
+  if (e.is_column() && layers.contains(e.name) && !e.path.empty() && e.path.front() == column)
+    return true;
+  return std::ranges::any_of(
+      e.parts, [&](const Expression& part) { return reads_column(part, layers, column); });
+}
+
+bool names_unseen_column(const Expression& e, const std::map<std::string, Table>& seen,
+                         const std::map<std::string, Table>& all) {
+  if (e.is_column() && !e.path.empty())
+    if (const auto table = all.find(e.name); table != all.end())
+      if (find_column(table->second.columns, e.path.front()) &&
+          !find_column(seen.at(e.name).columns, e.path.front()))
+        return true;
+  return std::ranges::any_of(
+      e.parts, [&](const Expression& part) { return names_unseen_column(part, seen, all); });
+}
+
+}  // namespace
+
+Result<void> check_shows_nothing(store::Store& store, const Layer& layer,
+                                 const std::vector<Layer>& others) {
+  if (layer.table && !layer.palette.column.empty()) {
+    const auto table = STRATA_TRY(store.table(std::to_string(*layer.table), Role::owner));
+    const Column* column = find_column(table.columns, layer.palette.column);
+    if (column && column->visibility > layer.visibility)
+      return fail(
+          ErrorCode::invalid, "Would show through",
+          "The palette colours by " + column->name + ", which is " +
+              std::string(name(column->visibility)) +
+              ": more people would see the layer. Let fewer see it, or colour it by something else.",
+          "palette.column");
+  }
+  for (const Layer& other : others)
+    if (other.formula && other.visibility < layer.visibility &&
+        std::ranges::any_of(other.formula->inputs,
+                            [&](const auto& input) { return input.layer == layer.id; }))
+      return shows_through(other);
+  return {};
+}
+
+Result<void> check_shows_nothing(store::Store& store, const Table& table, const Column& column,
+                                 Visibility visibility) {
+  const auto layers = STRATA_TRY(store.layers_of_table(table.id, Role::owner));
+  std::map<std::int64_t, std::set<std::string>> by_model;  // slugs
+  for (const Layer& layer : layers) {
+    by_model[layer.model_id].insert(layer.slug);
+    if (layer.visibility < visibility &&
+        find_column(table.columns, layer.palette.column) == &column)
+      return shows_through(layer);
+  }
+  for (const auto& [model, slugs] : by_model) {
+    const auto all = STRATA_TRY(store.layers(model, Role::owner));
+    for (const Layer& layer : all) {
+      if (!layer.formula || layer.visibility >= visibility) continue;
+      const auto expression = parse_formula(layer.formula->expression);
+      if (expression && reads_column(*expression, slugs, column.slug)) return shows_through(layer);
+    }
+  }
+  return {};
+}
+
+Result<bool> sees_all_of(store::Store& store, Role role, std::int64_t model_id,
+                         const std::string& text) {
+  if (sees(role, Visibility::curators)) return true;
+  const auto expression = parse_formula(text);
+  if (!expression) return false;
+  const auto layers = STRATA_TRY(store.layers(model_id, Role::owner));
+  const std::vector<std::string> named = layers_of(*expression);
+  std::map<std::string, Table> seen, all;  // by the slug of the layer
+  for (const Layer& layer : layers) {
+    if (std::ranges::find(named, layer.slug) == named.end()) continue;
+    if (!sees(role, layer.visibility)) return false;
+    if (!layer.table) continue;
+    auto table = STRATA_TRY(store.table(std::to_string(*layer.table), Role::owner));
+    seen.emplace(layer.slug, seen_by(table, role));
+    all.emplace(layer.slug, std::move(table));
+  }
+  return !names_unseen_column(*expression, seen, all);
+}
+
+}  // namespace strata::app

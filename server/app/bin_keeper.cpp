@@ -1,0 +1,54 @@
+#include "app/bin_keeper.h"
+
+#include "core/log.h"
+
+namespace strata::app {
+namespace {
+
+constexpr std::chrono::hours kBetweenLooks{1};
+constexpr std::chrono::minutes kAfterFailure{1};  // the database may be back by then
+
+}  // namespace
+
+BinKeeper::BinKeeper(store::Bin& bin, std::chrono::days keep)
+    : bin_(bin), keep_(keep), thread_([this] { run(); }) {}
+
+void BinKeeper::look() {
+  const std::lock_guard lock(mutex_);
+  look_ = true;
+  wake_.notify_all();
+}
+
+void BinKeeper::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+bool BinKeeper::is_stopping() {
+  const std::lock_guard lock(mutex_);
+  return stopping_;
+}
+
+void BinKeeper::run() {
+  std::chrono::minutes pause = kBetweenLooks;
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, pause, [this] { return stopping_ || look_; });
+      if (stopping_) return;
+      look_ = false;
+    }
+    auto expired = bin_.expire(keep_);
+    Result<bool> some = expired ? Result<bool>(true) : tl::unexpected(expired.error());
+    while (some && *some && !is_stopping()) some = bin_.erase_some();
+    pause = some ? std::chrono::minutes(kBetweenLooks) : kAfterFailure;
+    if (!some && !is_stopping())
+      log::warning("the Bin could not be emptied, trying again: " + some.error().detail);
+  }
+}
+
+}  // namespace strata::app

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "store/bin.h"
+
+namespace strata::app {
+
+// Erases what has been in the Bin for long enough, at start and every hour, and at once what people
+// erase, in small steps that nobody waits for. What is left when the server ends goes on at its
+// next start.
+class BinKeeper {
+ public:
+  BinKeeper(store::Bin& bin, std::chrono::days keep);  // the Bin must outlive it
+  ~BinKeeper() { stop(); }
+  void look();  // something is there to be erased; does not wait
+  void stop();  // waits for the step that is under way
+
+ private:
+  void run();
+  bool is_stopping();
+
+  store::Bin& bin_;
+  const std::chrono::days keep_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool stopping_ = false, look_ = true;
+  std::thread thread_;
+};
+
+}  // namespace strata::app

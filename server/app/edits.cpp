@@ -1,0 +1,20 @@
+#include "app/edits.h"
+
+#include <utility>
+
+#include "room/await.h"
+
+namespace strata::app {
+
+Result<room::EditAnswer> edit_and_wait(room::Room& room, room::EditRequest edit,
+                                       EditCounters& counters) {
+  auto answer = room::await<room::EditAnswer>([&](auto saved) {
+    room.edit(
+        std::move(edit), [&counters](const room::EditAnswer&) { ++counters.applied; },
+        std::move(saved));
+  });
+  ++(answer ? counters.saved : counters.refused);
+  return answer;
+}
+
+}  // namespace strata::app

@@ -1,0 +1,147 @@
+#include "app/figures/figure_legend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/label_text.h"
+#include "room/provisional.h"
+
+namespace strata::app {
+namespace {
+
+// of the grid in which the drawing is looked at: some tenths of a second
+constexpr double kMostCells = 250'000;
+constexpr std::size_t kMostPlaces = 32;  // of a line that are looked at
+constexpr double kOpaque = 0.99;
+// surfaces that are steeper to the eye hide what is behind them, too
+constexpr double kLeastCosine = 1.0 / 12;
+// as far below the surface as marks are drawn
+constexpr double kPlaceReach_px = 4, kPlaceReachOfSize = 1e-3;
+
+// How each layer is drawn, as the picture has it.
+const Palette& palette_of(const FigureRequest& request, const Layer& layer) {
+  const auto& own = request.shown.shown.of(layer.id).palette;
+  return own ? *own : layer.palette;
+}
+
+query::LayerCover cover_of(const FigureRequest& request, const Layer& layer) {
+  const Palette& palette = palette_of(request, layer);
+  const double opacity =
+      std::clamp(request.shown.shown.of(layer.id).opacity.value_or(layer.opacity), 0.0, 1.0);
+  query::LayerCover cover;
+  cover.tells_values = lists_values(palette);
+  if (!palette.column.empty()) {
+    // Its colours are those of records: some may let through what lies below.
+    cover.of = [opacity](double) {
+      return opacity > 0 ? query::Cover::some : query::Cover::nothing;
+    };
+    return cover;
+  }
+  cover.of = [&palette, opacity](double value) {
+    const double alpha = color_of(palette, value)[3] / 255.0 * opacity;
+    if (alpha <= 0) return query::Cover::nothing;
+    const Palette::Point* point = point_of(palette, value);
+    const bool is_solid = !point || point->pattern == Pattern::solid;
+    return is_solid && alpha >= kOpaque ? query::Cover::all : query::Cover::some;
+  };
+  return cover;
+}
+
+// Whether a mark's place is in the drawing, and no surface lies before it: as the picture decides
+// it (mark_sight_pass.comp), a place may lie anywhere before the surface, and behind it as far as
+// it reaches, measured square to the surface.
+Result<bool> is_seen(const FigureRequest& request, const Camera& camera, const glm::dvec3& place,
+                     double reach) {
+  const auto is_cut_off = [&](const glm::dvec4& plane) {
+    return glm::dot(plane, glm::dvec4(place, 1)) < 0;
+  };
+  if (std::ranges::any_of(camera.section, is_cut_off)) return false;
+  const glm::dvec4 clip = camera.projection * camera.view * glm::dvec4(place, 1);
+  const glm::dvec2 pixel((clip.x + 1) / 2 * camera.width, (1 - clip.y) / 2 * camera.height);
+  if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x <= camera.width && pixel.y <= camera.height))
+    return false;
+  const auto hit = request.room->pick(camera, pixel.x, pixel.y, {}, {});
+  if (!hit) return tl::unexpected(hit.error());
+  if (!hit->hit) return true;
+  const glm::dvec3 apart = place - glm::dvec3(hit->position);
+  if ((camera.view * glm::dvec4(apart, 0)).z >= 0) return true;  // nearer than the surface
+  return std::max(std::abs(glm::dot(apart, glm::dvec3(hit->normal))),
+                  kLeastCosine * glm::length(apart)) <= reach;
+}
+
+// Keys of records whose lines or points the drawing shows. They lie over all layers.
+Result<std::set<double>> marked_keys(store::Store& store, const FigureRequest& request,
+                                     const Layer& layer, const Camera& camera) {
+  const Model model = request.room->model();
+  std::optional<std::int64_t> at;  // of the table; none: now, as the picture has it
+  if (*request.shown.at < request.room->durable_sequence()) {
+    const auto then =
+        STRATA_TRY(store.table_sequence_when(*layer.table, model.id, *request.shown.at));
+    at = then;
+  }
+  const auto marks = STRATA_TRY(store.marks(*layer.table, request.role, model.id, at));
+  const double pixel = 2 / (std::abs(camera.projection[0][0]) * camera.width);
+  const double reach = kPlaceReach_px * pixel +
+                       kPlaceReachOfSize * glm::distance(model.bounds_min, model.bounds_max);
+  std::set<double> keys;
+  for (const auto& [key, mark] : marks) {
+    const auto value = static_cast<double>(key);
+    const std::size_t step = std::max<std::size_t>(1, mark.places.size() / kMostPlaces);
+    for (std::size_t i = 0; i < mark.places.size() && !keys.contains(value); i += step) {
+      const auto seen = STRATA_TRY(is_seen(request, camera, mark.places[i], reach));
+      if (seen) keys.insert(value);
+    }
+  }
+  return keys;
+}
+
+}  // namespace
+
+Result<std::vector<figure::Legend>> legends_of(store::Store& store, const FigureRequest& request,
+                                               const figure::Drawing& drawing) {
+  const Camera camera = figure::camera_of(drawing);
+  const double cells = static_cast<double>(camera.width) * camera.height;
+  const double coarser = std::max(1.0, std::sqrt(cells / kMostCells));
+  std::vector<std::string> refs;
+  std::vector<query::LayerCover> covers;
+  for (const Layer& layer : request.layers) {
+    refs.push_back(std::to_string(layer.id));
+    covers.push_back(cover_of(request, layer));
+  }
+  std::vector<figure::Legend> legends;
+  if (refs.empty()) return legends;
+  const auto seen = request.room->seen_layers(
+      refs, covers, camera, std::max(1, static_cast<int>(camera.width / coarser)),
+      std::max(1, static_cast<int>(camera.height / coarser)), request.shown.at);
+  if (!seen) return tl::unexpected(seen.error());
+  for (std::size_t i = request.layers.size(); i-- > 0;) {  // as they lie over each other
+    const Layer& layer = request.layers[i];
+    const Palette& palette = palette_of(request, layer);
+    std::set<double> there = (*seen)[i].values;
+    bool is_shown = (*seen)[i].is_seen;
+    if (layer.table) {
+      const auto marked = STRATA_TRY(marked_keys(store, request, layer, camera));
+      is_shown |= !marked.empty();
+      there.insert(marked.begin(), marked.end());
+    }
+    const bool waits = request.shown.provisional.contains(layer.id);  // also where it was erased
+    if (!is_shown && !waits) continue;
+    legends.push_back(figure::legend_of(layer, palette, &there, request.language));
+    if (waits) {
+      const Palette::Point& mark = room::provisional_palette()->points.front();
+      legends.back().entries.push_back(
+          {request.waiting_label, mark.color, mark.pattern, mark.angle, true});
+    }
+    if (palette.column.empty() || !layer.table) continue;
+    const auto table = store.table(std::to_string(*layer.table), request.role);
+    const Column* column = table ? find_column(table->columns, palette.column) : nullptr;
+    if (column)
+      legends.back().title = label_or(layer.labels, request.language, layer.name) + ": " +
+                             label_or(column->labels, request.language, column->name) +
+                             (column->unit.empty() ? "" : " [" + column->unit + "]");
+  }
+  return legends;
+}
+
+}  // namespace strata::app

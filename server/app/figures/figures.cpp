@@ -1,0 +1,288 @@
+#include "app/figures/figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <set>
+
+#include "app/figures/figure_legend.h"
+#include "core/compass.h"
+#include "core/number_text.h"
+#include "core/uuid.h"
+
+namespace strata::app {
+namespace {
+
+constexpr glm::dvec2 kLabelCell_mm{1.5, 1.5};
+constexpr std::size_t kMostPlaces = 64;  // that are tried for a label
+constexpr std::size_t kMostLabels = 2000;
+
+// The cells of a grid in which a key is seen, those farthest from what is another first.
+struct Area {
+  std::size_t cells = 0;
+  std::vector<std::pair<int, int>> places;  // cells from its border, and the cell
+};
+std::map<std::uint32_t, Area> areas_of(const std::vector<std::optional<std::uint32_t>>& keys,
+                                       int columns, int rows) {
+  // Chessboard distance, in two passes over the grid; beyond the drawing is another, too.
+  std::vector<int> inside(keys.size(), 0);
+  const auto at = [&](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(x);
+  };
+  const auto pass = [&](int x, int y, int step) {
+    int least = std::max(columns, rows);
+    for (const auto& [dx, dy] : {std::pair{-step, 0}, {0, -step}, {-step, -step}, {step, -step}}) {
+      const int nx = x + dx, ny = y + dy;
+      const bool same =
+          nx >= 0 && ny >= 0 && nx < columns && ny < rows && keys[at(nx, ny)] == keys[at(x, y)];
+      least = std::min(least, same ? inside[at(nx, ny)] + 1 : 1);
+    }
+    return least;
+  };
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) inside[at(x, y)] = pass(x, y, 1);
+  std::map<std::uint32_t, Area> areas;
+  for (int y = rows - 1; y >= 0; --y)
+    for (int x = columns - 1; x >= 0; --x) {
+      const std::size_t cell = at(x, y);
+      inside[cell] = std::min(inside[cell], pass(x, y, -1));
+      if (!keys[cell]) continue;
+      Area& area = areas[*keys[cell]];
+      ++area.cells;
+      area.places.emplace_back(inside[cell], static_cast<int>(cell));
+    }
+  return areas;
+}
+
+Result<std::map<std::uint32_t, std::string>> texts_of(store::Store& store,
+                                                      const FigureRequest& request) {
+  const Column& column = request.labels->column;
+  const auto found =
+      store.record_texts(*request.labels->layer.table, request.role, column.slug, "labels.column");
+  if (!found) return tl::unexpected(found.error());
+  std::map<std::uint32_t, std::string> texts;
+  std::map<std::string, std::string> terms;  // by key
+  if (column.kind == ColumnKind::term && column.target) {
+    const auto labels = store.record_texts(*column.target, request.role, "label", "labels.column");
+    if (!labels) return tl::unexpected(labels.error());
+    for (const auto& [key, text] : *labels) terms[std::to_string(key)] = text;
+  }
+  for (const auto& [key, text] : *found) {
+    const auto term = terms.find(text);
+    std::string words = term == terms.end() ? text : term->second;
+    if (!column.unit.empty()) words += " " + column.unit;
+    texts[static_cast<std::uint32_t>(key)] = std::move(words);
+  }
+  return texts;
+}
+
+Result<std::vector<figure::Label>> labels_of(store::Store& store, const FigureRequest& request,
+                                             const figure::Drawing& drawing,
+                                             const glm::dvec2& drawing_mm) {
+  if (!request.labels) return std::vector<figure::Label>{};
+  const int columns = std::max(1, static_cast<int>(drawing_mm.x / kLabelCell_mm.x));
+  const int rows = std::max(1, static_cast<int>(drawing_mm.y / kLabelCell_mm.y));
+  const glm::dvec2 cell_mm = drawing_mm / glm::dvec2(columns, rows);
+  const auto keys = request.room->seen_keys(request.labels->layer.slug, figure::camera_of(drawing),
+                                            columns, rows, request.shown.at);
+  if (!keys) return tl::unexpected(keys.error());
+  const auto texts = STRATA_TRY(texts_of(store, request));
+  auto areas = areas_of(*keys, columns, rows);
+  std::vector<std::pair<std::size_t, std::uint32_t>> by_size;
+  for (const auto& [key, area] : areas)
+    if (texts.contains(key)) by_size.emplace_back(area.cells, key);
+  std::ranges::sort(by_size, std::greater());
+  if (by_size.size() > kMostLabels) by_size.resize(kMostLabels);
+  std::vector<figure::LabelWish> wishes;
+  for (const auto& [size, key] : by_size) {
+    auto& places = areas[key].places;
+    const std::size_t tried = std::min(places.size(), kMostPlaces);
+    std::partial_sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(tried),
+                      places.end(), [](const auto& a, const auto& b) {
+                        return a.first != b.first ? a.first > b.first : a.second < b.second;
+                      });
+    figure::LabelWish label{texts.at(key), {}};
+    for (std::size_t i = 0; i < tried; ++i)
+      label.places.push_back(
+          (glm::dvec2(places[i].second % columns, places[i].second / columns) + 0.5) * cell_mm);
+    wishes.push_back(std::move(label));
+  }
+  return figure::place_labels(wishes, drawing_mm);
+}
+
+struct Composed {
+  figure::SheetLayout layout;
+  double scale;
+  double tightness;  // the scale at which all of it just fits
+};
+
+// The sheet that has room for the larger scale, upright where both have, and the scale that is
+// asked for or fits.
+Composed compose(const FigureRequest& request, const std::vector<figure::Legend>& legends,
+                 const glm::dvec2& size, double metres_per_unit) {
+  constexpr double kMargin = 1.02;
+  std::optional<Composed> best;
+  for (const bool landscape : {false, true}) {
+    if (request.landscape && *request.landscape != landscape) continue;
+    figure::SheetLayout layout(figure::paper_mm(request.paper, landscape), request.captions,
+                               legends, request.dpi);
+    const glm::dvec2 room_mm = layout.drawing_mm(),
+                     needed = size * (metres_per_unit * 1000) / room_mm;
+    const double tightness = std::max(needed.x, needed.y);
+    if (best && tightness >= best->tightness) continue;
+    const double scale =
+        request.scale.value_or(figure::fitting_scale(size * kMargin, room_mm, metres_per_unit));
+    best = Composed{std::move(layout), scale, tightness};
+  }
+  return std::move(*best);
+}
+
+// Where true north is on the paper, unless it points more out of it than along it.
+std::optional<glm::dvec2> north_on(const figure::Plane& plane, const Model& model) {
+  const Compass compass(model);
+  if (!compass.is_known) return std::nullopt;
+  const glm::dvec3 drawn = plane.of(compass.true_north());
+  const glm::dvec2 flat(drawn.x, -drawn.y);
+  constexpr double kFlattest = 0.7;
+  if (glm::length(flat) < kFlattest) return std::nullopt;
+  return glm::normalize(flat);
+}
+
+// Where pixels are larger than 1/600 inch each is the mean of four, so that outlines and thin paint
+// are smooth.
+Result<Picture> draw(const FigureRequest& request, const figure::Drawing& drawing,
+                     Progress& progress) {
+  Picture picture{drawing.width, drawing.height, {}};
+  picture.rgba.resize(std::size_t{4} * picture.width * picture.height);
+  figure::Drawing fine = drawing;
+  const int finer = drawing.dpi <= 300 ? 2 : 1;
+  fine.dpi *= finer;
+  fine.width *= finer;
+  fine.height *= finer;
+  const auto parts = figure::parts_of(fine);
+  std::vector<room::PicturePart> wanted;
+  for (const auto& part : parts)
+    wanted.push_back(
+        {part.camera, static_cast<double>(part.width + 2 * part.margin) / part.camera.width});
+  // Where each pixel is the mean of four, a band may end between two rows of a pair.
+  std::vector<std::uint8_t> upper;
+  auto drawn = request.room->pictures(
+      request.shown, wanted,
+      [&](std::size_t i, const room::Room::PictureBand& band) -> Result<void> {
+        const int left = parts[i].x / finer, top = parts[i].y / finer;  // parts are of whole inches
+        const int margin = parts[i].margin;
+        const int columns = std::min(parts[i].width / finer, picture.width - left);
+        const std::size_t stride = std::size_t{4} * static_cast<std::size_t>(band.width);
+        for (int row = 0; row < band.rows; ++row) {
+          const int inner = band.top + row - margin;  // row of the part
+          const int y = top + inner / finer;
+          if (inner < 0) continue;
+          if (inner >= parts[i].height || y >= picture.height) break;
+          const std::uint8_t* from = band.rgba.data() + stride * static_cast<std::size_t>(row) +
+                                     std::size_t{4} * static_cast<std::size_t>(margin);
+          std::uint8_t* to =
+              picture.rgba.data() + std::size_t{4} * (static_cast<std::size_t>(y) *
+                                                          static_cast<std::size_t>(picture.width) +
+                                                      static_cast<std::size_t>(left));
+          if (finer == 1) {
+            std::memcpy(to, from, std::size_t{4} * static_cast<std::size_t>(columns));
+            continue;
+          }
+          if (inner % finer == 0) {
+            upper.assign(from, from + std::size_t{4} * static_cast<std::size_t>(parts[i].width));
+            continue;
+          }
+          const std::uint8_t* above = upper.data();
+          for (int x = 0; x < columns; ++x, from += 8, above += 8)
+            for (int channel = 0; channel < 4; ++channel)
+              *to++ = static_cast<std::uint8_t>(
+                  (above[channel] + above[channel + 4] + from[channel] + from[channel + 4] + 2) /
+                  4);
+        }
+        if (band.top + band.rows == band.height)
+          progress.report(
+              static_cast<double>(i + 1) / static_cast<double>(parts.size()),
+              "Drawing part " + std::to_string(i + 1) + " of " + std::to_string(parts.size()));
+        if (progress.cancelled()) return cancelled_problem();
+        return {};
+      });
+  if (!drawn) return tl::unexpected(drawn.error());
+  return picture;
+}
+
+// "pot-front-1-5.pdf"
+std::string file_name(const FigureRequest& request, double scale) {
+  const std::string text = scale >= 1 ? "1-" + short_number(scale) : short_number(1 / scale) + "-1";
+  return request.room->model().slug + "-" + request.from + "-" + text +
+         std::string(figure::extension(request.format));
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const TemporaryFile>> make_figure(store::Store& store, ByteBudget& budget,
+                                                         const FigureRequest& request,
+                                                         const std::filesystem::path& folder,
+                                                         Progress& progress) {
+  progress.begin_stage(0, 0.05);
+  progress.report(0, "Measuring");
+  const Model model = request.room->model();
+  const auto geometry = request.room->geometry();
+  const auto extent = figure::extent_of(geometry->positions, request.plane, request.section);
+  if (!extent)
+    return fail(ErrorCode::invalid, "Nothing to draw", "The section cuts everything away.",
+                "camera.section");
+  const glm::dvec2 size =
+      request.center
+          ? 2.0 * glm::max(glm::abs(glm::dvec2(extent->max - request.plane.of(*request.center))),
+                           glm::abs(glm::dvec2(request.plane.of(*request.center) - extent->min)))
+          : glm::dvec2(extent->max - extent->min);
+  const auto drawing_on = [&](const Composed& composed) {
+    figure::Drawing drawing;
+    drawing.plane = request.plane;
+    drawing.center = request.center ? glm::dvec2(request.plane.of(*request.center))
+                                    : glm::dvec2(extent->min + extent->max) / 2.0;
+    const double depth = std::max(extent->max.z - extent->min.z,
+                                  1e-3 * glm::length(model.bounds_max - model.bounds_min));
+    drawing.near = extent->min.z - 0.01 * depth;
+    drawing.far = extent->max.z + 0.01 * depth;
+    drawing.scale = composed.scale;
+    drawing.metres_per_unit = model.metres();
+    drawing.dpi = request.dpi;
+    drawing.width = composed.layout.drawing_width();
+    drawing.height = composed.layout.drawing_height();
+    drawing.section = request.section;
+    return drawing;
+  };
+  std::vector<figure::Legend> legends;
+  if (request.legend) {
+    // The drawing is largest without a legend: what is seen there is told.
+    auto seen = STRATA_TRY(
+        legends_of(store, request, drawing_on(compose(request, {}, size, model.metres()))));
+    legends = std::move(seen);
+  }
+  const Composed composed = compose(request, legends, size, model.metres());
+  const figure::SheetLayout& layout = composed.layout;
+  const figure::Drawing drawing = drawing_on(composed);
+
+  const auto held = STRATA_TRY(budget.take(std::uint64_t{4} * drawing.width * drawing.height));
+  const auto labels = STRATA_TRY(labels_of(store, request, drawing, layout.drawing_mm()));
+  progress.begin_stage(0.05, 0.75);
+  const auto picture = STRATA_TRY(draw(request, drawing, progress));
+  progress.begin_stage(0.75, 1);
+  const auto sheet = layout.finish(drawing.scale, north_on(request.plane, model), labels);
+  auto file = std::make_shared<TemporaryFile>();
+  file->path = folder / (to_string(random_uuid()) + ".figure");
+  file->name = file_name(request, drawing.scale);
+  file->media_type = figure::media_type(request.format);
+  const figure::Document document{request.captions.title, request.captions.credit};
+  if (auto written = figure::write_figure(sheet, picture, request.dpi, request.format, document,
+                                          file->path, progress);
+      !written)
+    return tl::unexpected(written.error());
+  file->bytes = std::filesystem::file_size(file->path);
+  return file;
+}
+
+}  // namespace strata::app

@@ -1,0 +1,44 @@
+#include "app/layers/computed_layers.h"
+
+namespace strata::app {
+namespace {
+
+Result<void> check_other_model(store::Store& store, const jobs::ShapeRecipe& recipe) {
+  if (recipe.model.empty()) return {};
+  auto other = store.model(recipe.model);
+  if (other) return {};
+  Error problem = other.error();
+  if (problem.code == ErrorCode::not_found)
+    problem = {ErrorCode::invalid, "No such model", "There is no model \"" + recipe.model + "\".",
+               "compute.model"};
+  return tl::unexpected(std::move(problem));
+}
+
+}  // namespace
+
+Result<jobs::ShapeRecipe> check_recipe(store::Store& store, jobs::ShapeRecipe recipe,
+                                       const Model& model) {
+  auto complete = STRATA_TRY(jobs::completed(std::move(recipe), model));
+  STRATA_TRY(check_other_model(store, complete));
+  return complete;
+}
+
+Result<Layer> add_shape_layer(store::Store& store, const room::Room& room, NewLayers& layers,
+                              const Layer& wish, const jobs::ShapeRecipe& recipe, bool has_palette,
+                              const std::string& user, Progress& progress) {
+  auto computed = STRATA_TRY(jobs::compute_shape_layer(store, room.model(), room.geometry(), recipe,
+                                                       wish.type, wish.resolution, progress));
+  Layer layer = wish;
+  layer.origin = LayerOrigin::shape;
+  if (layer.unit.empty()) layer.unit = computed.unit;
+  layer.description += (layer.description.empty() ? "" : "\n\n") + computed.description;
+  if (!has_palette) layer.palette = std::move(computed.palette);
+  progress.report(1, "Saving");
+  auto made = STRATA_TRY(
+      layers.add(std::move(layer), std::move(computed.tiles), std::move(computed.recipe)));
+  // Others see it once they want to.
+  STRATA_TRY(store.show_layer_to(user, made.model_id, made.id));
+  return made;
+}
+
+}  // namespace strata::app

@@ -1,0 +1,152 @@
+#include "app/layers/formula_layers.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "app/edits.h"
+#include "jobs/shape_layer.h"
+#include "query/expression_parser.h"
+#include "room/expression_binding.h"
+#include "room/room.h"
+#include "store/store.h"
+
+namespace strata::app {
+namespace {
+
+// A number or a condition.
+bool reads_records_of(const Expression& e, const std::string& layer) {
+  return (e.is_column() && e.name == layer) ||
+         std::ranges::any_of(e.parts,
+                             [&](const Expression& part) { return reads_records_of(part, layer); });
+}
+
+std::vector<query::LayerView> views_of(const std::vector<Layer>& layers) {
+  std::vector<query::LayerView> views;
+  for (const Layer& layer : layers) views.push_back({layer, {}});
+  return views;
+}
+
+Result<TileMap> shape_tiles(store::Store& store, const room::Room& room, const std::string& name,
+                            int resolution, Progress& progress) {
+  const Model model = room.model();
+  for (const auto& [normal, axis] : {std::pair("nx", 0), std::pair("ny", 1), std::pair("nz", 2)})
+    if (name == normal) return jobs::paint_normals(room.geometry(), axis, resolution, progress);
+  jobs::ShapeRecipe recipe;
+  recipe.kind = name == "height"  ? jobs::ShapeKind::height
+                : name == "slope" ? jobs::ShapeKind::slope
+                                  : jobs::ShapeKind::mean_curvature;
+  auto complete = STRATA_TRY(jobs::completed(std::move(recipe), model));
+  auto shape = STRATA_TRY(jobs::compute_shape_layer(store, model, room.geometry(), complete,
+                                                    ValueType::f32, resolution, progress));
+  return std::move(shape.tiles);
+}
+
+Result<std::vector<query::LayerView>> shape_views(store::Store& store, const room::Room& room,
+                                                  const Expression& expression, int resolution,
+                                                  Progress& progress) {
+  std::vector<query::LayerView> views;
+  for (const std::string& name : room::shapes_read(expression, views_of(room.layers()))) {
+    auto tiles = STRATA_TRY(shape_tiles(store, room, name, resolution, progress));
+    query::LayerView view;
+    view.layer.slug = std::string(room::kShapePrefix) + name;
+    view.layer.type = ValueType::f32;
+    view.layer.resolution = resolution;
+    view.snapshot.tiles = std::move(tiles);
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+bool is_condition(const Layer& layer) {
+  const auto expression =
+      layer.formula ? parse_formula(layer.formula->expression) : fail(ErrorCode::invalid, {}, {});
+  return expression && expression->is_condition();
+}
+
+// Colours over most of the values; those of a condition are as they were made.
+Result<Layer> with_colors(room::Room& room, Layer layer) {
+  if (is_condition(layer)) return layer;
+  const auto values = STRATA_TRY(room.statistics(layer.slug, {}, {.quantiles = true}));
+  if (!values.quantiles || !(values.max > values.min)) return layer;
+  jobs::ValueRange range{values.min, values.quantiles->front(), values.quantiles->back(),
+                         values.max};
+  if (!(range.high > range.low))
+    std::tie(range.low, range.high) = std::pair(range.least, range.most);
+  layer.palette = jobs::palette_of(jobs::ShapeKind::vertex_property, range);
+  return room.update_layer(std::move(layer));
+}
+
+}  // namespace
+
+Result<Expression> parse_formula(const std::string& text) {
+  auto number = query::parse_number(text, "expression");
+  if (number) return number;
+  auto condition = query::parse_condition(text, "expression");
+  return condition ? std::move(condition) : std::move(number);
+}
+
+Result<LayerFormula> read_formula(const room::Room& room, const std::string& text, bool automatic,
+                                  Visibility visibility, std::optional<std::int64_t> self) {
+  const auto expression = STRATA_TRY(parse_formula(text));
+  const std::vector<Layer> layers = room.layers();
+  const auto shapes = room::shapes_read(expression, views_of(layers));
+  LayerFormula formula;
+  formula.expression = text;
+  formula.automatic = automatic;
+  for (const std::string& slug : layers_of(expression)) {
+    const auto layer = std::ranges::find(layers, slug, &Layer::slug);
+    if (layer == layers.end()) continue;  // of the surface, or nothing: the binding says so
+    if (self && layer->id == *self)
+      return fail(ErrorCode::invalid, "Computed from itself",
+                  "The expression reads the very layer that it is for.", "expression");
+    LayerFormula::Input input{slug, layer->id, {}};
+    if (reads_records_of(expression, slug)) input.table = layer->table;
+    formula.inputs.push_back(std::move(input));
+  }
+  std::ranges::sort(formula.inputs, {}, &LayerFormula::Input::slug);
+  STRATA_TRY(room.check_expression(expression, "expression", visibility));
+  return formula;
+}
+
+Result<Layer> compute_layer(const Services& services, const std::shared_ptr<room::Room>& room,
+                            const Layer& layer, const Author& author, Progress& progress,
+                            bool overwrites) {
+  if (!layer.formula)
+    return fail(ErrorCode::conflict, "No expression",
+                "This layer has no expression that it could be computed from.", "layer");
+  for (const auto& input : layer.formula->inputs)
+    if (!input.layer)
+      return fail(ErrorCode::conflict, "Input deleted",
+                  "The expression reads the layer '" + input.slug +
+                      "', which was deleted. Change the expression.",
+                  "expression");
+  const auto expression = STRATA_TRY(parse_formula(layer.formula->expression));
+  auto shapes =
+      STRATA_TRY(shape_views(services.store, *room, expression, layer.resolution, progress));
+  if (progress.cancelled()) return cancelled_problem();
+  // Before the records are read: what changes meanwhile makes the layer stale.
+  const auto tables = STRATA_TRY(services.store.table_sequences_of(layer.id));
+  room::EditRequest edit{random_uuid(), author, layer.id};
+  edit.record = {{"op", "compute"}, {"expression", layer.formula->expression}};
+  edit.edit = room::ComputeEdit{expression, std::move(shapes), overwrites};
+  const auto done = STRATA_TRY(edit_and_wait(*room, std::move(edit), services.edits));
+  return room->layer_computed(layer.id, layer.formula->expression, done.sequence, tables);
+}
+
+bool reads_shape(const room::Room& room, const Expression& expression) {
+  return !room::shapes_read(expression, views_of(room.layers())).empty();
+}
+
+Result<Layer> add_formula_layer(const Services& services, const std::shared_ptr<room::Room>& room,
+                                NewLayers& layers, Layer layer, const Author& author,
+                                bool has_palette, Progress& progress) {
+  return layers.add(std::move(layer), [&](const Layer& made) -> Result<Layer> {
+    auto computed = STRATA_TRY(compute_layer(services, room, made, author, progress));
+    // Others see it once they want to.
+    STRATA_TRY(services.store.show_layer_to(author.user, made.model_id, made.id));
+    return has_palette ? Result<Layer>(std::move(computed))
+                       : with_colors(*room, std::move(computed));
+  });
+}
+
+}  // namespace strata::app

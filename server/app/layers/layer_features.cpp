@@ -1,0 +1,252 @@
+#include "app/layers/layer_features.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+
+#include "app/figures/class_names.h"
+#include "app/records/record_csv.h"
+#include "core/column_value.h"
+#include "core/mark.h"
+
+namespace strata::app {
+namespace {
+
+using Kind = FeatureField::Kind;
+
+// The table of a database layer, with the records that may have features.
+struct Records {
+  std::vector<Column> columns;  // that features have as attributes
+  std::vector<Column> marks;    // of lines and points
+  std::map<std::int64_t, Record> by_key;
+  RecordNames names;
+  WordsOfTables words;
+};
+
+Result<Records> read_records(store::Store& store, const FeatureRequest& request,
+                             std::vector<std::int64_t> painted) {
+  store::Store::RecordQuery query;
+  query.limit = store::kMostRecords;
+  if (request.at) {
+    const auto then =
+        store.table_sequence_when(*request.layer.table, request.layer.model_id, *request.at);
+    if (!then) return tl::unexpected(then.error());
+    query.at = *then;
+  }
+  const auto table = STRATA_TRY(store.table(std::to_string(*request.layer.table), request.role));
+  // Records that are painted nowhere may have lines and points.
+  const auto is_mark = [](const Column& column) { return holds_marks(column.kind); };
+  if (std::ranges::none_of(table.columns, is_mark)) query.keys = std::move(painted);
+  auto page = STRATA_TRY(store.records(table.id, request.role, query));
+  Records records;
+  for (const Column& column : page.table.columns)
+    if (is_mark(column))
+      records.marks.push_back(column);
+    else if (!holds_attachments(column.kind))
+      records.columns.push_back(column);
+  std::vector<std::int64_t> keys;
+  for (Record& record : page.records) {
+    keys.push_back(record.key);
+    records.by_key.emplace(record.key, std::move(record));
+  }
+  auto names =
+      record_names(store, table.id, request.role, std::move(keys), query.at, request.language);
+  if (!names) return tl::unexpected(names.error());
+  records.names = std::move(*names);
+  auto words = STRATA_TRY(words_of(store, records.columns, request.role, request.language));
+  records.words = std::move(words);
+  return records;
+}
+
+Kind kind_of(const Column& column) {
+  switch (column.kind) {
+    case ColumnKind::integer: return Kind::integer;
+    case ColumnKind::numeric: return Kind::real;
+    case ColumnKind::boolean: return Kind::boolean;
+    default: return Kind::text;
+  }
+}
+
+FeatureValue value_of(const Record& record, const Column& column, const WordsOfTables& words) {
+  const auto found = record.values.find(column.id);
+  if (found == record.values.end() || found->second.is_null()) return {};
+  const nlohmann::json& value = found->second;
+  if (auto word = term_word(record, column, words)) return std::move(*word);
+  switch (kind_of(column)) {
+    case Kind::integer: return value.get<std::int64_t>();
+    case Kind::real: return value.get<double>();
+    case Kind::boolean: return value.get<bool>();
+    default: return print_value(column, value);
+  }
+}
+
+// The names of a table's fields: what is called like one of ours, or like what formats call theirs,
+// gets `column_` before its name.
+class Fields {
+ public:
+  explicit Fields(std::vector<FeatureField> own) : fields_(std::move(own)) {
+    for (const FeatureField& field : fields_) taken_.insert(field.name);
+  }
+  void add(const Column& column) {
+    std::string name = column.slug;
+    while (taken_.contains(name)) name = "column_" + name;
+    taken_.insert(name);
+    fields_.push_back({std::move(name), kind_of(column)});
+  }
+  std::vector<FeatureField> take() { return std::move(fields_); }
+
+ private:
+  std::vector<FeatureField> fields_;
+  std::set<std::string> taken_{"fid", "geom", "kind", "ogc_fid", "rowid"};
+};
+
+FeatureValue text_or_nothing(std::string text) {
+  return text.empty() ? FeatureValue{} : FeatureValue(std::move(text));
+}
+
+void add_record(Feature& feature, const Records& records, std::int64_t key) {
+  const auto record = records.by_key.find(key);
+  for (const Column& column : records.columns)
+    feature.values.push_back(record == records.by_key.end()
+                                 ? FeatureValue{}
+                                 : value_of(record->second, column, records.words));
+}
+
+// Which class of query::classes_of it counts.
+std::uint32_t class_of(const query::Quantity& quantity, const Layer& layer,
+                       const query::ValueClasses& classes) {
+  if (quantity.value)
+    return classes.of(encode_value(layer.type, *quantity.value).value_or(0), *quantity.value);
+  std::uint32_t range = 0;
+  while (range < classes.limits.size() && classes.from(range) != quantity.from) ++range;
+  return range;
+}
+
+FeatureTable areas_of(const FeatureRequest& request, const query::Quantities& all,
+                      const query::Perimeters& perimeters, query::PlaneOutlines outlines,
+                      const Records& records) {
+  const Layer& layer = request.layer;
+  const Model model = request.room->model();
+  const query::ValueClasses classes = query::classes_of(layer);
+  const bool has_keys = layer.table.has_value();
+  std::vector<FeatureField> own;
+  if (has_keys)
+    own.push_back({"key", Kind::integer});
+  else if (classes.each)
+    own.push_back({"value", Kind::real});
+  else
+    own.insert(own.end(), {{"from", Kind::real}, {"to", Kind::real}});
+  own.insert(own.end(), {{"name", Kind::text},
+                         {"area_m2", Kind::real},
+                         {"perimeter_m", Kind::real},
+                         {"texels", Kind::integer},
+                         {"pieces", Kind::integer},
+                         {"layer", Kind::text},
+                         {"model", Kind::text}});
+  Fields fields(std::move(own));
+  for (const Column& column : records.columns) fields.add(column);
+  FeatureTable table{FeatureKind::areas, "areas", fields.take(), {}};
+  const auto number = [](const std::optional<double>& value) {
+    return value ? FeatureValue(*value) : FeatureValue{};
+  };
+  for (const query::Quantity& quantity : all.classes) {
+    Feature& feature = table.features.emplace_back();
+    const std::uint32_t a_class = class_of(quantity, layer, classes);
+    const std::int64_t key = has_keys ? static_cast<std::int64_t>(*quantity.value) : 0;
+    if (has_keys)
+      feature.values = {key};
+    else if (classes.each)
+      feature.values = {*quantity.value};
+    else
+      feature.values = {number(quantity.from), number(quantity.to)};
+    const std::string label = quantity_label(quantity, layer, records.names);
+    feature.values.push_back(text_or_nothing(has_keys ? label : quantity_text(quantity, label)));
+    const auto length = perimeters.of_class.find(a_class);
+    feature.values.emplace_back(quantity.area_m2);
+    feature.values.emplace_back(
+        length == perimeters.of_class.end() ? 0 : length->second * model.metres());
+    feature.values.emplace_back(static_cast<std::int64_t>(quantity.texels));
+    feature.values.emplace_back(static_cast<std::int64_t>(quantity.pieces));
+    feature.values.emplace_back(layer.slug);
+    feature.values.emplace_back(model.slug);
+    add_record(feature, records, key);
+    if (const auto outline = outlines.find(a_class); outline != outlines.end())
+      feature.geometry = std::move(outline->second);
+  }
+  return table;
+}
+
+FeatureTable marks_in(const FeatureRequest& request, const Records& records, const Column& marks) {
+  const bool are_lines = marks.kind == ColumnKind::line;
+  const Model model = request.room->model();
+  std::vector<FeatureField> own{{"key", Kind::integer}, {"name", Kind::text}};
+  if (are_lines) own.push_back({"length_m", Kind::real});
+  own.insert(own.end(), {{"layer", Kind::text}, {"model", Kind::text}});
+  Fields fields(std::move(own));
+  for (const Column& column : records.columns) fields.add(column);
+  FeatureTable table{are_lines ? FeatureKind::lines : FeatureKind::points,
+                     (are_lines ? "lines_" : "points_") + marks.slug,
+                     fields.take(),
+                     {}};
+  for (const auto& [key, record] : records.by_key)
+    for (const Mark& mark : marks_of(record, marks)) {
+      if (mark.model != model.id) continue;
+      Feature& feature = table.features.emplace_back();
+      const auto name = records.names.find(key);
+      feature.values = {
+          key, text_or_nothing(name == records.names.end() ? std::string() : name->second)};
+      if (are_lines) feature.values.emplace_back(length_of(mark) * model.metres());
+      feature.values.emplace_back(request.layer.slug);
+      feature.values.emplace_back(model.slug);
+      add_record(feature, records, key);
+      query::FlatRing path;
+      for (const glm::dvec3& place : mark.places)
+        path.emplace_back(place[request.plane.right], place[request.plane.up],
+                          place[request.plane.depth]);
+      feature.geometry = {{{std::move(path)}}};
+    }
+  return table;
+}
+
+// Coordinates of a map are metres, and only what is seen along z lies in it.
+int epsg_of(const Model& model, const query::OutlinePlane& plane) {
+  constexpr std::string_view kAuthority = "EPSG:";
+  int code = 0;
+  if (plane.depth == 2 && model.unit == Unit::m && model.crs.starts_with(kAuthority))
+    std::from_chars(model.crs.data() + kAuthority.size(), model.crs.data() + model.crs.size(),
+                    code);
+  return code;
+}
+
+}  // namespace
+
+Result<FeatureSet> layer_features(store::Store& store, const FeatureRequest& request) {
+  const Model model = request.room->model();
+  const auto areas = request.room->layer_areas(request.layer.slug, request.at);
+  if (!areas) return tl::unexpected(areas.error());
+  const query::Quantities& all = areas->quantities;
+  auto outlines = query::plane_outlines(areas->view, *request.room->geometry(), *areas->map,
+                                        query::classes_of(request.layer), request.plane);
+  if (!outlines) return tl::unexpected(outlines.error());
+  Records records;
+  if (request.layer.table) {
+    std::vector<std::int64_t> painted;
+    for (const query::Quantity& quantity : all.classes)
+      painted.push_back(static_cast<std::int64_t>(*quantity.value));
+    auto read = STRATA_TRY(read_records(store, request, std::move(painted)));
+    records = std::move(read);
+  }
+  FeatureSet set;
+  set.name = model.slug + "-" + request.layer.slug;
+  set.unit = name(model.unit);
+  for (const int axis : {request.plane.right, request.plane.up, request.plane.depth})
+    set.axes += "xyz"[axis];
+  set.epsg = epsg_of(model, request.plane);
+  set.description = request.layer.name + " on " + model.name + ": " + set.axes + " in " + set.unit;
+  set.tables.push_back(areas_of(request, all, areas->perimeters, std::move(*outlines), records));
+  for (const Column& marks : records.marks) set.tables.push_back(marks_in(request, records, marks));
+  return set;
+}
+
+}  // namespace strata::app

@@ -1,0 +1,77 @@
+#include "app/layers/new_layers.h"
+
+#include <algorithm>
+
+#include "core/log.h"
+
+namespace strata::app {
+namespace {
+
+constexpr int kMostTries = 5;
+
+}  // namespace
+
+Result<Layer> NewLayers::add(Layer layer, const std::function<Result<Layer>(const Layer&)>& fill) {
+  const bool visible = layer.visible;
+  layer.visible = false;
+  auto created =
+      room_->create_layer(std::move(layer), {.key = {}, .make = {}, .user = author_.user});
+  if (!created) return created;
+  made_.push_back({*created, visible});
+  return fill(*created);
+}
+
+Result<Layer> NewLayers::add(Layer layer, TileMap tiles, nlohmann::json recipe) {
+  return add(std::move(layer), [&](const Layer& created) {
+    return paint(created, std::move(tiles), std::move(recipe));
+  });
+}
+
+Result<Layer> NewLayers::paint(const Layer& created, TileMap tiles, nlohmann::json recipe) {
+  room::EditRequest edit{random_uuid(), author_, created.id};
+  edit.record = {{"op", "import"}, {"recipe", std::move(recipe)}};
+  edit.edit = room::ImportEdit{.tiles = std::move(tiles), .computed = true};
+  STRATA_TRY(edit_and_wait(*room_, std::move(edit), counters_));
+  return created;
+}
+
+Result<void> NewLayers::show(const store::FirstAnswer<Layer>& answer) {
+  store::FirstAnswer<Layer> last = answer;
+  last.user.clear();  // that they are shown belongs to their making
+  for (std::size_t i = 0; i < made_.size(); ++i) {
+    const bool is_last = i + 1 == made_.size();
+    for (int tries = 0;; ++tries) {
+      auto now = STRATA_TRY(room_->layer(std::to_string(made_[i].layer.id)));
+      now.visible = made_[i].visible;
+      auto shown = room_->update_layer(now, is_last ? last : store::FirstAnswer<Layer>{});
+      if (shown) break;
+      // Someone renamed it at this very moment: then what they made of it is shown.
+      if (shown.error().code != ErrorCode::stale || tries == kMostTries)
+        return tl::unexpected(shown.error());
+    }
+  }
+  return {};
+}
+
+void NewLayers::take_back() {
+  for (const Made& made : made_)
+    if (auto gone = room_->delete_layer(made.layer.id);
+        !gone && gone.error().code != ErrorCode::not_found && gone.error().code != ErrorCode::gone)
+      log::warning("layer " + std::to_string(made.layer.id) +
+                   " of work that failed could not be removed: " + gone.error().detail);
+  made_.clear();
+}
+
+int order_on_top(const std::vector<Layer>& others) {
+  int top = -1;
+  for (const Layer& other : others) top = std::max(top, other.order);
+  return top + 1;
+}
+
+std::vector<std::int64_t> NewLayers::ids() const {
+  std::vector<std::int64_t> ids;
+  for (const Made& made : made_) ids.push_back(made.layer.id);
+  return ids;
+}
+
+}  // namespace strata::app

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "app/edits.h"
+#include "core/tile_mirror.h"
+#include "store/first_answer.h"
+
+namespace strata::app {
+
+// Layers that a job makes with their content. They are hidden until they are painted, so that
+// nobody sees them half made; taken away again where that fails. Used on the job's thread; blocks.
+class NewLayers {
+ public:
+  NewLayers(std::shared_ptr<room::Room> room, EditCounters& counters, Author author)
+      : room_(std::move(room)), counters_(counters), author_(std::move(author)) {}
+
+  // Makes the layer and paints it as one edit of the author. `recipe`: for its history.
+  Result<Layer> add(Layer layer, TileMap tiles, nlohmann::json recipe);
+  // Makes the layer and has it filled.
+  Result<Layer> add(Layer layer, const std::function<Result<Layer>(const Layer&)>& fill);
+  // Shows them as they were asked for. The answer is kept with the last one.
+  Result<void> show(const store::FirstAnswer<Layer>& answer);
+  void take_back();  // all that were added
+
+  std::vector<std::int64_t> ids() const;
+
+ private:
+  Result<Layer> paint(const Layer& created, TileMap tiles, nlohmann::json recipe);
+
+  struct Made {
+    Layer layer;
+    bool visible;  // as asked for
+  };
+  std::shared_ptr<room::Room> room_;
+  EditCounters& counters_;
+  const Author author_;
+  std::vector<Made> made_;
+};
+
+// One above the highest of the others.
+int order_on_top(const std::vector<Layer>& others);
+
+}  // namespace strata::app

@@ -1,0 +1,104 @@
+#include "app/layers/recomputer.h"
+
+#include <algorithm>
+#include <exception>
+
+#include "app/layers/formula_layers.h"
+#include "core/log.h"
+#include "room/room.h"
+#include "store/store.h"
+
+namespace strata::app {
+namespace {
+
+constexpr std::chrono::seconds kBetweenLooks{1}, kFirstPause{5}, kLongestPause{600};
+constexpr int kMostLooks = 10;
+// Who computes, in the layer's history: the server itself, which no lock stops.
+const Author kAuthor("Strata", Role::owner);
+
+}  // namespace
+
+Recomputer::Recomputer(const Services& services)
+    : services_(services), thread_([this] { run(); }) {}
+
+void Recomputer::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  progress_.cancel();
+  wake_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+bool Recomputer::is_stopping() {
+  const std::lock_guard lock(mutex_);
+  return stopping_;
+}
+
+void Recomputer::run() {
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      if (wake_.wait_for(lock, kBetweenLooks, [this] { return stopping_; })) return;
+    }
+    try {
+      const auto layers = services_.store.layers_to_recompute();
+      if (!layers) continue;  // the database is away
+      for (const Layer& layer : *layers) {
+        if (is_stopping()) return;
+        recompute(layer);
+      }
+      const auto uncounted = services_.store.layers_to_sum();
+      if (!uncounted) continue;
+      for (const Layer& layer : *uncounted) {
+        if (is_stopping()) return;
+        attempt(layer, "counted",
+                [&](const std::shared_ptr<room::Room>& room) { return room->sum_layer(layer.id); });
+      }
+    } catch (const std::exception& error) {
+      log::error(std::string("computing layers failed: ") + error.what());
+    }
+  }
+}
+
+bool Recomputer::is_quiet(const room::Room& room, std::int64_t layer_id) {
+  Wait& wait = waits_[layer_id];
+  const std::int64_t sequence = room.sequence();
+  if (wait.sequence != sequence && ++wait.looks < kMostLooks) {
+    wait.sequence = sequence;
+    return false;
+  }
+  waits_.erase(layer_id);
+  return true;
+}
+
+void Recomputer::attempt(
+    const Layer& layer, const char* what,
+    const std::function<Result<void>(const std::shared_ptr<room::Room>&)>& work) {
+  const auto now = std::chrono::steady_clock::now();
+  const auto failed = failures_.find(layer.id);
+  if (failed != failures_.end() && now < failed->second.again) return;
+  auto room = services_.rooms.open(std::to_string(layer.model_id), kAuthor.role);
+  if (room && !is_quiet(**room, layer.id)) return;
+  const Result<void> done = room ? work(*room) : tl::unexpected(room.error());
+  if (done) {
+    failures_.erase(layer.id);
+    return;
+  }
+  const auto pause =
+      failed == failures_.end() ? kFirstPause : std::min(kLongestPause, 2 * failed->second.pause);
+  failures_[layer.id] = {now + pause, pause};
+  if (failed == failures_.end() && !is_stopping())
+    log::warning("layer " + std::to_string(layer.id) + " could not be " + what + ": " +
+                 done.error().detail);
+}
+
+void Recomputer::recompute(const Layer& layer) {
+  attempt(layer, "computed", [&](const std::shared_ptr<room::Room>& room) -> Result<void> {
+    STRATA_TRY(compute_layer(services_, room, layer, kAuthor, progress_));
+    return {};
+  });
+}
+
+}  // namespace strata::app

@@ -1,0 +1,50 @@
+#include "app/maps/map_legend.h"
+
+#include <algorithm>
+
+namespace strata::app {
+namespace {
+
+constexpr std::size_t kMostPoints = 4096, kLongestName = 200;  // as in the schema `Palette`
+constexpr std::size_t kMostNamed = 5;
+
+}  // namespace
+
+Result<std::optional<query::KeyNames>> keys_of(room::Room& room, const Layer& layer,
+                                               const std::set<double>& records) {
+  if (!lists_values(layer.palette)) return std::nullopt;
+  const auto statistics = STRATA_TRY(room.statistics(layer.slug));
+  std::set<double> taken = records;
+  for (const auto& [key, of_key] : statistics.keys) taken.insert(key);
+  return query::KeyNames(layer.palette, taken);
+}
+
+Result<void> extend_legend(Role role, room::Room& room, const Layer& layer,
+                           const query::KeyNames& keys) {
+  if (!keys.has_changed()) return {};
+  const auto& names = keys.added_names();
+  if (role < Role::curator) {
+    if (names.empty()) return {};
+    std::string listed;
+    for (std::size_t i = 0; i < std::min(names.size(), kMostNamed); ++i)
+      listed += (i ? ", " : "") + names[i].substr(0, kLongestName);
+    return fail(ErrorCode::forbidden, "Names not in the legend",
+                "The legend of the layer lacks: " + listed +
+                    (names.size() > kMostNamed ? ", …" : "") + ". A curator may add them.",
+                "attribute");
+  }
+  for (const std::string& name : names)
+    if (name.size() > kLongestName)
+      return fail(ErrorCode::invalid, "Name too long",
+                  "\"" + name.substr(0, 60) + "…\" is too long for a legend.", "attribute");
+  Layer changed = layer;
+  changed.palette = keys.extended();
+  changed.palette_of_terms = false;
+  if (changed.palette.points.size() > kMostPoints)
+    return fail(ErrorCode::invalid, "Too many names",
+                "A legend holds at most " + std::to_string(kMostPoints) + " entries.", "attribute");
+  STRATA_TRY(room.update_layer(std::move(changed)));
+  return {};
+}
+
+}  // namespace strata::app

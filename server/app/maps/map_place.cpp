@@ -1,0 +1,75 @@
+#include "app/maps/map_place.h"
+
+#include <array>
+
+#include "core/value_type.h"
+#include "query/map_features.h"
+
+namespace strata::app {
+
+Result<MapAxis> parse_map_axis(std::string_view text) {
+  const int axis = text.size() == 2 ? text[1] - 'x' : -1;
+  if (axis < 0 || axis > 2 || (text[0] != '-' && text[0] != '+'))
+    return fail(ErrorCode::invalid, "Unknown direction",
+                "`along` is one of -x, +x, -y, +y, -z, +z: the way that the map is looked at.",
+                "along");
+  MapAxis made{glm::dvec3(0), axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
+  made.direction[axis] = text[0] == '-' ? -1 : 1;
+  return made;
+}
+
+Result<query::WorldFile> world_of(const MapOptions& options, const MapFiles& files,
+                                  const std::optional<query::WorldFile>& own) {
+  if (options.world) return query::parse_world_file(*options.world, "world");
+  if (const auto text = files.companion_text({"tfw", "tifw", "pgw", "jgw", "wld"}); !text.empty())
+    return query::parse_world_file(text, "body");
+  if (own) return *own;
+  return fail(
+      ErrorCode::invalid, "Place missing",
+      "The picture does not say where it lies. Give `world`, the six numbers of its world file, or send that file "
+      "with it.",
+      "world");
+}
+
+Result<void> check_map_crs(const Model& model, const std::string& crs, bool in_degrees) {
+  if (in_degrees)
+    return fail(
+        ErrorCode::invalid, "Coordinates in degrees",
+        "The map lies in longitude and latitude. Save it in the plane coordinates of the model" +
+            (model.crs.empty() ? "." : ", " + model.crs + "."),
+        "body");
+  if (!crs.empty() && !model.crs.empty() && crs != model.crs)
+    return fail(ErrorCode::invalid, "Other coordinates",
+                "The map lies in " + crs + ", the model in " + model.crs + "; save the map in " +
+                    model.crs + ".",
+                "body");
+  return {};
+}
+
+Result<void> confirm_map_crs(const MapOptions& options, const Model& model,
+                             const std::string& crs) {
+  const std::string& asked = options.crs;
+  for (const auto& [system, whose] : {std::pair(crs, "map"), std::pair(model.crs, "model")})
+    if (!asked.empty() && !system.empty() && asked != system)
+      return fail(ErrorCode::invalid, "Other coordinates",
+                  "`crs` says " + asked + ", but the " + whose + " lies in " + system + ".", "crs");
+  if (!asked.empty() || crs.empty() || !model.crs.empty()) return {};
+  return fail(
+      ErrorCode::invalid, "Model without coordinate system",
+      "The map lies in " + crs +
+          ", and the model has no coordinate system. If the model's coordinates are those of " +
+          crs + ", repeat the request with `crs=" + crs +
+          "`; a curator can also give the model this system.",
+      "crs");
+}
+
+Result<std::uint32_t> bits_of(const Layer& layer, double value, const std::string& where) {
+  auto bits = encode_value(layer.type, value);
+  if (bits) return *bits;
+  Error problem = bits.error();
+  problem.detail = where + query::number_text(value) + " does not fit. " + problem.detail;
+  problem.field = "body";
+  return tl::unexpected(std::move(problem));
+}
+
+}  // namespace strata::app

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "core/model.h"
+#include "core/table.h"
+#include "query/texel_samples.h"
+
+namespace strata::app {
+
+// Texels as lines of CSV: `x,y,z,area_m2,value` and columns of the record behind the key. Places
+// are rounded to a tenth of a micrometre; areas and values read back as the single-precision
+// numbers that they are, of cells as double ones.
+class TexelCsv {
+ public:
+  TexelCsv(Unit unit, char separator)
+      : decimals_(unit == Unit::m    ? 7
+                  : unit == Unit::cm ? 5
+                                     : 4),
+        separator_(separator) {}
+
+  // Keys that are not among the records have empty cells.
+  void add_records(const std::vector<Record>& records, const std::vector<Column>& columns);
+  std::string head() const;
+  void append(std::string& text, const query::TexelSample& sample, bool is_cell) const;
+
+ private:
+  void append_number(std::string& text, double value, bool is_single) const;
+  void append_place(std::string& text, double value) const;
+
+  int decimals_;
+  char separator_;
+  std::vector<std::string> columns_;
+  std::string no_record_;                                     // what a line ends with
+  std::unordered_map<std::uint32_t, std::string> of_record_;  // the same, by key
+};
+
+}  // namespace strata::app

@@ -1,0 +1,55 @@
+#include "app/strokes/editor_book.h"
+
+#include <algorithm>
+
+namespace strata::app {
+
+Result<void> EditorBook::begin(std::int64_t project_id, const Record& record, const Editor& editor,
+                               bool take_over, const Tell& tell) {
+  std::lock_guard lock(mutex_);
+  const auto found = held_.find(record);
+  if (found != held_.end()) {
+    const Uuid& holder = found->second.editor.session;
+    if (holder == editor.session || !take_over) return {};
+  }
+  const auto own = std::ranges::count_if(
+      held_, [&](const auto& entry) { return entry.second.editor.session == editor.session; });
+  if (static_cast<std::size_t>(own) >= kMostOfSession)
+    return fail(
+        ErrorCode::invalid, "Too many records",
+        "A connection edits at most " + std::to_string(kMostOfSession) + " records at once.",
+        "key");
+  held_[record] = {project_id, editor};
+  tell(project_id, {{record, editor}});
+  return {};
+}
+
+void EditorBook::end(const Record& record, const Uuid& session, const Tell& tell) {
+  std::lock_guard lock(mutex_);
+  const auto found = held_.find(record);
+  if (found == held_.end() || found->second.editor.session != session) return;
+  const std::int64_t project_id = found->second.project_id;
+  held_.erase(found);
+  tell(project_id, {{record, std::nullopt}});
+}
+
+void EditorBook::leave(const Uuid& session, const Tell& tell) {
+  std::lock_guard lock(mutex_);
+  std::map<std::int64_t, std::vector<Entry>> gone;  // by project
+  std::erase_if(held_, [&](const auto& entry) {
+    const bool own = entry.second.editor.session == session;
+    if (own) gone[entry.second.project_id].push_back({entry.first, std::nullopt});
+    return own;
+  });
+  for (const auto& [project_id, entries] : gone) tell(project_id, entries);
+}
+
+void EditorBook::list(std::int64_t project_id, const Tell& tell) const {
+  std::lock_guard lock(mutex_);
+  std::vector<Entry> entries;
+  for (const auto& [record, held] : held_)
+    if (held.project_id == project_id) entries.push_back({record, held.editor});
+  if (!entries.empty()) tell(project_id, entries);
+}
+
+}  // namespace strata::app

@@ -1,0 +1,163 @@
+#include "app/strokes/stroke_book.h"
+
+#include <algorithm>
+
+namespace strata::app {
+
+const StrokeBook::Stroke* StrokeBook::find(const Owner& owner, const Uuid& stroke) const {
+  auto strokes = owners_.find(owner);
+  if (strokes == owners_.end()) return nullptr;
+  auto found = strokes->second.find(stroke);
+  return found == strokes->second.end() ? nullptr : &found->second;
+}
+
+StrokeBook::Stroke* StrokeBook::find(const Owner& owner, const Uuid& stroke) {
+  return const_cast<Stroke*>(std::as_const(*this).find(owner, stroke));
+}
+
+int StrokeBook::Stroke::saved_through() const {
+  const auto gap = std::find_if_not(batches.begin(), batches.end(),
+                                    [](const PastBatch& batch) { return batch.is_saved; });
+  return first_n - 1 + static_cast<int>(gap - batches.begin());
+}
+
+void StrokeBook::forget_old(Clock::time_point now) {
+  for (auto strokes = owners_.begin(); strokes != owners_.end();) {
+    std::erase_if(strokes->second,
+                  [&](const auto& item) { return now - item.second.touched > kKeepFor; });
+    strokes = strokes->second.empty() ? owners_.erase(strokes) : std::next(strokes);
+  }
+}
+
+Result<void> StrokeBook::begin(const Owner& owner, const Uuid& stroke, StrokeTool tool,
+                               Clock::time_point now) {
+  std::lock_guard lock(mutex_);
+  forget_old(now);
+  if (Stroke* known = find(owner, stroke)) {
+    if (!(known->tool == tool))
+      return fail(
+          ErrorCode::conflict, "Stroke known",
+          "A stroke with this id was begun with another layer, value, camera or brush; take a new id.",
+          "stroke");
+    known->ended = false;
+    known->touched = now;
+    return {};
+  }
+  Strokes& strokes = owners_[owner];
+  if (strokes.size() >= kMaxStrokes)
+    strokes.erase(std::min_element(
+        strokes.begin(), strokes.end(),
+        [](const auto& a, const auto& b) { return a.second.touched < b.second.touched; }));
+  Stroke& made = strokes[stroke];
+  made.tool = std::move(tool);
+  made.touched = now;
+  return {};
+}
+
+bool StrokeBook::lacks_start(const Owner& owner, const Uuid& stroke, int n) const {
+  std::lock_guard lock(mutex_);
+  const Stroke* known = find(owner, stroke);
+  return known && known->batches.empty() && !known->last && n > 0;
+}
+
+void StrokeBook::continue_from(const Owner& owner, const Uuid& stroke, int n, const End& end) {
+  std::lock_guard lock(mutex_);
+  Stroke* known = find(owner, stroke);
+  if (!known || !known->batches.empty()) return;
+  known->first_n = n;
+  known->last = end;
+}
+
+Result<StrokeBook::Batch> StrokeBook::extend(const Owner& owner, const Uuid& stroke, const Uuid& id,
+                                             int n, const std::vector<glm::dvec2>& path,
+                                             const std::vector<double>& widths,
+                                             Clock::time_point now) {
+  std::lock_guard lock(mutex_);
+  Stroke* known = find(owner, stroke);
+  if (!known)
+    return fail(ErrorCode::not_found, "Unknown stroke", "Send stroke.begin for this stroke first.",
+                "stroke");
+  // The first batch after a restart may have any number: what came before it is in the journal.
+  if (known->batches.empty() && !known->last) known->first_n = n;
+  const int next = known->first_n + static_cast<int>(known->batches.size());
+  if (n > next)
+    return fail(ErrorCode::conflict, "Batch out of order",
+                "The next batch of this stroke is number " + std::to_string(next) + ".", "n");
+  if (n < known->first_n)
+    return fail(ErrorCode::conflict, "Batch too old",
+                "Batches before number " + std::to_string(known->first_n) +
+                    " of this stroke can no longer be repeated.",
+                "n");
+  const bool is_new = n == next;
+  if (is_new && known->ended)
+    return fail(ErrorCode::conflict, "Stroke ended", "This stroke was ended; begin a new one.",
+                "stroke");
+  if (!is_new && known->batches[static_cast<std::size_t>(n - known->first_n)].id != id)
+    return fail(ErrorCode::conflict, "Batch number taken",
+                "This number of the stroke was sent with another id.", "n");
+
+  const std::optional<End> start =
+      is_new ? known->last : known->batches[static_cast<std::size_t>(n - known->first_n)].start;
+  if (path.empty() || path.size() + (start ? 1 : 0) > kMaxPath)
+    return fail(ErrorCode::invalid, "Path too long",
+                "A batch has 1 to " + std::to_string(kMaxPath - 1) + " points; send more batches.",
+                "path");
+  if (!widths.empty() && widths.size() != path.size())
+    return fail(ErrorCode::invalid, "Widths do not fit",
+                "Give one width for each point of the path, or none.", "widths");
+  known->touched = now;
+  if (is_new) {
+    known->batches.push_back({id, start});
+    known->last = End{path.back(), widths.empty() ? 1 : widths.back()};
+    if (known->batches.size() > kMaxBatches) {
+      known->batches.pop_front();
+      ++known->first_n;
+    }
+  }
+  Batch batch{known->tool, {}, widths};
+  batch.path.reserve(path.size() + 1);
+  if (start) batch.path.push_back(start->point);
+  batch.path.insert(batch.path.end(), path.begin(), path.end());
+  if (start && (start->width != 1 || !widths.empty())) {
+    if (widths.empty()) batch.widths.assign(path.size(), 1);
+    batch.widths.insert(batch.widths.begin(), start->width);
+  }
+  return batch;
+}
+
+void StrokeBook::saved(const Owner& owner, const Uuid& stroke, int n) {
+  std::lock_guard lock(mutex_);
+  Stroke* known = find(owner, stroke);
+  if (!known || n < known->first_n || n >= known->first_n + static_cast<int>(known->batches.size()))
+    return;
+  known->batches[static_cast<std::size_t>(n - known->first_n)].is_saved = true;
+}
+
+Result<void> StrokeBook::end(const Owner& owner, const Uuid& stroke) {
+  std::lock_guard lock(mutex_);
+  Stroke* known = find(owner, stroke);
+  if (!known)
+    return fail(ErrorCode::not_found, "Unknown stroke", "There is no stroke with this id to end.",
+                "stroke");
+  known->ended = true;
+  return {};
+}
+
+std::vector<StrokeBook::Progress> StrokeBook::open_strokes(const Owner& owner) const {
+  std::lock_guard lock(mutex_);
+  std::vector<Progress> open;
+  auto strokes = owners_.find(owner);
+  if (strokes == owners_.end()) return open;
+  for (const auto& [id, stroke] : strokes->second)
+    if (!stroke.ended) open.push_back({id, stroke.saved_through()});
+  return open;
+}
+
+std::optional<StrokeTool> StrokeBook::tool(const Owner& owner, const Uuid& stroke) const {
+  std::lock_guard lock(mutex_);
+  const Stroke* known = find(owner, stroke);
+  if (!known) return std::nullopt;
+  return known->tool;
+}
+
+}  // namespace strata::app

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "core/shape_texture.h"
+#include "store/store.h"
+
+namespace strata::app {
+
+// A tool of the site, ready to paint with.
+struct FoundTool {
+  std::int64_t id = 0;
+  std::shared_ptr<const ShapeTexture> shape;
+};
+// by id or slug; may block
+using FindTool = std::function<Result<FoundTool>(const std::string& ref)>;
+
+// The tools of the site as strokes ask for them. Their shapes are kept ready once they were asked
+// for: they never change. Blocks, thread-safe.
+class ToolShelf {
+ public:
+  explicit ToolShelf(store::Store& store) : store_(store) {}
+  Result<FoundTool> find(const std::string& ref);
+
+ private:
+  static constexpr std::size_t kMostReady = 64;  // 72 KiB each
+
+  store::Store& store_;
+  std::mutex mutex_;
+  std::map<std::int64_t, std::shared_ptr<const ShapeTexture>> ready_;
+};
+
+}  // namespace strata::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace strata {
+
+// A file that was made for one user. It is removed with this object.
+struct TemporaryFile {
+  std::filesystem::path path;
+  std::string name, media_type;  // for the user who saves it
+  std::uint64_t bytes = 0;
+  TemporaryFile() = default;
+  explicit TemporaryFile(std::filesystem::path file) : path(std::move(file)) {}
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+};
+
+}  // namespace strata

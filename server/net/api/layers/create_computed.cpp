@@ -1,0 +1,77 @@
+#include "net/api/layers/create_computed.h"
+
+#include "app/edits.h"
+#include "app/layers/computed_layers.h"
+#include "app/layers/formula_layers.h"
+#include "net/http/answer_book.h"
+#include "room/room.h"
+#include "store/store.h"
+
+namespace strata::net {
+namespace {
+
+jobs::ShapeRecipe recipe_of(const protocol::ShapeRecipe& asked) {
+  jobs::ShapeRecipe recipe;
+  recipe.kind = *jobs::parse_shape_kind(name(asked.kind));  // the schema has the same names
+  recipe.radius_mm = asked.radius_mm;
+  recipe.distance_mm = asked.distance_mm;
+  recipe.rays = asked.rays;
+  recipe.absolute = asked.absolute;
+  recipe.model = asked.model.value_or("");
+  recipe.property = asked.property.value_or("");
+  recipe.source = asked.source.value_or("");
+  return recipe;
+}
+
+}  // namespace
+
+Result<Response> create_shape_layer(const RouteContext& context, JobBook& book,
+                                    const Request& request, const std::shared_ptr<room::Room>& room,
+                                    const protocol::LayerCreate& asked, Layer layer) {
+  auto recipe =
+      STRATA_TRY(app::check_recipe(context.store, recipe_of(*asked.compute), room->model()));
+  return start_layer_job(
+      context, book, request, room,
+      [&store = context.store, room, layer = std::move(layer), recipe = std::move(recipe),
+       has_palette = asked.palette.has_value(), user = request.user()](
+          app::NewLayers& layers, Progress& progress) -> Result<nlohmann::json> {
+        STRATA_TRY(
+            app::add_shape_layer(store, *room, layers, layer, recipe, has_palette, user, progress));
+        return nlohmann::json();
+      });
+}
+
+Result<Response> create_formula_layer(const RouteContext& context, JobBook& book,
+                                      const Request& request,
+                                      const std::shared_ptr<room::Room>& room, Layer layer,
+                                      bool has_palette,
+                                      const std::function<Response(const Layer&)>& answer) {
+  const auto expression = STRATA_TRY(app::parse_formula(layer.formula->expression));
+  const Author author = request.author();
+  if (app::reads_shape(*room, expression))
+    return start_layer_job(
+        context, book, request, room,
+        [&context, room, layer = std::move(layer), author, has_palette](
+            app::NewLayers& layers, Progress& progress) -> Result<nlohmann::json> {
+          STRATA_TRY(
+              app::add_formula_layer(context, room, layers, layer, author, has_palette, progress));
+          return nlohmann::json();
+        });
+  app::NewLayers layers(room, context.edits, author);
+  Progress progress;
+  Result<void> shown;
+  if (auto made = app::add_formula_layer(context, room, layers, std::move(layer), author,
+                                         has_palette, progress);
+      !made)
+    shown = tl::unexpected(made.error());
+  else
+    shown = layers.show(first_answer<Layer>(request, answer));
+  if (!shown) {
+    layers.take_back();
+    return tl::unexpected(shown.error());
+  }
+  return answer(STRATA_TRY(
+      context.store.layer(room->model().id, std::to_string(layers.ids().front()), Role::owner)));
+}
+
+}  // namespace strata::net

@@ -1,0 +1,151 @@
+#include "net/api/models/figure_request.h"
+
+#include "net/serialization/as_of.h"
+#include "net/serialization/at_field.h"
+#include "net/serialization/view_wire.h"
+#include "room/room.h"
+#include "store/named_parts.h"
+#include "store/store.h"
+
+namespace strata::net {
+namespace {
+
+using app::FigureRequest;
+
+constexpr Rgba kPaper{255, 255, 255, 255};
+
+// Directions, papers and formats have the contract's order, so that they are cast.
+static_assert(static_cast<int>(protocol::FigureDirection::right) ==
+                  static_cast<int>(figure::Direction::right) &&
+              static_cast<int>(protocol::FigureRequestPaper::a3) ==
+                  static_cast<int>(figure::Paper::a3) &&
+              static_cast<int>(protocol::FigureFormat::pdf) ==
+                  static_cast<int>(figure::Format::pdf));
+
+// What is shown, and the camera that it comes with, if any.
+Result<std::optional<Camera>> read_shown(const RouteContext& context, const Request& request,
+                                         const protocol::FigureRequest& asked,
+                                         FigureRequest& figure) {
+  const room::Room& room = *figure.room;
+  if (!asked.view) {
+    if (asked.camera) STRATA_TRY(validate(*asked.camera));
+    auto shown = STRATA_TRY(shown_settings(room, asked));
+    figure.shown.shown = std::move(shown);
+    return asked.camera;
+  }
+  if (asked.camera || asked.layers || asked.looks || asked.light)
+    return fail(
+        ErrorCode::invalid, "View and more",
+        "A figure of a view shows what the view does: leave out camera, layers, looks and light.",
+        "view");
+  const auto view = context.store.views().find(room.model().id, *asked.view);
+  if (!view) {
+    return at_field(view.error(), "view");
+  }
+  const auto kept = STRATA_TRY(as_asked(context, request, *view, room));
+  auto shown = STRATA_TRY(shown_settings(room, kept));
+  figure.shown.shown = std::move(shown);
+  return std::optional<Camera>(kept.camera);
+}
+
+// What lies in the middle of the camera's window, as far as the drawing's plane is concerned.
+glm::dvec3 middle_of(const Camera& camera, const Model& model) {
+  const Ray ray = ray_through_pixel(camera, camera.width / 2.0, camera.height / 2.0);
+  const glm::dvec3 to_model = (model.bounds_min + model.bounds_max) / 2.0 - ray.origin;
+  return ray.origin + glm::dot(to_model, ray.direction) * ray.direction;
+}
+
+Result<void> read_direction(const protocol::FigureRequest& asked,
+                            const std::optional<Camera>& camera, FigureRequest& figure) {
+  const Model model = figure.room->model();
+  if (asked.direction && asked.normal)
+    return fail(ErrorCode::invalid, "Two directions", "Give a direction or a normal.", "normal");
+  if (camera) figure.section = camera->section;
+  if (asked.normal) {
+    if (!(glm::length(*asked.normal) > 1e-12))
+      return fail(ErrorCode::invalid, "No direction",
+                  "A normal has a length: [0, 0, 1] is surface that faces along z.", "normal");
+    figure.plane = figure::plane_square_to(*asked.normal, model.up);
+    figure.from = "face";
+  } else if (asked.direction || !camera) {
+    const auto direction = asked.direction.value_or(protocol::FigureDirection::top);
+    figure.plane = figure::plane_from(static_cast<figure::Direction>(direction), model.up);
+    figure.from = protocol::name(direction);
+  } else {
+    figure.plane = figure::plane_of(*camera);
+    figure.from = asked.view.value_or("view");
+    figure.center = middle_of(*camera, model);
+  }
+  if (asked.center) figure.center = asked.center;
+  return {};
+}
+
+Result<void> read_labels(const RouteContext& context, const protocol::FigureLabels& asked,
+                         FigureRequest& figure) {
+  const auto layer = figure.room->layer(protocol::to_ref(asked.layer));
+  if (!layer) {
+    return at_field(layer.error(), "labels.layer");
+  }
+  if (!layer->table)
+    return fail(ErrorCode::invalid, "No records",
+                "The layer '" + layer->slug + "' is no database layer: nothing of it has a record.",
+                "labels.layer");
+  const auto table = context.store.table(std::to_string(*layer->table), figure.role);
+  if (!table) return tl::unexpected(table.error());
+  const Column* column = find_column(table->columns, asked.column);
+  if (!column || holds_lists(column->kind))
+    return fail(ErrorCode::invalid, "No such column",
+                "The table '" + table->slug + "' has no column '" + asked.column +
+                    "' that holds one text or number.",
+                "labels.column");
+  figure.labels = {*layer, *column};
+  return {};
+}
+
+}  // namespace
+
+Result<FigureRequest> read_figure_request(const RouteContext& context, const Request& request) {
+  auto asked = STRATA_TRY(body_of<protocol::FigureRequest>(request));
+  auto room = context.rooms.open(request.param("model"), request.role());
+  if (!room) return tl::unexpected(room.error());
+  FigureRequest figure;
+  figure.room = std::move(*room);
+  figure.role = request.role();
+  const auto camera = STRATA_TRY(read_shown(context, request, asked, figure));
+  STRATA_TRY(read_direction(asked, camera, figure));
+  const auto at = STRATA_TRY(find_sequence(context, *figure.room, asked.at));
+  // Which layers it shows is settled before what of them waits: one that others see only later is
+  // not on it, unmarked.
+  for (Layer& layer : figure.room->layers())
+    if (figure.shown.shown.of(layer.id).visible.value_or(layer.visible))
+      figure.layers.push_back(layer);
+  room::sort_as_shown(figure.layers, figure.shown.shown);
+  figure.shown.layers.emplace();
+  for (const Layer& layer : figure.layers) figure.shown.layers->push_back(std::to_string(layer.id));
+  if (at) {
+    figure.shown.at = at;
+  } else {
+    room::Room::DurableState newest = figure.room->durable_state();
+    figure.shown.at = newest.sequence;
+    figure.shown.provisional = std::move(newest.provisional);
+  }
+  figure.shown.shown.background = {kPaper, kPaper};
+  STRATA_TRY(validate(figure.shown.shown.light));
+  if (asked.labels) STRATA_TRY(read_labels(context, *asked.labels, figure));
+  figure.scale = asked.scale;
+  figure.paper = static_cast<figure::Paper>(asked.paper);
+  if (asked.orientation)
+    figure.landscape = *asked.orientation == protocol::FigureRequestOrientation::landscape;
+  figure.dpi = asked.dpi;
+  figure.format = static_cast<figure::Format>(asked.format.value_or(protocol::FigureFormat::pdf));
+  const Model model = figure.room->model();
+  figure.captions = {asked.title.value_or(model.name), asked.caption.value_or(""),
+                     asked.credit.value_or(model.credit), asked.continued};
+  figure.legend = asked.legend;
+  figure.waiting_label = asked.provisional;
+  const auto language = STRATA_TRY(asked_language(request));
+  figure.language = language;
+  return figure;
+}
+
+}  // namespace strata::net

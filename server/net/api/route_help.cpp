@@ -1,0 +1,178 @@
+#include "net/api/route_help.h"
+
+#include "app/records/painted_keys.h"
+#include "core/digest.h"
+#include "core/slug.h"
+#include "core/uuid.h"
+#include "jobs/job_queue.h"
+#include "net/api/metrics.h"
+#include "net/http/edit_book.h"
+#include "net/serialization/wire.h"
+#include "room/room.h"
+#include "store/store.h"
+
+namespace strata::net {
+namespace {
+constexpr int kMostTries = 50;  // more than ever change one thing at once
+constexpr std::size_t kDigitsOfBody = 16;
+}  // namespace
+
+Handler answering(std::function<Result<Response>(const Request&)> answer) {
+  return [answer = std::move(answer)](const Request& request, const Respond& respond) {
+    auto response = answer(request);
+    // Who names no version means the newest, also where others change the same thing at once: one
+    // of them gets on each time.
+    const auto wanted = request.header("if-match");
+    const bool means_any = (request.method == Method::patch || request.method == Method::remove) &&
+                           (wanted.empty() || wanted == "*");
+    for (int tries = 1;
+         means_any && tries < kMostTries && !response && response.error().code == ErrorCode::stale;
+         ++tries)
+      response = answer(request);
+    if (response)
+      respond(std::move(*response));
+    else
+      respond(response.error());
+  };
+}
+
+Result<void> check_json_type(const Request& request) {
+  const auto sent = request.header("content-type");
+  std::string type = to_lower(sent.substr(0, sent.find(';')));
+  while (!type.empty() && type.back() == ' ') type.pop_back();
+  if (type.empty() || type == "application/json" ||
+      (type.starts_with("application/") && type.ends_with("+json")))
+    return {};
+  return fail(ErrorCode::unsupported, "Not JSON",
+              "This address takes JSON: send it with `Content-Type: application/json`.",
+              "Content-Type");
+}
+
+std::string etag_of(std::int64_t version) { return "\"v" + std::to_string(version) + "\""; }
+
+Response with_etag(Response response, const Request& request, std::int64_t version) {
+  std::string etag = etag_of(version);
+  if (request.method != Method::get && request.method != Method::head)
+    return response.with("ETag", etag);
+  // The same version is told otherwise to another role, and once something was painted.
+  etag.insert(etag.size() - 1, "." + sha256_hex(response.body).substr(0, kDigitsOfBody));
+  if (names_tag(request.header("if-none-match"), etag))
+    return empty_response(304).with("ETag", etag);
+  return response.with("ETag", etag);
+}
+
+namespace {
+// Also as `with_etag` writes it, with what stands behind the version.
+bool names_version(std::string_view etag, std::int64_t version) {
+  const std::string own = etag_of(version), beginning = own.substr(0, own.size() - 1) + ".";
+  return etag == own || (etag.starts_with(beginning) && etag.ends_with('"'));
+}
+}  // namespace
+
+Result<void> check_if_match(const Request& request, std::int64_t version) {
+  const auto wanted = request.header("if-match");
+  if (wanted.empty() || wanted == "*" || names_version(wanted, version)) return {};
+  return fail(ErrorCode::stale, "Changed meanwhile",
+              "Somebody changed this since you read it; read it again and repeat your change.",
+              "If-Match");
+}
+
+void add_sequences(Response& response, std::int64_t shown, std::int64_t durable) {
+  response.with("Strata-Sequence", std::to_string(shown))
+      .with("Strata-Durable-Sequence", std::to_string(durable));
+}
+
+Uuid edit_id(const Request& request, const Layer& layer, std::string_view operation) {
+  const auto key = request.header("idempotency-key");
+  if (key.empty()) return random_uuid();
+  return uuid_of_text(request.user() + '\n' + std::to_string(layer.id) + '\n' +
+                      std::string(operation) + '\n' + std::string(key));
+}
+
+void apply_edit(const RouteContext& context, const Request& request,
+                const std::shared_ptr<room::Room>& room, room::EditRequest edit,
+                const Respond& respond, std::function<nlohmann::json(nlohmann::json)> body_of) {
+  const auto layer = room->layer(std::to_string(edit.layer_id));
+  if (!layer) return respond(layer.error());
+  if (auto known = app::check_keys(context.store, *layer, room::painted_by(*layer, edit)); !known)
+    return respond(known.error());
+  if (Question* question = Question::current()) edit.question = question->shared_from_this();
+  const bool keyed = !request.header("idempotency-key").empty();
+  if (keyed)
+    if (auto same = context.edit_book.begin(room->model().id, edit); !same)
+      return respond(same.error());
+  room->edit(
+      std::move(edit),
+      [&metrics = context.metrics](const room::EditAnswer& answer) {
+        if (!answer.repeated) ++metrics.edits.applied;
+      },
+      [&context, keyed, id = edit.id, respond,
+       body_of = std::move(body_of)](Result<room::EditAnswer> answer) {
+        if (keyed) context.edit_book.end(id);
+        if (!answer) {
+          ++context.metrics.edits.refused;
+          return respond(answer.error());
+        }
+        if (!answer->repeated) ++context.metrics.edits.saved;
+        respond(json_response(body_of(room::to_json(*answer)))
+                    .with("Strata-Sequence", std::to_string(answer->sequence)));
+      });
+}
+
+Result<Layer> stored_layer(const RouteContext& context, const Request& request) {
+  auto model = STRATA_TRY(context.store.model(request.param("model")));
+  return context.store.layer(model.id, request.param("layer"), request.role());
+}
+
+Result<std::vector<Layer>> find_layers(const room::Room& room, const std::vector<std::string>& refs,
+                                       const std::string& field) {
+  std::vector<Layer> layers;
+  for (const auto& ref : refs) {
+    auto layer = room.layer(ref);
+    if (!layer) {
+      Error problem = layer.error();
+      problem.field = field;
+      return tl::unexpected(std::move(problem));
+    }
+    layers.push_back(std::move(*layer));
+  }
+  return layers;
+}
+
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (end > begin) parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+Result<void> check_source_download(const Request& request, const Model& model) {
+  if (request.role() >= model.source_download) return {};
+  return fail(ErrorCode::forbidden, "Source not for download",
+              "Files of this scan are for the role " + std::string(name(model.source_download)) +
+                  " and above in its project; a curator may change that (`source_download`).");
+}
+
+Response job_response(const RouteContext& context, std::int64_t job) {
+  const auto status = context.jobs.status(job);
+  return json_response(status ? to_json(*status)
+                              : nlohmann::json{{"id", job},
+                                               {"state", "queued"},
+                                               {"progress", 0},
+                                               {"message", ""}},
+                       202)
+      .with("Location", "/api/v1/jobs/" + std::to_string(job));
+}
+
+Result<std::string> slug_of(const std::optional<std::string>& wish, const std::string& text) {
+  if (!wish) return make_slug(text);
+  if (is_all_digits(*wish))
+    return fail(ErrorCode::invalid, "Slug of digits",
+                "A slug of digits only would be taken for an id; add a letter.", "slug");
+  return *wish;
+}
+
+}  // namespace strata::net

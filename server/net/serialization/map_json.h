@@ -1,0 +1,12 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "app/maps/map_contents.h"
+
+namespace strata::net {
+
+// As the contract's MapContents.
+nlohmann::json to_json(const app::MapContents& contents);
+
+}  // namespace strata::net
