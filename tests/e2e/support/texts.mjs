@@ -6,7 +6,7 @@ export function texts_of(language) {
   const { buildSync } = load_module("esbuild"); // vite's
   const contents = `
     import { set_locale } from "./core/locale";
-    export { texts } from "./app/texts/${language}";
+    export { texts } from "./texts/${language}";
     set_locale("${language}", true, []);`;
   const stdin = { contents, resolveDir: join(kRoot, "web-client", "src"), loader: "ts" };
   const [{ text }] = buildSync({

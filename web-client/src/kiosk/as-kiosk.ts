@@ -1,7 +1,7 @@
 // Every address of the kiosk says `as=kiosk`: its own cookie counts then, and never that of a
 // person who is signed in in the same browser.
 
-import type { Fetch } from "../core/api";
+import type { Fetch } from "../net/api";
 
 const kPatience_ms = 30_000; // a server that does not answer at all is away
 

@@ -1,7 +1,7 @@
 // What is told of a record: the columns that the tour chose, or else what its table tells, in the
 // visitor's language, and its pictures.
 
-import { ApiError, type Api } from "../core/api";
+import { ApiError, type Api } from "../net/api";
 import {
   cell_text,
   holds_files,
@@ -9,9 +9,9 @@ import {
   label_of_record,
   named_keys,
   names_records,
-} from "../core/cells";
+} from "../domain/cells";
 import { format_list, with_decimal_sign } from "../core/locale";
-import { holds_marks } from "../core/marks";
+import { holds_marks } from "../domain/marks";
 import type {
   Attachment,
   CellValue,

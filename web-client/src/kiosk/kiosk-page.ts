@@ -4,7 +4,7 @@
 import { html, LitElement, nothing, svg, type PropertyValues, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
-import { styled } from "../app/styled";
+import { styled } from "../ui/styled";
 import { name_of_language } from "../core/languages";
 import { fill_screen } from "./guard";
 import { direction_of_language } from "./languages";

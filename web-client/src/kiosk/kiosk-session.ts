@@ -2,8 +2,8 @@
 // record, and whether somebody is there. Elements subscribe and draw themselves from its state;
 // they change it only through its methods.
 
-import { type Api, ApiError } from "../core/api";
-import type { SocketLike } from "../core/connection";
+import { type Api, ApiError } from "../net/api";
+import type { SocketLike } from "../net/connection";
 import type { KioskSelf, Picked, Tour, View } from "../core/protocol.gen";
 import { AttractLoop } from "./attract";
 import { card_of, type Card } from "./cards";

@@ -3,7 +3,7 @@
 // server that is away is asked again for ever, ever more seldom; and so is, every five minutes, one
 // that knows no such link: what was in the Bin may be restored.
 
-import { ApiError } from "../core/api";
+import { ApiError } from "../net/api";
 import type { KioskSelf } from "../core/protocol.gen";
 
 const kHeartbeat_s = 30;

@@ -1,7 +1,7 @@
 // The page at /kiosk/{secret}. Started by the page's own main.ts, of which it loads nothing else.
 
-import { Api } from "../core/api";
-import { say_own_problems_in } from "../core/own-problems";
+import { Api } from "../net/api";
+import { say_own_problems_in } from "../core/problems";
 import { kiosk_fetch } from "./as-kiosk";
 import { keep_on_page, stay_awake } from "./guard";
 import "./kiosk-page";

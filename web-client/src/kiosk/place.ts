@@ -1,8 +1,8 @@
 // What lies where a visitor tapped: of a record its card tells more; of everything else the class,
 // or what was measured, is named beside the place.
 
-import { label_of } from "../core/cells";
-import { format_number } from "../core/measure";
+import { label_of } from "../domain/cells";
+import { format_number } from "../domain/measure";
 import type { Picked } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
 

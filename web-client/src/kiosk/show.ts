@@ -1,15 +1,15 @@
 // The model on the kiosk's stage: the live connection, the camera, and what the stop that is seen
 // shows of layers, looks and light.
 
-import { ViewControl } from "../app/view-control";
-import { new_id } from "../core/api";
-import { Connection, type SocketLike } from "../core/connection";
-import type { FrameMessage } from "../core/frame-header";
-import type { GestureHandler, PointerSample } from "../core/input";
-import { place_like } from "../core/look-along";
+import { ViewControl } from "../session/view-control";
+import { new_id } from "../net/api";
+import { Connection, type SocketLike } from "../net/connection";
+import type { FrameMessage } from "../net/frame-header";
+import type { GestureHandler, PointerSample } from "../ui/input";
+import { place_like } from "../math/fit-to-window";
 import type { LayerOverride, Look, Model, Picked, View, Welcome } from "../core/protocol.gen";
 import { complete_layer, type Layer } from "../core/types";
-import { looks_of_view } from "../core/views";
+import { looks_of_view } from "../domain/views";
 import { OrbitTool } from "../tools/navigate";
 import { as_kiosk } from "./as-kiosk";
 

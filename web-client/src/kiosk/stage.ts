@@ -3,10 +3,10 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
-import { styled } from "../app/styled";
-import { FrameCanvas } from "../core/frame-canvas";
-import type { FrameMessage } from "../core/frame-header";
-import { StageInput } from "../core/input";
+import { styled } from "../ui/styled";
+import { FrameCanvas } from "../net/frame-canvas";
+import type { FrameMessage } from "../net/frame-header";
+import { StageInput } from "../ui/input";
 import type { View } from "../core/protocol.gen";
 import { picture_of_view } from "./as-kiosk";
 import type { KioskSession } from "./kiosk-session";

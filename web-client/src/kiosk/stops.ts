@@ -3,7 +3,7 @@
 
 import type { LayerOverride, Tour, TourStop, View } from "../core/protocol.gen";
 import type { Layer } from "../core/types";
-import { layers_of_view } from "../core/views";
+import { layers_of_view } from "../domain/views";
 
 /** A stop with its view. */
 export interface Stop {

@@ -2,7 +2,7 @@
 // files, what it was told of its tour, and all that the stops show. Where browsers have no such
 // store (addresses without TLS other than localhost), nothing is kept.
 
-import { Api, ApiError, type Fetch } from "../core/api";
+import { Api, ApiError, type Fetch } from "../net/api";
 import type { KioskSelf } from "../core/protocol.gen";
 import { as_kiosk, patient_fetch, picture_of_view } from "./as-kiosk";
 import { card_of } from "./cards";

@@ -1,6 +1,6 @@
 // Orbit and pan with the tool's button.
 
-import type { PointerSample } from "../core/input";
+import type { PointerSample } from "../ui/input";
 import type { Tool } from "./tool";
 
 /** What moves the camera and tells the server. */

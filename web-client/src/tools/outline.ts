@@ -2,8 +2,8 @@
 // camera stays, because its points are pixels of the camera that it began with. Lines are drawn the
 // same way.
 
-import type { Point } from "../core/connection";
-import type { PointerSample } from "../core/input";
+import type { Point } from "../net/connection";
+import type { PointerSample } from "../ui/input";
 import type { Tool } from "./tool";
 
 export interface OutlineHost {

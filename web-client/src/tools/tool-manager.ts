@@ -1,6 +1,6 @@
 // Keeps one tool active, and sends it the stage's drags.
 
-import type { PointerSample } from "../core/input";
+import type { PointerSample } from "../ui/input";
 import type { Outline } from "./outline";
 import type { Tool, ToolName } from "./tool";
 

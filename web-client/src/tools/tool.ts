@@ -1,6 +1,6 @@
 // A tool is what the left button, the pen or one finger does on the stage.
 
-import type { PointerSample } from "../core/input";
+import type { PointerSample } from "../ui/input";
 import type { Outline } from "./outline";
 
 export type ToolName =

@@ -1,0 +1,194 @@
+// What is chosen in the filter of one column, as a condition of the language that filters records
+// (CQL2 text) and back. The text is all that there is: a condition that was built here is found in
+// it again, and what somebody typed beside it stays.
+
+import { name_in_text } from "./completion";
+import type { Column } from "../core/protocol.gen";
+
+export type FilterValue = string | number | boolean;
+
+export type ColumnFilter =
+  | { is: "one_of"; values: readonly FilterValue[]; empty: boolean }
+  /**
+   * Both ends belong to it; an empty text leaves one open. Numbers as JavaScript writes them, times
+   * as in the table.
+   */
+  | { is: "range"; from: string; to: string }
+  | { is: "contains"; text: string }
+  | { is: "empty" }
+  | { is: "filled" };
+
+export type FilterKind = ColumnFilter["is"];
+
+const is_number = ({ kind }: Pick<Column, "kind">): boolean =>
+  kind === "integer" || kind === "numeric";
+const is_time = ({ kind }: Pick<Column, "kind">): boolean =>
+  kind === "date" || kind === "timestamp" || kind === "period";
+const is_text = ({ kind }: Pick<Column, "kind">): boolean => kind === "text" || kind === "url";
+
+/** What can be asked of a column, the most usual first. */
+export function filter_kinds(column: Pick<Column, "kind">): FilterKind[] {
+  const kinds: FilterKind[] = [];
+  if (is_number(column) || is_time(column)) kinds.push("range");
+  if (!["picture", "document", "line", "point", "timestamp"].includes(column.kind))
+    kinds.push("one_of");
+  if (is_text(column)) kinds.push("contains");
+  return [...kinds, "filled", "empty"];
+}
+
+// ── one condition
+// ───────────────────────────────────────────────────────────────────────────────────────────────────
+
+const quoted = (text: string): string => `'${text.replaceAll("'", "''")}'`;
+const literal = (value: FilterValue): string =>
+  typeof value === "string" ? quoted(value) : String(value);
+const pattern_of = (text: string): string => quoted(`%${text.replaceAll(/[\\%_]/g, "\\$&")}%`);
+
+/** Empty: nothing is asked, so that all records stay. */
+export function condition_of(column: Pick<Column, "slug" | "kind">, filter: ColumnFilter): string {
+  const name = name_in_text(column.slug);
+  switch (filter.is) {
+    case "empty":
+      return `${name} is null`;
+    case "filled":
+      return `${name} is not null`;
+    case "contains":
+      return filter.text === "" ? "" : `casei(${name}) like casei(${pattern_of(filter.text)})`;
+    case "range": {
+      const [from, to] = [filter.from, filter.to].map((end) =>
+        end === "" || is_number(column) ? end : quoted(end),
+      );
+      if (from && to) return `${name} between ${from} and ${to}`;
+      return from ? `${name} >= ${from}` : to ? `${name} <= ${to}` : "";
+    }
+    case "one_of": {
+      const { values } = filter;
+      const listed = values.map(literal).join(", ");
+      const any =
+        values.length === 0
+          ? ""
+          : column.kind === "relation"
+            ? `a_overlaps(${name}, (${listed}))`
+            : values.length === 1
+              ? `${name} = ${listed}`
+              : `${name} in (${listed})`;
+      if (!filter.empty) return any;
+      return any === "" ? `${name} is null` : `(${any} or ${name} is null)`;
+    }
+  }
+}
+
+const kLiteral = String.raw`-?\d+(?:\.\d+)?(?:e[-+]?\d+)?|'(?:[^']|'')*'|true|false`;
+
+const value_of = (text: string): FilterValue => {
+  if (text.startsWith("'")) return text.slice(1, -1).replaceAll("''", "'");
+  return text === "true" || text === "false" ? text === "true" : Number(text);
+};
+const end_of = (text: string): string => String(value_of(text));
+const values_in = (list: string): FilterValue[] =>
+  (list.match(new RegExp(kLiteral, "g")) ?? []).map(value_of);
+
+/**
+ * What a condition asks of the column, where it is one that condition_of() writes; null for all
+ * others.
+ */
+export function filter_of(
+  column: Pick<Column, "slug" | "kind">,
+  condition: string,
+): ColumnFilter | null {
+  const name = name_in_text(column.slug).replaceAll(/[.*+?^${}()|[\]\\]/g, "\\$&");
+  const match = (form: string): RegExpExecArray | null => new RegExp(`^${form}$`).exec(condition);
+  if (match(`${name} is null`)) return { is: "empty" };
+  if (match(`${name} is not null`)) return { is: "filled" };
+  const contains = match(String.raw`casei\(${name}\) like casei\('%((?:[^']|'')*)%'\)`);
+  if (contains)
+    return {
+      is: "contains",
+      text: contains[1]!.replaceAll("''", "'").replaceAll(/\\([\\%_])/g, "$1"),
+    };
+  if (is_number(column) || is_time(column)) {
+    const between = match(`${name} between (${kLiteral}) and (${kLiteral})`);
+    if (between) return { is: "range", from: end_of(between[1]!), to: end_of(between[2]!) };
+    const from = match(`${name} >= (${kLiteral})`);
+    if (from) return { is: "range", from: end_of(from[1]!), to: "" };
+    const to = match(`${name} <= (${kLiteral})`);
+    if (to) return { is: "range", from: "", to: end_of(to[1]!) };
+  }
+  const list = `(?:${kLiteral})(?:, (?:${kLiteral}))*`;
+  const any = `(?:${name} = (${kLiteral})|${name} in \\((${list})\\)|a_overlaps\\(${name}, \\((${list})\\)\\))`;
+  const one_of = match(any);
+  if (one_of)
+    return {
+      is: "one_of",
+      values: values_in(one_of.slice(1).find((part) => part !== undefined)!),
+      empty: false,
+    };
+  const or_empty = match(`\\(${any} or ${name} is null\\)`);
+  if (or_empty)
+    return {
+      is: "one_of",
+      values: values_in(or_empty.slice(1).find((part) => part !== undefined)!),
+      empty: true,
+    };
+  return null;
+}
+
+// ── the text
+// ────────────────────────────────────────────────────────────────────────────────────────────────────────
+
+/**
+ * The conditions that a filter joins by "and"; one that joins by "or" is a single one, in
+ * parentheses.
+ */
+export function conditions_of(filter: string): string[] {
+  const text = filter.trim();
+  if (text === "") return [];
+  const parts: string[] = [];
+  let depth = 0;
+  let begun = 0;
+  let between = false; // whose "and" joins nothing
+  for (const { 0: token, index } of text.matchAll(
+    /'(?:[^']|'')*'|"[^"]*"|[()]|[\p{L}_][\p{L}\p{N}_.-]*/gu,
+  )) {
+    if (token === "(") depth += 1;
+    else if (token === ")") depth -= 1;
+    if (depth !== 0) continue;
+    const word = token.toLowerCase();
+    if (word === "or" || word === "case") return [`(${text})`];
+    if (word === "between") between = true;
+    if (word !== "and") continue;
+    if (between) between = false;
+    else {
+      parts.push(text.slice(begun, index).trim());
+      begun = index + token.length;
+    }
+  }
+  return [...parts, text.slice(begun).trim()].filter((part) => part !== "");
+}
+
+/** What the filter asks of the column, as far as it was chosen and not typed otherwise. */
+export const chosen_in = (
+  filter: string,
+  column: Pick<Column, "slug" | "kind">,
+): ColumnFilter | null =>
+  conditions_of(filter)
+    .map((part) => filter_of(column, part))
+    .find((found) => found !== null) ?? null;
+
+/** The filter with another choice for the column, or none. */
+export function with_choice(
+  filter: string,
+  column: Pick<Column, "slug" | "kind">,
+  choice: ColumnFilter | null,
+): string {
+  const others = conditions_of(filter).filter((part) => filter_of(column, part) === null);
+  const own = choice ? condition_of(column, choice) : "";
+  if (own === "" && others.length === 1) return without_parentheses(others[0]!);
+  return [...others, own].filter((part) => part !== "").join(" and ");
+}
+
+/** Of a condition that stands alone again. */
+function without_parentheses(condition: string): string {
+  const inner = condition.startsWith("(") && condition.endsWith(")") ? condition.slice(1, -1) : "";
+  return inner !== "" && conditions_of(inner)[0] === condition ? inner : condition;
+}

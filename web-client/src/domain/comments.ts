@@ -1,0 +1,142 @@
+// Threads of comments, and what their texts say: without the page.
+
+import type { Comment, Point3 } from "../core/protocol.gen";
+
+/** A first comment has its place. */
+export type FirstComment = Comment & { position: Point3; normal: Point3 };
+
+export interface Thread {
+  first: FirstComment;
+  replies: Comment[]; // by id
+  newest: number; // id
+}
+
+export type ThreadState = "open" | "resolved" | "all";
+
+export interface ThreadFilter {
+  state: ThreadState;
+  /** Only where this person wrote something, or somebody wrote to them. */
+  of: string | null;
+  words: string;
+}
+
+const is_first = (comment: Comment): comment is FirstComment =>
+  comment.thread === undefined && comment.position !== undefined && comment.normal !== undefined;
+
+/** Those that somebody wrote in last come first. */
+export function threads_of(comments: Iterable<Comment>): Thread[] {
+  const threads = new Map<number, Thread>();
+  const all = [...comments].sort((a, b) => a.id - b.id);
+  for (const comment of all)
+    if (is_first(comment))
+      threads.set(comment.id, { first: comment, replies: [], newest: comment.id });
+  for (const comment of all) {
+    const thread = comment.thread === undefined ? undefined : threads.get(comment.thread);
+    if (!thread) continue;
+    thread.replies.push(comment);
+    thread.newest = comment.id;
+  }
+  return [...threads.values()].sort((a, b) => b.newest - a.newest);
+}
+
+export const comments_in = ({ first, replies }: Thread): Comment[] => [first, ...replies];
+
+/** Every word must begin one of somebody's text or name in the thread, in any case. */
+export function find_threads(
+  threads: readonly Thread[],
+  { state, of, words }: ThreadFilter,
+): Thread[] {
+  const wanted = words
+    .toLowerCase()
+    .split(/\s+/)
+    .filter((word) => word !== "");
+  return threads.filter((thread) => {
+    if (state !== "all" && thread.first.state !== state) return false;
+    const comments = comments_in(thread);
+    if (of !== null && !comments.some(({ user, text }) => user === of || mentions(text, of)))
+      return false;
+    const said = comments
+      .map(({ user, full_name, text }) => `${user} ${full_name ?? ""} ${text}`.toLowerCase())
+      .join(" ");
+    return wanted.every((word) => said.includes(word));
+  });
+}
+
+export type TextPart =
+  | { kind: "text"; text: string }
+  | { kind: "link"; text: string; href: string }
+  | { kind: "mention"; text: string };
+
+const kParts = /\bhttps?:\/\/[^\s<>"]+|(?<![A-Za-z0-9._@-])@[A-Za-z0-9][A-Za-z0-9._@-]*/giu;
+
+/** Plain text with its addresses and the @names of those people. */
+export function text_parts(text: string, people: ReadonlySet<string>): TextPart[] {
+  const known = new Set([...people].map((name) => name.toLowerCase()));
+  const parts: TextPart[] = [];
+  const add = (part: TextPart): void => {
+    const last = parts[parts.length - 1];
+    if (part.kind === "text" && last?.kind === "text") last.text += part.text;
+    else if (part.text !== "") parts.push(part);
+  };
+  let at = 0;
+  for (const found of text.matchAll(kParts)) {
+    add({ kind: "text", text: text.slice(at, found.index) });
+    const whole = found[0].startsWith("@") ? mention_in(found[0], known) : link_in(found[0]);
+    if (whole === "") add({ kind: "text", text: found[0] });
+    else if (whole.startsWith("@")) add({ kind: "mention", text: whole });
+    else add({ kind: "link", text: whole, href: new URL(whole).href });
+    if (whole !== "") add({ kind: "text", text: found[0].slice(whole.length) });
+    at = found.index + found[0].length;
+  }
+  add({ kind: "text", text: text.slice(at) });
+  return parts;
+}
+
+export const mentions = (text: string, name: string): boolean =>
+  text_parts(text, new Set([name])).some(({ kind }) => kind === "mention");
+
+/**
+ * Names may end in what ends a sentence; the longest that somebody has is meant. Empty: nobody's.
+ */
+function mention_in(found: string, known: ReadonlySet<string>): string {
+  for (let whole = found; whole.length > 1; whole = whole.slice(0, -1)) {
+    if (known.has(whole.slice(1).toLowerCase())) return whole;
+    if (!/[._@-]$/.test(whole)) break;
+  }
+  return "";
+}
+
+/** Without what belongs to the sentence around it. Empty: it is no address. */
+function link_in(found: string): string {
+  let whole = found;
+  for (;;) {
+    const last = whole[whole.length - 1] ?? "";
+    const opened = last === ")" ? "(" : last === "]" ? "[" : "";
+    const unpaired = opened !== "" && whole.split(last).length > whole.split(opened).length;
+    if (!/[.,;:!?'*_]/.test(last) && !unpaired) break;
+    whole = whole.slice(0, -1);
+  }
+  try {
+    const { protocol, hostname } = new URL(whole);
+    return /^https?:$/.test(protocol) && hostname !== "" ? whole : "";
+  } catch {
+    return "";
+  }
+}
+
+/** Which comments a person has seen: all up to one, and of threads more. */
+export interface ReadMarks {
+  upto: number;
+  threads: Record<string, number>;
+}
+
+/** Somebody else wrote there since. */
+export function is_unread(thread: Thread, { upto, threads }: ReadMarks, me: string): boolean {
+  const seen = Math.max(upto, threads[thread.first.id] ?? 0);
+  return comments_in(thread).some(({ id, user, deleted }) => id > seen && user !== me && !deleted);
+}
+
+export const with_thread_read = ({ upto, threads }: ReadMarks, thread: Thread): ReadMarks => ({
+  upto,
+  threads: { ...threads, [thread.first.id]: thread.newest },
+});

@@ -1,0 +1,325 @@
+// Colours of values, as the server's palette gives them: for legends and swatches.
+
+import type { CellValue } from "../core/protocol.gen";
+import type { Layer, Palette, PalettePoint } from "../core/types";
+
+export interface Rgba {
+  r: number;
+  g: number;
+  b: number;
+  a: number; // 0…255, as the others
+}
+
+export function parse_color(text: string): Rgba {
+  const hex = text.replace("#", "");
+  const byte = (at: number): number => parseInt(hex.slice(at, at + 2), 16);
+  return { r: byte(0), g: byte(2), b: byte(4), a: hex.length >= 8 ? byte(6) : 255 };
+}
+
+export const css_color = (text: string): string => {
+  const { r, g, b, a } = parse_color(text);
+  return `rgb(${r} ${g} ${b} / ${(a / 255).toFixed(3)})`;
+};
+
+/** #rrggbb for an <input type="color">, which knows no opacity. */
+export const opaque_color = (text: string): string => text.slice(0, 7);
+
+/** A CSS gradient of a linear or stepped palette from its lower to its upper limit. */
+export function css_gradient(palette: Palette, direction = "to right"): string {
+  const span = palette.max - palette.min || 1;
+  const points = [...palette.points].sort((a, b) => a.at - b.at);
+  if (points.length === 0) return "transparent";
+  const share = (at: number): string =>
+    `${(Math.min(1, Math.max(0, (at - palette.min) / span)) * 100).toFixed(2)}%`;
+  const stops: string[] = [];
+  points.forEach((point, index) => {
+    stops.push(`${css_color(point.color)} ${share(point.at)}`);
+    const next = points[index + 1];
+    if (palette.mode === "step" && next) stops.push(`${css_color(point.color)} ${share(next.at)}`);
+  });
+  if (stops.length === 1) stops.push(stops[0]!.replace(/ [\d.]+%$/, " 100%"));
+  return `linear-gradient(${direction}, ${stops.join(", ")})`;
+}
+
+export function point_of(palette: Palette, value: number): PalettePoint | undefined {
+  return palette.points.find((point) => point.at === value);
+}
+
+/** The colour of a class that the palette does not list, the same as the server's. */
+export function generated_color(key: number): string {
+  const hash = Math.imul(key, 2654435761) >>> 0;
+  const hue = ((hash >>> 8) / 16777216) * 6;
+  const saturation = 0.55 + (0.25 * (hash & 0xff)) / 255;
+  const channel = (offset: number): string => {
+    const k = (offset + hue) % 6;
+    const value = 0.85 - 0.85 * saturation * Math.min(1, Math.max(0, Math.min(k, 4 - k)));
+    return Math.round(value * 255)
+      .toString(16)
+      .padStart(2, "0");
+  };
+  return `#${channel(5)}${channel(3)}${channel(1)}ff`;
+}
+
+// of records that have no value in the column that colours, as the server draws them
+export const kNoValueColor = "#9a9a9a80";
+
+/**
+ * The colour a value is drawn in; null for a palette without any, and where the record behind a key
+ * has to be asked.
+ */
+export function color_of(palette: Palette, value: number): string | null {
+  if (palette.column) return null;
+  return color_of_number(palette, value);
+}
+
+/** The colour of a record, by the column that colours or by its key. */
+export function record_color(
+  palette: Palette,
+  record: { key: number; values: Record<string, CellValue> },
+): string | null {
+  if (!palette.column) return color_of(palette, record.key);
+  const value = record.values[palette.column] ?? null;
+  if (value === null) return palette.others ?? kNoValueColor;
+  const named = palette.points.find((point) => point.value === String(value));
+  if (named) return named.color;
+  if (palette.mode === "categorical" && (typeof value !== "number" || !point_of(palette, value)))
+    return palette.others ?? kNoValueColor;
+  return typeof value === "number" ? color_of_number(palette, value) : null;
+}
+
+function color_of_number(palette: Palette, value: number): string | null {
+  if (palette.mode === "categorical")
+    return point_of(palette, value)?.color ?? palette.others ?? generated_color(value);
+  const points = [...palette.points].sort((a, b) => a.at - b.at);
+  const first = points[0];
+  const last = points[points.length - 1];
+  if (!first || !last) return null;
+  const at = Math.min(palette.max, Math.max(palette.min, value));
+  if (at <= first.at) return first.color;
+  if (at >= last.at) return last.color;
+  const above = points.findIndex((point) => point.at > at);
+  const low = points[above - 1]!;
+  const high = points[above]!;
+  if (palette.mode === "step") return low.color;
+  const t = (at - low.at) / (high.at - low.at);
+  const [a, b] = [parse_color(low.color), parse_color(high.color)];
+  const blend = (x: number, y: number): string =>
+    Math.round(x + (y - x) * t)
+      .toString(16)
+      .padStart(2, "0");
+  return `#${blend(a.r, b.r)}${blend(a.g, b.g)}${blend(a.b, b.b)}${blend(a.a, b.a)}`;
+}
+
+export type LayerPurpose = "presence" | "classes" | "measurement" | "records";
+
+/** What a layer is for, in the words of the create-layer dialog. */
+export function purpose_of(layer: Pick<Layer, "kind" | "palette">): LayerPurpose {
+  if (layer.kind === "database") return "records";
+  if (layer.palette.mode !== "categorical") return "measurement";
+  return layer.palette.points.length === 1 ? "presence" : "classes";
+}
+
+// Okabe and Ito's colours, and two more: told apart by colour-blind people.
+export const kClassColors = [
+  "#e69f00ff",
+  "#56b4e9ff",
+  "#009e73ff",
+  "#f0e442ff",
+  "#0072b2ff",
+  "#d55e00ff",
+  "#cc79a7ff",
+  "#8c6d46ff",
+  "#7f7f9fff",
+];
+
+export const presence_palette = (label: string, color: string): Palette => ({
+  mode: "categorical",
+  min: 1,
+  max: 1,
+  points: [{ at: 1, color, label }],
+});
+
+/** Every key has the colour that is made from it. */
+export const record_palette = (): Palette => ({ mode: "categorical", min: 0, max: 1, points: [] });
+
+/** All that a point says; what is not said has its default. */
+const told = ({
+  at,
+  color,
+  label = "",
+  value = "",
+  pattern = "solid",
+  angle = 45,
+  spacing_mm = 0,
+}: PalettePoint): string => JSON.stringify([at, color, label, value, pattern, angle, spacing_mm]);
+
+/** Whether both show every value alike and call it the same. */
+export function same_palette(a: Palette, b: Palette): boolean {
+  return (
+    [a.mode, a.min, a.max, a.column, a.others, a.points.length].join() ===
+      [b.mode, b.min, b.max, b.column, b.others, b.points.length].join() &&
+    a.points.every((point, index) => told(point) === told(b.points[index]!))
+  );
+}
+
+/** The same colours over another range. */
+export function with_range(palette: Palette, min: number, max: number): Palette {
+  const span = palette.max - palette.min || 1;
+  const points = palette.points.map((point) => ({
+    ...point,
+    at: min + ((point.at - palette.min) / span) * (max - min),
+  }));
+  return { ...palette, min, max, points };
+}
+
+/** The colour with a share of its opacity. */
+function with_share(color: string, share: number): string {
+  const { a } = parse_color(color);
+  return `${opaque_color(color)}${Math.round(a * share)
+    .toString(16)
+    .padStart(2, "0")}`;
+}
+
+/** A square of a legend: the colour as it is laid on. Measures as in shaders/shared/shade.h. */
+export function swatch_style({
+  color,
+  pattern = "solid",
+  angle = 45,
+}: Pick<PalettePoint, "color" | "pattern" | "angle">): Record<string, string> {
+  const shown = css_color(color);
+  if (pattern === "outline")
+    return { background: "transparent", border: `2px solid ${shown}`, "box-shadow": "none" };
+  // CSS turns clockwise from the vertical, and across the lines.
+  const ground = css_color(with_share(color, 0.3));
+  const border = { "box-shadow": `inset 0 0 0 2px ${shown}` };
+  if (pattern === "hatch")
+    return {
+      background: `repeating-linear-gradient(${-angle}deg, ${shown} 0 2.8px, ${ground} 2.8px 7px)`,
+      ...border,
+    };
+  if (pattern === "dots")
+    return {
+      background: `radial-gradient(circle at center, ${shown} 0 2.2px, ${ground} 2.6px) 0 0 / 7px 7px`,
+      ...border,
+    };
+  return { background: shown };
+}
+
+/** Points for values that a column holds, in the order of the colours. */
+export function category_palette(
+  column: string,
+  classes: { value: string; label: string; color: string }[],
+): Palette {
+  return {
+    mode: "categorical",
+    column,
+    min: 0,
+    max: Math.max(0, classes.length - 1),
+    points: classes.map(({ value, label, color }, at) => ({
+      at,
+      value,
+      color,
+      ...(label === "" || label === value ? {} : { label }),
+    })),
+  };
+}
+
+/** Classes of numbers from the lower limits on. */
+export function graduated_palette(
+  column: string,
+  classes: { from: number; to: number }[],
+  colors: string[],
+): Palette {
+  const points = classes.map(({ from }, index) => ({
+    at: from,
+    color: colors[index] ?? colors[colors.length - 1] ?? "#808080ff",
+  }));
+  return {
+    mode: "step",
+    column,
+    min: classes[0]?.from ?? 0,
+    max: classes[classes.length - 1]?.to ?? 1,
+    points,
+  };
+}
+
+/**
+ * From low to high, told apart by every colour vision and in greyscale: viridis, and two ramps for
+ * one thing that grows.
+ */
+export const kRamps = {
+  viridis: [
+    "#440154",
+    "#472d7b",
+    "#3b528b",
+    "#2c728e",
+    "#21918c",
+    "#28ae80",
+    "#5ec962",
+    "#addc30",
+    "#fde725",
+  ],
+  reds: [
+    "#fff5f0",
+    "#fddbca",
+    "#fbb499",
+    "#fa8a6b",
+    "#f55d43",
+    "#de2c26",
+    "#b91419",
+    "#8a0811",
+    "#5a040a",
+  ],
+  blues: [
+    "#f7fbff",
+    "#dbe9f6",
+    "#bcd7ec",
+    "#8fc1de",
+    "#5ba3cf",
+    "#3282be",
+    "#1461a8",
+    "#08458a",
+    "#08306b",
+  ],
+} as const;
+export type Ramp = keyof typeof kRamps;
+
+/** `count` colours spread over the ramp. */
+export function ramp_colors(ramp: Ramp, count: number): string[] {
+  const stops = kRamps[ramp];
+  const scale: Palette = {
+    mode: "linear",
+    min: 0,
+    max: 1,
+    points: stops.map((color, index) => ({ at: index / (stops.length - 1), color: `${color}ff` })),
+  };
+  return Array.from({ length: count }, (_, index) =>
+    color_of_number(scale, count === 1 ? 0.5 : index / (count - 1))!,
+  );
+}
+
+export const class_palette = (classes: { label: string; color: string; at: number }[]): Palette => {
+  const points = [...classes]
+    .sort((a, b) => a.at - b.at)
+    .map(({ at, color, label }) => ({ at, color, label }));
+  return {
+    mode: "categorical",
+    min: points[0]?.at ?? 0,
+    max: points[points.length - 1]?.at ?? 1,
+    points,
+  };
+};
+
+export const measurement_palette = (
+  min: number,
+  max: number,
+  mode: "linear" | "step" = "linear",
+): Palette => ({
+  mode,
+  min,
+  max,
+  points: kRamps.viridis.map((color, index) => ({
+    at: min + ((max - min) * index) / (kRamps.viridis.length - (mode === "step" ? 0 : 1)),
+    color: `${color}ff`,
+  })),
+});

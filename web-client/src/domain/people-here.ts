@@ -1,0 +1,82 @@
+// Who is at the model: viewers (connections) as people, and the order and colours they are shown
+// in.
+
+import type { PresenceUser } from "../core/protocol.gen";
+import type { Vec3 } from "../math/vector";
+
+/** Somebody, with all windows in which they have the model open. */
+export interface PersonHere {
+  user: string;
+  full_name: string; // empty: none was given
+  color: string;
+  own: boolean;
+  /** Of another window than this one: the one to look with, or null. */
+  viewer: PresenceUser | null;
+  leading: boolean;
+  /** Sessions that they follow, of any of their windows. */
+  following: string[];
+}
+
+/** Each person once: first who uses this window, then in the order in which they came. */
+export function people_here(viewers: readonly PresenceUser[], own_session: string): PersonHere[] {
+  const own = viewers.find(({ session }) => session === own_session)?.name;
+  const by_name = new Map<string, PresenceUser[]>();
+  for (const viewer of viewers)
+    by_name.set(viewer.name, [...(by_name.get(viewer.name) ?? []), viewer]);
+  const people = [...by_name].map(([user, windows]): PersonHere => {
+    const others = windows.filter(({ session }) => session !== own_session);
+    return {
+      user,
+      full_name: windows.find(({ full_name }) => full_name)?.full_name ?? "",
+      color: windows[0]!.color,
+      own: user === own,
+      viewer:
+        others.find(({ leading }) => leading) ??
+        others.find(({ pointer }) => pointer) ??
+        others[0] ??
+        null,
+      leading: windows.some(({ leading }) => leading),
+      following: windows.flatMap(({ following }) => following ?? []),
+    };
+  });
+  return people.sort((a, b) => Number(b.own) - Number(a.own));
+}
+
+/** People, without who they are themselves, that look with one of these sessions. */
+export const followers_of = (people: readonly PersonHere[], session: string): PersonHere[] =>
+  people.filter(({ following }) => following.includes(session));
+
+/** Whether following `session` would lead back to this window: then the server refuses it. */
+export function leads_back(
+  viewers: readonly PresenceUser[],
+  session: string,
+  own_session: string,
+): boolean {
+  let ahead: string | undefined = session;
+  for (let steps = 0; ahead !== undefined && steps <= viewers.length; ++steps) {
+    if (ahead === own_session) return true;
+    const here: string = ahead;
+    ahead = viewers.find((viewer) => viewer.session === here)?.following;
+  }
+  return false;
+}
+
+const kDarkInk = "#20292a";
+const kLightInk = "#ffffff";
+
+/** What is read best on a colour (#rrggbb): the ink with the larger contrast ratio of WCAG 2. */
+export const ink_on = (color: string): string =>
+  contrast(color, kLightInk) >= contrast(color, kDarkInk) ? kLightInk : kDarkInk;
+
+export function contrast(a: string, b: string): number {
+  const [less, more] = [luminance(a), luminance(b)].sort((x, y) => x - y) as [number, number];
+  return (more + 0.05) / (less + 0.05);
+}
+
+function luminance(color: string): number {
+  const [r, g, b] = [1, 3, 5].map((at) => {
+    const share = parseInt(color.slice(at, at + 2), 16) / 255;
+    return share <= 0.04045 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
+  }) as unknown as Vec3;
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}

@@ -1,0 +1,267 @@
+// A tour while somebody writes it: what its fields hold, what is missing in them, and which field a
+// refusal of the server is about.
+
+import { read_number, typed_number } from "../core/locale";
+import type {
+  Tour,
+  TourCreate,
+  TourRecords,
+  TourStop,
+  TourStopCreate,
+  TourTransition,
+} from "../core/protocol.gen";
+
+export const kMostStops = 100;
+export const kMostLanguages = 20;
+export const kMostLayers = 20;
+export const kMostRecordTables = 10;
+export const kMostKeys = 100;
+export const kSeconds = { idle: [30, 3600], attract: [1, 600], transition: [0, 30] } as const;
+
+/** Words by language, which may be empty while they are written. */
+export type Words = Readonly<Record<string, string>>;
+
+export interface StopDraft {
+  /** For the page alone: it stays when the stop moves. */
+  readonly id: number;
+  /** Slug; empty: its view is gone, and another must be chosen. */
+  readonly view: string;
+  readonly title: Words;
+  readonly text: Words;
+  /** As they were typed. */
+  readonly attract_s: string;
+  readonly transition: TourTransition;
+  readonly transition_s: string;
+  readonly layers: readonly string[];
+  readonly records: readonly TourRecords[];
+}
+
+export interface TourDraft {
+  readonly name: string;
+  readonly text: string;
+  readonly languages: readonly string[]; // the first is that of who chooses none
+  readonly idle_s: string;
+  readonly stops: readonly StopDraft[];
+}
+
+let made = 0;
+
+export const new_stop = (
+  view: { slug: string; name: string; text: string },
+  language: string,
+): StopDraft => ({
+  id: ++made,
+  view: view.slug,
+  title: { [language]: view.name },
+  text: view.text ? { [language]: view.text } : {},
+  attract_s: typed_number(10),
+  transition: "move",
+  transition_s: typed_number(2),
+  layers: [],
+  records: [],
+});
+
+const stop_of = (stop: TourStop): StopDraft => ({
+  ...stop,
+  id: ++made,
+  view: stop.view ?? "",
+  attract_s: typed_number(stop.attract_s),
+  transition_s: typed_number(stop.transition_s),
+});
+
+export const empty_tour = (language: string): TourDraft => ({
+  name: "",
+  text: "",
+  languages: [language],
+  idle_s: typed_number(60),
+  stops: [],
+});
+
+export const draft_of = ({ name, text, languages, idle_s, stops }: Tour): TourDraft => ({
+  name,
+  text,
+  languages,
+  idle_s: typed_number(idle_s),
+  stops: stops.map(stop_of),
+});
+
+/** With what stands at `from` out and set where `to` is then. */
+export function moved<T>(all: readonly T[], from: number, to: number): T[] {
+  const rest = all.filter((_, index) => index !== from);
+  rest.splice(Math.max(0, Math.min(to, rest.length)), 0, all[from]!);
+  return rest;
+}
+
+// ── languages
+// ───────────────────────────────────────────────────────────────────────────────────────────────────────
+
+const without = (words: Words, language: string): Words =>
+  Object.fromEntries(Object.entries(words).filter(([tag]) => tag !== language));
+
+/**
+ * What was written in the language is gone with it: the server takes no words in others than the
+ * tour's.
+ */
+export function without_language(draft: TourDraft, language: string): TourDraft {
+  return {
+    ...draft,
+    languages: draft.languages.filter((each) => each !== language),
+    stops: draft.stops.map((stop) => ({
+      ...stop,
+      title: without(stop.title, language),
+      text: without(stop.text, language),
+      records: stop.records.map((records) => ({
+        ...records,
+        columns: records.columns.map(({ column, labels }) => ({
+          column,
+          labels: without(labels ?? {}, language),
+        })),
+      })),
+    })),
+  };
+}
+
+const says = (words: Words, language: string): boolean => (words[language] ?? "").trim() !== "";
+
+/** Whether something is written in the language anywhere. */
+export const writes_in = ({ stops }: TourDraft, language: string): boolean =>
+  stops.some(
+    ({ title, text, records }) =>
+      says(title, language) ||
+      says(text, language) ||
+      records.some(({ columns }) => columns.some(({ labels }) => says(labels ?? {}, language))),
+  );
+
+/** Languages in which the stop has no title, or no text though the first one has. */
+export const untranslated = ({ title, text }: StopDraft, languages: readonly string[]): string[] =>
+  languages.filter(
+    (language) =>
+      !says(title, language) || (says(text, languages[0] ?? "") && !says(text, language)),
+  );
+
+// ── what is sent, and what is wrong with it
+// ─────────────────────────────────────────────────────────────────────────
+
+export type Wrong =
+  | "name_missing"
+  | "language_missing"
+  | "stops_missing"
+  | "view_missing"
+  | "title_missing"
+  | "seconds";
+
+export interface DraftProblem {
+  /** As the server names it: `stops[2].title.fr`. */
+  field: string;
+  wrong: Wrong;
+  /** Of seconds: the least and the most. */
+  range?: readonly [number, number];
+}
+
+/**
+ * The first thing without which the server would refuse it; what only the server knows is left to
+ * it.
+ */
+export function problem_of(draft: TourDraft): DraftProblem | null {
+  const [first] = draft.languages;
+  const seconds = (
+    field: string,
+    typed: string,
+    range: readonly [number, number],
+    whole = false,
+  ): DraftProblem | null => {
+    const value = read_number(typed);
+    const fits = value >= range[0] && value <= range[1] && (!whole || Number.isInteger(value));
+    return fits ? null : { field, wrong: "seconds", range };
+  };
+  if (draft.name.trim() === "") return { field: "name", wrong: "name_missing" };
+  if (first === undefined) return { field: "languages", wrong: "language_missing" };
+  const idle = seconds("idle_s", draft.idle_s, kSeconds.idle, true);
+  if (idle) return idle;
+  if (draft.stops.length === 0) return { field: "stops", wrong: "stops_missing" };
+  for (const [index, stop] of draft.stops.entries()) {
+    const at = `stops[${index}]`;
+    if (stop.view === "") return { field: `${at}.view`, wrong: "view_missing" };
+    if (!says(stop.title, first)) return { field: `${at}.title.${first}`, wrong: "title_missing" };
+    const wrong =
+      seconds(`${at}.attract_s`, stop.attract_s, kSeconds.attract) ??
+      (stop.transition === "cut"
+        ? null
+        : seconds(`${at}.transition_s`, stop.transition_s, kSeconds.transition));
+    if (wrong) return wrong;
+  }
+  return null;
+}
+
+/** By tag, without what is blank. */
+const written = (words: Words): Record<string, string> =>
+  Object.fromEntries(
+    Object.entries(words)
+      .map(([tag, text]) => [tag, text.trim()] as const)
+      .filter(([, text]) => text !== "")
+      .sort(([a], [b]) => (a < b ? -1 : 1)),
+  );
+
+function body_of_stop(stop: StopDraft): TourStopCreate {
+  // of a cut it is not looked at, and may be anything
+  const held_s = read_number(stop.transition_s);
+  return {
+    view: stop.view,
+    title: written(stop.title),
+    text: written(stop.text),
+    attract_s: read_number(stop.attract_s),
+    transition: stop.transition,
+    ...(Number.isNaN(held_s)
+      ? {}
+      : {
+          transition_s: Math.min(kSeconds.transition[1], Math.max(kSeconds.transition[0], held_s)),
+        }),
+    layers: [...stop.layers],
+    records: stop.records.map(({ table, keys, columns }) => ({
+      table,
+      keys,
+      columns: columns.map(({ column, labels }) => {
+        const own = written(labels ?? {});
+        return Object.keys(own).length === 0 ? { column } : { column, labels: own };
+      }),
+    })),
+  };
+}
+
+/** Of a draft of which problem_of() says nothing. */
+export const body_of = ({
+  name,
+  text,
+  languages,
+  idle_s,
+  stops,
+}: TourDraft): Required<TourCreate> => ({
+  name: name.trim(),
+  text: text.trim(),
+  languages: [...languages],
+  idle_s: read_number(idle_s),
+  stops: stops.map(body_of_stop),
+});
+
+/** Whether a draft says something else than another. */
+export const differs = (a: TourDraft, b: TourDraft): boolean =>
+  JSON.stringify(body_of(a)) !== JSON.stringify(body_of(b));
+
+/**
+ * Where a field of the server stands: of which stop, and what within it. Null: of the tour itself.
+ */
+export function place_of(field: string): { stop: number | null; within: string } {
+  const found = /^stops\[(\d+)\]\.?(.*)$/.exec(field);
+  return found ? { stop: Number(found[1]), within: found[2]! } : { stop: null, within: field };
+}
+
+/** Whether a refusal of `within` is about `field`: it itself, or a part of it. */
+export const is_about = (within: string, field: string): boolean =>
+  within === field || within.startsWith(`${field}.`) || within.startsWith(`${field}[`);
+
+/**
+ * The language that a field is in: that of `title.fr`, `text.fr` and
+ * `records[0].columns[1].labels.fr`.
+ */
+export const language_of_field = (within: string): string | null =>
+  /^(?:title|text|.*\.labels)\.([A-Za-z0-9-]+)$/.exec(within)?.[1] ?? null;

@@ -1,0 +1,83 @@
+// <strata-account-menu>: the initials of who is signed in, and what they can ask for. Others hear
+// of it by the event "account".
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { called, initials, name_with } from "../../domain/people";
+import { may_administer, type Me } from "../../core/types";
+import { icon } from "../../ui/icons";
+import "../../ui/menu";
+import { styled } from "../../ui/styled";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+export type AccountRequest = "account" | "people" | "kiosks" | "preferences" | "sign-out";
+
+/** To whatever element of the page takes it. */
+export const ask_account = (from: EventTarget, detail: AccountRequest): boolean =>
+  from.dispatchEvent(
+    new CustomEvent<AccountRequest>("account", { detail, bubbles: true, composed: true }),
+  );
+
+@customElement("strata-account-menu")
+export class StrataAccountMenu extends LitElement {
+  @property({ attribute: false }) me!: Me;
+  /** They see to links for kiosks. */
+  @property({ type: Boolean }) kiosks = false;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: inline-flex;
+        flex: none;
+      }
+      .face {
+        display: grid;
+        place-items: center;
+        width: 1.875rem;
+        height: 1.875rem;
+        border-radius: 50%;
+        color: var(--mark-light);
+        font-size: 0.76rem;
+        font-weight: 700;
+        letter-spacing: 0.02em;
+      }
+      .who {
+        display: grid;
+        max-width: 16.25rem;
+        padding: 0.5rem 0.875rem 0.625rem;
+        overflow-wrap: anywhere;
+      }
+      .who span {
+        color: var(--ink-soft);
+        font-size: 0.86rem;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { me } = this;
+    const words = texts.account;
+    const role = texts.roles[me.role];
+    return html`<strata-menu label=${name_with(words.menu(called(me)), initials(me))}>
+      <span class="face" slot="face" ${styled({ background: me.color })}>${initials(me)}</span>
+      <div class="who"><b>${called(me)}</b><span>${me.full_name.trim() ? `${me.user} · ${role}` : role}</span></div>
+      <hr />
+      <button class="quiet" role="menuitem" @click=${() => ask_account(this, "account")}>${icon("person")}${words.open}</button>
+      ${
+        may_administer(me.role)
+          ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "people")}>${icon("people")}${words.people}</button>`
+          : nothing
+      }
+      ${
+        this.kiosks
+          ? html`<button class="quiet" role="menuitem" @click=${() => ask_account(this, "kiosks")}>${icon("picture")}${texts.kiosks.open}</button>`
+          : nothing
+      }
+      <button class="quiet" role="menuitem" @click=${() => ask_account(this, "preferences")}>${icon("language")}${texts.settings.open}</button>
+      <hr />
+      <button class="quiet" role="menuitem" @click=${() => ask_account(this, "sign-out")}>${icon("leave")}${words.sign_out}</button>
+    </strata-menu>`;
+  }
+}

@@ -1,0 +1,82 @@
+// A field for a password that can be looked at while it is written. A template and no element:
+// password managers look for fields beside each other in one form.
+
+import { css, html, nothing, type TemplateResult } from "lit";
+import { icon } from "../../ui/icons";
+import { texts } from "../../texts";
+
+export interface PasswordField {
+  name: string;
+  label: string;
+  autocomplete: "current-password" | "new-password";
+  problem?: string;
+  /** The id of what says that it is wrong, where that stands elsewhere. */
+  wrong_by?: string;
+  hint?: string;
+}
+
+export const password_styles = css`
+  .password {
+    display: grid;
+    gap: 5px;
+  }
+  .password label {
+    font-size: 0.8rem;
+    font-weight: 600;
+    color: var(--ink-soft);
+  }
+  .password .inside {
+    position: relative;
+  }
+  .password input {
+    padding-right: 2.75rem;
+  }
+  .password button {
+    position: absolute;
+    right: 1px;
+    top: 1px;
+    width: 2.375rem;
+    min-height: calc(100% - 2px);
+    color: var(--ink-soft);
+  }
+`;
+
+export function password_field({
+  name,
+  label,
+  autocomplete,
+  problem = "",
+  wrong_by = "",
+  hint = "",
+}: PasswordField): TemplateResult {
+  return html`<div class="password">
+    <label for=${name}>${label}</label>
+    <div class="inside">
+      <input
+        id=${name}
+        name=${name}
+        type="password"
+        autocomplete=${autocomplete}
+        autocapitalize="off"
+        spellcheck="false"
+        maxlength="1024"
+        aria-invalid=${problem || wrong_by ? "true" : "false"}
+        aria-describedby="${name}_hint ${name}_problem ${wrong_by}"
+      />
+      <button type="button" class="icon quiet" aria-pressed="false" aria-label=${texts.password.show} title=${texts.password.show} @click=${toggle}>
+        ${icon("eye")}
+      </button>
+    </div>
+    ${hint && !problem ? html`<span class="hint" id="${name}_hint">${hint}</span>` : nothing}
+    <span class="error" id="${name}_problem" role="alert" ?hidden=${!problem}>${problem}</span>
+  </div>`;
+}
+
+function toggle(event: Event): void {
+  const button = event.currentTarget as HTMLButtonElement;
+  const input = button.parentElement!.querySelector("input")!;
+  const shown = input.type === "password";
+  input.type = shown ? "text" : "password";
+  button.setAttribute("aria-pressed", String(shown));
+  button.title = shown ? texts.password.hide : texts.password.show;
+}

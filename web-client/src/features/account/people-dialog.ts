@@ -1,0 +1,558 @@
+// <strata-people-dialog>: who has an account, and what they may do; invites people by a link that
+// is shown once. Beside them the groups.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { ApiError, type Api } from "../../net/api";
+import { called, find_people, is_user_name, may_change, roles_to_give } from "../../domain/people";
+import type { Group, Invitation, Person, PersonPatch } from "../../core/protocol.gen";
+import type { Me, Role } from "../../core/types";
+import "../../ui/copy-field";
+import { ask } from "../../ui/dialog";
+import "./group-list";
+import { icon } from "../../ui/icons";
+import "../../ui/menu";
+import "./project-roles-dialog";
+import { radio_group } from "../../ui/radio-group";
+import { chip_styles, link_making_styles, shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+import { told_time } from "../../domain/times";
+
+const words = texts.site_people;
+const kUsualRole: Role = "annotator";
+
+type Field = "user" | "full_name" | "role";
+type Part = "people" | "groups";
+
+@customElement("strata-people-dialog")
+export class StrataPeopleDialog extends LitElement {
+  @property({ attribute: false }) api!: Api;
+  @property({ attribute: false }) me!: Me;
+  @state() private people_: Person[] | null = null;
+  @state() private part_: Part = "people";
+  @state() private groups_: readonly Group[] = []; // that who is invited may be put into
+  @state() private filter_ = "";
+  @state() private inviting_ = false;
+  @state() private role_: Role = kUsualRole; // of who is invited
+  @state() private invitation_: Invitation | null = null;
+  @state() private field_problems_: Partial<Record<Field, string>> = {};
+  @state() private row_note_: { id: number; kind: "error" | "done"; text: string } | null = null;
+  @state() private problem_ = "";
+  @state() private busy_ = false;
+  @state() private in_projects_: Person | null = null; // whose roles in projects are shown
+
+  static override styles = [
+    shared_styles,
+    chip_styles,
+    link_making_styles,
+    css`
+      .bar {
+        position: sticky;
+        z-index: 1;
+        top: -0.875rem; /* over the padding of the dialog */
+        display: flex;
+        flex-wrap: wrap;
+        align-items: center;
+        gap: 0.625rem 0.75rem;
+        padding: 0.875rem 0 0.625rem;
+        margin: -0.875rem 0 -0.375rem;
+        background: var(--surface);
+      }
+      .bar input {
+        flex: 1 1 11.25rem;
+        max-width: 18.75rem;
+      }
+      .fields {
+        grid-template-columns: 1fr 1fr 1fr;
+        align-items: start;
+      }
+      fieldset {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 0.375rem 1rem;
+        margin: 0;
+        padding: 0;
+        border: 0;
+      }
+      fieldset legend {
+        padding: 0 0 5px;
+      }
+      fieldset label {
+        display: flex;
+        align-items: center;
+        gap: 0.5rem;
+        min-height: 1.75rem;
+        overflow-wrap: anywhere;
+      }
+      fieldset input {
+        width: 1.0625rem;
+        height: 1.0625rem;
+        flex: none;
+        margin: 0;
+        accent-color: var(--accent);
+      }
+      .fields small {
+        display: block;
+        margin-top: 5px;
+      }
+      table {
+        width: 100%;
+        border-collapse: collapse;
+      }
+      th {
+        padding: 4px 0.625rem 0.375rem 0;
+        text-align: left;
+        font-size: 0.8rem;
+        color: var(--ink-soft);
+      }
+      td {
+        padding: 0.4375rem 0.625rem 0.4375rem 0;
+        border-top: var(--edge) solid var(--line);
+      }
+      td:last-child {
+        width: 2.25rem;
+        padding-right: 0;
+      }
+      td b {
+        font-weight: 600;
+        overflow-wrap: anywhere;
+      }
+      td .hint {
+        display: block;
+        overflow-wrap: anywhere;
+      }
+      td .error,
+      td .done {
+        display: block;
+        font-size: 0.86rem;
+      }
+      td .done {
+        color: var(--calm);
+      }
+      td select {
+        width: auto;
+        min-height: 2.125rem;
+        padding: 3px 0.5rem;
+      }
+      .seen {
+        white-space: nowrap;
+        font-size: 0.86rem;
+        color: var(--ink-soft);
+      }
+      .chip.invited {
+        background: var(--warn-soft);
+        color: var(--warn);
+      }
+      .chip.disabled {
+        background: var(--danger-soft);
+        color: var(--danger);
+      }
+      .chip.you {
+        background: var(--accent-soft);
+        color: var(--accent);
+      }
+      td .groups {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 4px;
+        margin-top: 3px;
+      }
+      .chip.group {
+        white-space: normal;
+        overflow-wrap: anywhere;
+      }
+      .parts {
+        justify-self: start;
+      }
+      @media (max-width: 620px) {
+        .fields {
+          grid-template-columns: 1fr;
+        }
+        .bar input {
+          max-width: none;
+        }
+        table,
+        tbody {
+          display: block;
+        }
+        thead {
+          display: none;
+        }
+        tr {
+          display: grid;
+          grid-template-columns: auto 1fr auto;
+          align-items: center;
+          gap: 0.375rem 0.75rem;
+          padding: 0.625rem 0;
+          border-top: var(--edge) solid var(--line);
+        }
+        td {
+          padding: 0;
+          border: 0;
+        }
+        td.name {
+          grid-column: 1 / 3;
+        }
+        td:last-child {
+          grid-area: 1 / 3;
+        }
+        td.seen {
+          grid-column: 1 / 4;
+        }
+        td.seen::before {
+          content: attr(data-label) ": ";
+        }
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    void this.attempt(() => this.read());
+  }
+
+  private async read(): Promise<void> {
+    this.people_ = await this.api.people();
+  }
+
+  override render(): TemplateResult {
+    return html`<strata-dialog broad heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+      ${radio_group<Part>({
+        label: words.parts,
+        class: "segments parts",
+        choices: [
+          { value: "people", content: words.people },
+          { value: "groups", content: texts.groups.title },
+        ],
+        chosen: this.part_,
+        choose: (part) => (this.part_ = part),
+      })}
+      ${this.people_ ? (this.part_ === "groups" ? this.group_list(this.people_) : this.content(this.people_)) : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`}
+      ${
+        this.problem_
+          ? html`<p class="error" role="alert">${this.problem_}</p>
+            <button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button>`
+          : nothing
+      }
+      ${
+        this.in_projects_
+          ? html`<strata-project-roles-dialog .api=${this.api} .person=${this.in_projects_} @closed=${() => (this.in_projects_ = null)}></strata-project-roles-dialog>`
+          : nothing
+      }
+    </strata-dialog>`;
+  }
+
+  private group_list(people: readonly Person[]): TemplateResult {
+    return html`<strata-group-list
+      .api=${this.api}
+      .people=${people}
+      @regrouped=${() => void this.attempt(() => this.read())}
+      @signed-out=${() => this.dispatchEvent(new CustomEvent("signed-out"))}
+    ></strata-group-list>`;
+  }
+
+  private content(people: readonly Person[]): TemplateResult {
+    const shown = find_people(
+      people,
+      this.filter_,
+      ({ role, state, groups }) =>
+        `${texts.roles[role]} ${words.states[state]} ${groups.join(" ")}`,
+    );
+    return html`<div class="bar">
+        <input
+          type="text"
+          autocomplete="off"
+          autocapitalize="off"
+          spellcheck="false"
+          aria-label=${words.filter}
+          placeholder=${words.filter_hint}
+          .value=${this.filter_}
+          @input=${(event: Event) => (this.filter_ = (event.target as HTMLInputElement).value)}
+        />
+        <span class="hint numeric grow" role="status">${shown.length === people.length ? words.count(people.length) : words.count_of(shown.length, people.length)}</span>
+        <button class=${this.inviting_ || this.invitation_ ? "" : "primary"} ?disabled=${this.inviting_} @click=${this.begin_to_invite}>${icon("plus")}${words.invite}</button>
+      </div>
+      ${this.inviting_ ? this.invite_form() : nothing} ${this.invitation_ ? this.link(this.invitation_) : nothing}
+      ${
+        shown.length === 0
+          ? html`<p class="hint">${words.none_found}</p>`
+          : html`<table>
+            <thead>
+              <tr>
+                <th scope="col">${words.user}</th>
+                <th scope="col">${words.role}</th>
+                <th scope="col">${words.state}</th>
+                <th scope="col">${words.last_seen}</th>
+                <th></th>
+              </tr>
+            </thead>
+            <tbody>
+              ${repeat(
+                shown,
+                ({ id }) => id,
+                (person) => this.row(person),
+              )}
+            </tbody>
+          </table>`
+      }`;
+  }
+
+  private row(person: Person): TemplateResult {
+    const { id, user, full_name, role, state, groups } = person;
+    const name = called(person);
+    const changeable = may_change(this.me, person);
+    const note = this.row_note_?.id === id ? this.row_note_ : null;
+    return html`<tr>
+      <td class="name">
+        <b>${name}</b> ${user === this.me.user ? html`<span class="chip you">${words.you}</span>` : nothing}
+        ${full_name.trim() ? html`<span class="hint">${user}</span>` : nothing}
+        ${
+          groups.length > 0
+            ? html`<span class="groups" aria-label=${texts.groups.of(name)} role="group">${groups.map((group) => html`<span class="chip group">${group}</span>`)}</span>`
+            : nothing
+        }
+        ${note ? html`<span class=${note.kind} role=${note.kind === "error" ? "alert" : "status"}>${note.text}</span>` : nothing}
+      </td>
+      <td class="role">
+        ${
+          changeable
+            ? html`<select aria-label=${words.role_of(name)} title=${texts.role_hints[role]} @change=${(event: Event) => void this.change_role(person, event.target as HTMLSelectElement)}>
+              ${roles_to_give(this.me.role).map((each) => html`<option value=${each} ?selected=${each === role}>${texts.roles[each]}</option>`)}
+            </select>`
+            : html`<span title=${texts.role_hints[role]}>${texts.roles[role]}</span>`
+        }
+      </td>
+      <td class="state">
+        ${
+          role === "owner" && state === "invited" // nobody has invited them
+            ? html`<span class="chip" title=${words.no_password_hint}>${words.no_password}</span>`
+            : html`<span class="chip ${state}" title=${words.state_hints[state]}>${words.states[state]}</span>`
+        }
+      </td>
+      <td class="seen" data-label=${words.last_seen}>${person.last_seen ? told_time(person.last_seen) : words.never}</td>
+      <td>${changeable ? this.options(person, name) : nothing}</td>
+    </tr>`;
+  }
+
+  private options(person: Person, name: string): TemplateResult {
+    const disabled = person.state === "disabled";
+    return html`<strata-menu label=${words.options(name)}>
+      <button class="quiet" role="menuitem" @click=${() => (this.in_projects_ = person)}>${icon("layers")}${words.projects}</button>
+      ${
+        disabled
+          ? nothing
+          : html`<button class="quiet" role="menuitem" @click=${() => void this.make_link(person)}>${icon("link")}${words.new_link}</button>`
+      }
+      ${
+        disabled
+          ? html`<button class="quiet" role="menuitem" @click=${() => void this.enable(person)}>${icon("check")}${words.enable}</button>`
+          : html`<button class="quiet" role="menuitem" @click=${() => void this.disable(person)}>${icon("leave")}${words.disable}</button>`
+      }
+      <hr />
+      <button class="quiet" role="menuitem" @click=${() => void this.delete_person(person)}>${icon("trash")}${words.delete}</button>
+    </strata-menu>`;
+  }
+
+  private invite_form(): TemplateResult {
+    const problems = this.field_problems_;
+    const text_field = (
+      name: "user" | "full_name",
+      label: string,
+      placeholder: string,
+      most: number,
+    ): TemplateResult =>
+      html`<div>
+        <label class="field">
+          <span>${label}</span>
+          <input
+            type="text"
+            name=${name}
+            maxlength=${most}
+            autocomplete="off"
+            autocapitalize=${name === "user" ? "off" : "words"}
+            spellcheck="false"
+            placeholder=${placeholder}
+            aria-invalid=${problems[name] ? "true" : "false"}
+            aria-describedby="${name}_problem"
+          />
+        </label>
+        <small class="error" id="${name}_problem" role="alert" ?hidden=${!problems[name]}>${problems[name] ?? ""}</small>
+      </div>`;
+    return html`<form @submit=${this.on_invite} novalidate>
+      <p class="hint">${words.invite_lead}</p>
+      <div class="fields">
+        ${text_field("user", words.invite_user, words.invite_user_hint, 64)} ${text_field("full_name", words.full_name, "", 200)}
+        <div>
+          <label class="field">
+            <span>${words.role}</span>
+            <select name="role" aria-describedby="role_hint role_problem" @change=${(event: Event) => (this.role_ = (event.target as HTMLSelectElement).value as Role)}>
+              ${roles_to_give(this.me.role).map((role) => html`<option value=${role} ?selected=${role === this.role_}>${texts.roles[role]}</option>`)}
+            </select>
+          </label>
+          <small class="hint" id="role_hint">${texts.role_hints[this.role_]}</small>
+          <small class="error" id="role_problem" role="alert" ?hidden=${!problems.role}>${problems.role ?? ""}</small>
+        </div>
+      </div>
+      ${
+        this.groups_.length > 0
+          ? html`<fieldset>
+            <legend class="caption">${texts.groups.title}</legend>
+            ${this.groups_.map(({ id, name }) => html`<label><input type="checkbox" name="group" value=${id} />${name}</label>`)}
+          </fieldset>`
+          : nothing
+      }
+      <div class="row">
+        <button type="button" @click=${() => (this.inviting_ = false)}>${texts.cancel}</button>
+        <button class="primary" ?disabled=${this.busy_}>${words.invite_button}</button>
+      </div>
+    </form>`;
+  }
+
+  private link({ path, expires, user }: Invitation): TemplateResult {
+    const title = words.link(called(user));
+    return html`<div class="made" role="status">
+      <div>
+        <b>${title}</b>
+        <p>${words.link_lead(told_time(expires))}</p>
+      </div>
+      <strata-copy-field follows_form label=${title} .text=${new URL(path, location.origin).href}></strata-copy-field>
+      <button @click=${() => (this.invitation_ = null)}>${words.link_done}</button>
+    </div>`;
+  }
+
+  private begin_to_invite(): void {
+    this.inviting_ = true;
+    this.role_ = kUsualRole;
+    this.invitation_ = null;
+    this.field_problems_ = {};
+    void this.updateComplete.then(() =>
+      this.renderRoot.querySelector<HTMLInputElement>("input[name=user]")?.focus(),
+    );
+    void this.attempt(async () => {
+      this.groups_ = await this.api.groups();
+    });
+  }
+
+  private refuse(field: Field, problem: string): void {
+    this.field_problems_ = { [field]: problem };
+    this.renderRoot.querySelector<HTMLElement>(`form [name=${field}]`)?.focus();
+  }
+
+  private on_invite(event: Event): void {
+    event.preventDefault();
+    const data = new FormData(event.target as HTMLFormElement);
+    const text = (name: Field): string => String(data.get(name) ?? "").trim();
+    this.field_problems_ = {};
+    if (text("user") === "") return this.refuse("user", words.user_missing);
+    if (!is_user_name(text("user"))) return this.refuse("user", words.user_wrong);
+    void this.attempt(async () => {
+      const groups = data.getAll("group").map(Number);
+      const asked = { user: text("user"), full_name: text("full_name"), role: this.role_ };
+      this.invitation_ = await this.api.invite(groups.length > 0 ? { ...asked, groups } : asked);
+      this.inviting_ = false;
+      await this.read();
+    });
+  }
+
+  private async make_link(person: Person): Promise<void> {
+    const name = called(person);
+    if (
+      !(await ask({
+        heading: words.new_link_title(name),
+        lead: words.new_link_lead,
+        yes: words.new_link_button,
+      }))
+    )
+      return;
+    await this.change_row(person, async () => {
+      this.inviting_ = false;
+      this.invitation_ = await this.api.invite_again(person.user);
+      await this.updateComplete;
+      this.renderRoot.querySelector(".made")?.scrollIntoView({ block: "nearest" });
+    });
+  }
+
+  private async change_role(person: Person, select: HTMLSelectElement): Promise<void> {
+    const role = select.value as Role;
+    const done = await this.change(person, { role }, words.role_changed(texts.roles[role]));
+    if (!done) select.value = person.role;
+  }
+
+  private async disable(person: Person): Promise<void> {
+    const name = called(person);
+    if (
+      !(await ask({
+        heading: words.disable_title(name),
+        lead: words.disable_lead,
+        yes: words.disable_button,
+        danger: true,
+      }))
+    )
+      return;
+    await this.change(person, { disabled: true }, words.disabled);
+  }
+
+  private async enable(person: Person): Promise<void> {
+    await this.change(person, { disabled: false }, words.enabled);
+  }
+
+  private async delete_person(person: Person): Promise<void> {
+    const name = called(person);
+    if (
+      !(await ask({
+        heading: words.delete_title(name),
+        lead: words.delete_lead,
+        yes: texts.delete,
+        danger: true,
+      }))
+    )
+      return;
+    await this.change_row(person, async () => {
+      await this.api.delete_person(person.user);
+      if (this.invitation_?.user.id === person.id) this.invitation_ = null;
+      await this.read();
+    });
+  }
+
+  private change(person: Person, change: PersonPatch, done: string): Promise<boolean> {
+    return this.change_row(person, async () => {
+      const now = await this.api.change_person(person.user, change);
+      this.people_ = (this.people_ ?? []).map((each) => (each.id === now.id ? now : each));
+      this.row_note_ = { id: now.id, kind: "done", text: done };
+    });
+  }
+
+  /** True: done. What is refused is said in the person's row. */
+  private async change_row({ id }: Person, task: () => Promise<void>): Promise<boolean> {
+    this.row_note_ = null;
+    try {
+      await task();
+      return true;
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
+      this.row_note_ = { id, kind: "error", text: error.message };
+      return false;
+    }
+  }
+
+  private async attempt(task: () => Promise<void>): Promise<void> {
+    this.busy_ = true;
+    this.problem_ = "";
+    try {
+      await task();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      const { field } = error.problem;
+      if (error.status === 401) this.dispatchEvent(new CustomEvent("signed-out"));
+      else if (this.inviting_ && (field === "full_name" || field === "role"))
+        this.refuse(field, error.message);
+      else if (this.inviting_ && (field === "user" || error.status === 409))
+        this.refuse("user", error.message);
+      else this.problem_ = error.message;
+    } finally {
+      this.busy_ = false;
+    }
+  }
+}

@@ -1,0 +1,178 @@
+// <strata-project-roles-dialog>: what one person may do in each project, beside what they may do
+// everywhere and what their groups give them there; or what a group may do.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { ApiError, type Api } from "../../net/api";
+import { format_list } from "../../core/locale";
+import { called, role_by_groups } from "../../domain/people";
+import type { Group, MemberList, Person, Project, ProjectRole } from "../../core/protocol.gen";
+import { kProjectRoles, kRoles } from "../../core/types";
+import "../../ui/dialog";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+const words = texts.project_roles;
+
+interface Row {
+  project: Project;
+  role: ProjectRole | null; // of their own
+  by_groups: ReturnType<typeof role_by_groups>;
+  note: { kind: "error" | "done"; text: string } | null;
+}
+
+@customElement("strata-project-roles-dialog")
+export class StrataProjectRolesDialog extends LitElement {
+  @property({ attribute: false }) api!: Api;
+  /** One of both. */
+  @property({ attribute: false }) person: Person | null = null;
+  @property({ attribute: false }) group: Group | null = null;
+  @state() private rows_: readonly Row[] | null = null;
+  @state() private problem_ = "";
+
+  static override styles = [
+    shared_styles,
+    css`
+      ul {
+        display: grid;
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      li {
+        display: grid;
+        grid-template-columns: 1fr auto;
+        align-items: center;
+        gap: 4px 12px;
+        padding: 8px 0;
+        border-top: var(--edge) solid var(--line);
+      }
+      li b {
+        font-weight: 600;
+        overflow-wrap: anywhere;
+      }
+      li select {
+        width: auto;
+      }
+      li .error,
+      li .done,
+      li .hint {
+        grid-column: 1 / 3;
+        font-size: 0.86rem;
+      }
+      li .done {
+        color: var(--calm);
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    void this.read();
+  }
+
+  private async read(): Promise<void> {
+    this.problem_ = "";
+    try {
+      const projects = await this.api.projects();
+      const members = await Promise.all(projects.map(({ slug }) => this.api.members(slug)));
+      this.rows_ = projects.map((project, i) => ({
+        project,
+        ...this.roles_in(members[i]!),
+        note: null,
+      }));
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.problem_ = error.message;
+    }
+  }
+
+  private roles_in({ members, groups }: MemberList): Pick<Row, "role" | "by_groups"> {
+    const { person, group } = this;
+    if (group)
+      return { role: groups.find(({ id }) => id === group.id)?.role ?? null, by_groups: null };
+    return {
+      role: members.find(({ user }) => user === person?.user)?.role ?? null,
+      by_groups: role_by_groups(groups, person?.groups ?? []),
+    };
+  }
+
+  override render(): TemplateResult {
+    const { person, group } = this;
+    const name = person ? called(person) : (group?.name ?? "");
+    return html`<strata-dialog heading=${words.title(name)} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+      <p class="hint">${person ? words.lead(texts.roles[person.role]) : words.group_lead}</p>
+      ${
+        this.problem_
+          ? html`<p class="error" role="alert">${this.problem_}</p>
+            <button @click=${() => void this.read()}>${texts.try_again}</button>`
+          : this.rows_
+            ? html`<ul>
+              ${repeat(
+                this.rows_,
+                ({ project }) => project.id,
+                (row) => this.row(row),
+              )}
+            </ul>`
+            : html`<p class="hint" role="status">${texts.loading}</p>`
+      }
+    </strata-dialog>`;
+  }
+
+  private row(row: Row): TemplateResult {
+    const { project, role, note } = row;
+    return html`<li>
+      <b>${project.name}</b>
+      <select aria-label=${words.role_in(project.name)} @change=${(event: Event) => void this.change(row, event.target as HTMLSelectElement)}>
+        <option value="" ?selected=${role === null}>${this.group ? words.group_none : words.none}</option>
+        ${kProjectRoles.map((each) => html`<option value=${each} ?selected=${each === role}>${texts.roles[each]}</option>`)}
+      </select>
+      ${this.origin(row)}
+      ${note ? html`<span class=${note.kind} role=${note.kind === "error" ? "alert" : "status"}>${note.text}</span>` : nothing}
+    </li>`;
+  }
+
+  /** What counts there, where that is what a group gives. */
+  private origin({ role, by_groups }: Row): TemplateResult | typeof nothing {
+    if (!by_groups || !this.person) return nothing;
+    const rank = (each: ProjectRole | Person["role"]): number => kRoles.indexOf(each);
+    const counts = rank(by_groups.role) > Math.max(rank(this.person.role), role ? rank(role) : -1);
+    const told = counts ? words.by_groups : words.by_groups_also;
+    return html`<span class="hint">${told(texts.roles[by_groups.role], format_list(by_groups.groups))}</span>`;
+  }
+
+  private async change(row: Row, select: HTMLSelectElement): Promise<void> {
+    const { project, role: before } = row;
+    const role = kProjectRoles.find((each) => each === select.value) ?? null;
+    const say = (now: ProjectRole | null, kind: "error" | "done", text: string): void => {
+      this.rows_ = (this.rows_ ?? []).map((row) =>
+        row.project.id === project.id ? { ...row, role: now, note: { kind, text } } : row,
+      );
+    };
+    try {
+      await this.put(project.slug, role);
+      say(
+        role,
+        "done",
+        role
+          ? texts.site_people.role_changed(texts.roles[role])
+          : this.group
+            ? words.group_removed
+            : words.removed,
+      );
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      select.value = before ?? "";
+      say(before, "error", error.message);
+    }
+  }
+
+  private async put(project: string, role: ProjectRole | null): Promise<void> {
+    const { api, person, group } = this;
+    if (group && role) await api.put_project_group(project, group.id, role);
+    else if (group) await api.remove_project_group(project, group.id);
+    else if (person && role) await api.put_member(project, person.user, role);
+    else if (person) await api.remove_member(project, person.user);
+  }
+}

@@ -1,0 +1,238 @@
+// <strata-look-list>: the looks of the model from top to bottom, as this person sees them; part of
+// the panel of the view.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import type { Look } from "../../core/protocol.gen";
+import { ask, ask_text } from "../../ui/dialog";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import "../../ui/menu";
+import type { ModelSession } from "../../shell/model-session";
+import { notices } from "../../ui/notices";
+import { list_head_styles } from "../../ui/panel-styles";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+@customElement("strata-look-list")
+export class StrataLookList extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @state() private adding_ = false;
+  @query("input[type=file]") private file_input_!: HTMLInputElement;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    list_head_styles,
+    css`
+      ul {
+        gap: 0.375rem;
+      }
+      li {
+        display: grid;
+        grid-template-columns: auto 2.75rem minmax(0, 1fr) auto;
+        align-items: center;
+        gap: 2px 0.5rem;
+        padding: 3px 4px 0.375rem 2px;
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius);
+        background: var(--raised);
+      }
+      li img {
+        width: 2.75rem;
+        height: 2.125rem;
+        object-fit: cover;
+        border-radius: 4px;
+        background: var(--paper);
+      }
+      li.off .name {
+        color: var(--ink-soft);
+      }
+      li.off img {
+        opacity: 0.55;
+      }
+      li .opacity {
+        grid-column: 2 / -1;
+        display: grid;
+        grid-template-columns: 1fr 3.25rem;
+        align-items: center;
+        gap: 0.625rem;
+        padding-right: 0.625rem;
+        font-size: 0.88rem;
+      }
+      output {
+        text-align: right;
+        white-space: nowrap;
+      }
+      .personal {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 4px 0.875rem;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const { appearance } = session;
+    const words = texts.view;
+    const shown = [...appearance.looks].reverse();
+    return html`<div class="row">
+        <h3>${words.looks}</h3>
+        ${
+          session.can_curate
+            ? html`<button class="quiet" ?disabled=${this.adding_} @click=${() => this.file_input_.click()}>
+                ${icon("plus")}${this.adding_ ? words.look_adding : words.look_add}
+              </button>
+              <strata-menu label=${words.look_more}>
+                <button class="quiet" role="menuitem" @click=${() => this.dispatchEvent(new CustomEvent("orthophoto"))}>
+                  ${icon("import")}${texts.orthophoto.open}
+                </button>
+              </strata-menu>
+              <input type="file" accept="image/jpeg,image/png,image/tiff,image/webp,image/bmp,.tga" hidden aria-label=${words.look_add} @change=${this.on_file} />`
+            : nothing
+        }
+      </div>
+      ${
+        shown.length === 0
+          ? html`<p class="hint">${session.can_curate ? words.no_looks_curator : words.no_looks}</p>`
+          : html`<ul>
+            ${shown.map((look) => this.look(look))}
+          </ul>`
+      }
+      ${
+        appearance.has_look_overrides && session.can_curate
+          ? html`<div class="personal">
+            <button class="link" @click=${() => void this.save_default()}>${texts.layers.save_default}</button>
+          </div>`
+          : nothing
+      }`;
+  }
+
+  private look(look: Look): TemplateResult {
+    const { session } = this;
+    const { appearance } = session;
+    const visible = appearance.visible(look);
+    const place = appearance.looks.indexOf(look);
+    const percent = Math.round(appearance.opacity(look) * 100);
+    const label = visible ? texts.layers.hide(look.name) : texts.layers.show(look.name);
+    return html`<li class=${visible ? "" : "off"}>
+      <button
+        class="icon quiet"
+        aria-pressed=${visible}
+        aria-label=${label}
+        title=${label}
+        @click=${() => appearance.set_visible(look, !visible)}
+      >
+        ${icon(visible ? "eye" : "eye_off")}
+      </button>
+      <img src="/api/v1/models/${session.model_id}/looks/${look.id}/picture?thumbnail=96" alt="" loading="lazy" />
+      <span class="name ellipsis" title=${look.description || look.name}>${look.name}</span>
+      ${
+        session.can_curate
+          ? html`<strata-menu label=${texts.layers.options(look.name)}>
+            <a
+              class="button quiet"
+              role="menuitem"
+              href="/api/v1/models/${session.model_id}/looks/${look.id}/picture"
+              download="${look.slug}.${look.media_type === "image/png" ? "png" : "jpg"}"
+              >${icon("down")}${texts.view.look_download}</a
+            >
+            <button class="quiet" role="menuitem" @click=${() => void this.rename_look(look)}>
+              ${icon("edit")}${texts.view.look_rename}
+            </button>
+            <button
+              class="quiet"
+              role="menuitem"
+              ?disabled=${place === appearance.looks.length - 1}
+              @click=${() => this.move_look(look, place + 1)}
+            >
+              ${icon("up")}${texts.layers.up}
+            </button>
+            <button class="quiet" role="menuitem" ?disabled=${place === 0} @click=${() => this.move_look(look, place - 1)}>
+              ${icon("down")}${texts.layers.down}
+            </button>
+            <hr />
+            <button class="quiet" role="menuitem" @click=${() => void this.delete_look(look)}>
+              ${icon("trash")}${texts.layers.delete}
+            </button>
+          </strata-menu>`
+          : html`<span></span>`
+      }
+      ${
+        visible
+          ? html`<div class="opacity">
+            <input
+              type="range"
+              min="0"
+              max="100"
+              .value=${String(percent)}
+              aria-label=${texts.layers.opacity_of(look.name)}
+              @input=${(event: Event) => appearance.set_opacity(look, number_of(event) / 100)}
+            />
+            <output class="numeric">${percent} %</output>
+          </div>`
+          : nothing
+      }
+    </li>`;
+  }
+
+  private async on_file(): Promise<void> {
+    const file = this.file_input_.files?.[0];
+    this.file_input_.value = "";
+    if (!file) return;
+    this.adding_ = true;
+    try {
+      await this.session.appearance.add(file);
+    } catch (error) {
+      notices.error(error);
+    } finally {
+      this.adding_ = false;
+    }
+  }
+
+  private async rename_look(look: Look): Promise<void> {
+    const words = texts.view;
+    const name = await ask_text({
+      heading: words.look_rename_title(look.name),
+      label: words.look_name,
+      text: look.name,
+      yes: texts.save,
+    });
+    if (name === null || name === look.name) return;
+    await this.session.appearance
+      .rename(look, name)
+      .catch((error: unknown) => notices.error(error));
+  }
+
+  private move_look(look: Look, place: number): void {
+    this.session.appearance.move(look, place).catch((error: unknown) => notices.error(error));
+  }
+
+  private async delete_look(look: Look): Promise<void> {
+    const words = texts.view;
+    const question = {
+      heading: words.look_delete_title(look.name),
+      lead: words.look_delete_lead,
+      yes: texts.delete,
+      danger: true,
+    };
+    if (!(await ask(question))) return;
+    await this.session.appearance.remove(look).catch((error: unknown) => notices.error(error));
+  }
+
+  private async save_default(): Promise<void> {
+    try {
+      await this.session.appearance.save_as_default();
+      notices.show("success", texts.layers.saved_default);
+    } catch (error) {
+      notices.error(error);
+    }
+  }
+}
+
+const number_of = (event: Event): number => Number((event.target as HTMLInputElement).value);

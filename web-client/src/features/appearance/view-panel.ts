@@ -1,0 +1,264 @@
+// <strata-view-panel>: how this person sees the model: the views that were kept, looks, light,
+// section.
+
+import { css, html, nothing, type TemplateResult } from "lit";
+import { customElement } from "lit/decorators.js";
+import { format_length, metres_per } from "../../domain/measure";
+import type { LightMode, Point3 } from "../../core/protocol.gen";
+import { kAxes, with_box_side, world_position, type SectionMode } from "../../math/section";
+import { FoldingPanel, folding_styles } from "../../ui/folding-panel";
+import { icon } from "../../ui/icons";
+import "../../ui/light-pad";
+import "./look-list";
+import { radio_group } from "../../ui/radio-group";
+import { texts } from "../../texts";
+import "../tours/tour-list";
+import type { TourRequest } from "../tours/tour-list";
+import type { ViewRequest } from "../views/view-list";
+import "../views/view-list";
+
+const kLights: readonly LightMode[] = ["museum", "headlight", "raking", "unlit"];
+const kSections: readonly Exclude<SectionMode, "planes">[] = ["off", "x", "y", "z", "box"];
+const kSteps = 1000; // of a section's slider
+
+@customElement("strata-view-panel")
+export class StrataViewPanel extends FoldingPanel {
+  protected readonly heading = texts.view.title;
+
+  constructor() {
+    super("view");
+  }
+
+  static override styles = [
+    folding_styles,
+    css`
+      h2 .dot {
+        width: 0.5rem;
+        height: 0.5rem;
+        border-radius: 50%;
+        background: var(--accent);
+      }
+      .parts {
+        gap: 1.125rem;
+        margin-top: 0.625rem;
+      }
+      .part {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        gap: 0.625rem;
+      }
+      .part > .row {
+        min-height: 1.875rem;
+        justify-content: space-between;
+      }
+      h3 {
+        font-size: 0.8rem;
+        font-weight: 600;
+        color: var(--ink-soft);
+      }
+      .segments button {
+        flex: 1 1 auto; /* as wide as its word, and more where there is room */
+        padding: 0 0.5rem;
+      }
+      output {
+        text-align: right;
+        white-space: nowrap;
+      }
+      .slider {
+        display: grid;
+        grid-template-columns: auto 1fr 4.75rem;
+        align-items: center;
+        gap: 0.625rem;
+        font-size: 0.88rem;
+      }
+      .box {
+        display: grid;
+        gap: 2px;
+      }
+    `,
+  ];
+
+  protected override beside_heading(): unknown {
+    const { changed } = texts.view;
+    return this.session.appearance.is_default || this.is_open
+      ? nothing
+      : html`<span class="dot" role="img" aria-label=${changed} title=${changed}></span>`;
+  }
+
+  protected override tools(): unknown {
+    const { appearance } = this.session;
+    return this.is_open && !appearance.is_default
+      ? html`<button class="link" @click=${() => appearance.reset()}>${texts.view.reset}</button>`
+      : nothing;
+  }
+
+  protected content(): TemplateResult[] {
+    return [
+      this.views(),
+      ...(this.session.can_curate ? [this.tours()] : []),
+      this.looks(),
+      this.light(),
+      this.section(),
+      this.figure(),
+    ];
+  }
+
+  private views(): TemplateResult {
+    return html`<strata-view-list
+      .session=${this.session}
+      @request=${(event: CustomEvent<ViewRequest>) => this.dispatchEvent(new CustomEvent("request", { detail: event.detail }))}
+    ></strata-view-list>`;
+  }
+
+  private tours(): TemplateResult {
+    return html`<strata-tour-list
+      .session=${this.session}
+      @request=${(event: CustomEvent<TourRequest>) => this.dispatchEvent(new CustomEvent("request", { detail: event.detail }))}
+    ></strata-tour-list>`;
+  }
+
+  private looks(): TemplateResult {
+    return html`<strata-look-list
+      .session=${this.session}
+      @orthophoto=${() => this.dispatchEvent(new CustomEvent("orthophoto"))}
+    ></strata-look-list>`;
+  }
+
+  // ── light and section
+  // ─────────────────────────────────────────────────────────────────────────────────────────────
+
+  private light(): TemplateResult {
+    const { appearance } = this.session;
+    const words = texts.view;
+    return html`<div class="part">
+      <h3 id="light">${words.light}</h3>
+      ${radio_group({
+        label: { id: "light" },
+        class: "segments",
+        choices: kLights.map((mode) => ({
+          value: mode,
+          content: words.lights[mode],
+          title: words.light_hints[mode],
+        })),
+        chosen: appearance.light.mode,
+        choose: (mode) => appearance.set_light({ mode }),
+      })}
+      ${
+        appearance.light.mode === "raking"
+          ? html`<strata-light-pad
+            .direction=${appearance.light.direction}
+            @direction=${(event: CustomEvent<Point3>) => appearance.set_light({ direction: event.detail })}
+          ></strata-light-pad>`
+          : nothing
+      }
+    </div>`;
+  }
+
+  private section(): TemplateResult {
+    const { appearance } = this.session;
+    const { mode } = appearance.section;
+    const words = texts.view;
+    return html`<div class="part">
+      <h3 id="section">${words.section}</h3>
+      ${radio_group({
+        label: { id: "section" },
+        class: "segments",
+        choices: kSections.map((value) => ({
+          value,
+          content: words.sections[value],
+          title: words.section_hints[value],
+        })),
+        chosen: mode,
+        choose: (value) => appearance.set_section({ mode: value }),
+      })}
+      ${this.section_of(mode)}
+    </div>`;
+  }
+
+  private figure(): TemplateResult {
+    const open = (): boolean =>
+      this.dispatchEvent(
+        new CustomEvent<ViewRequest>("request", { detail: { dialog: "figure", view: null } }),
+      );
+    return html`<div class="part">
+      <h3>${texts.figures.title}</h3>
+      <div><button title="F" @click=${open}>${icon("measure")}${texts.figures.open}</button></div>
+    </div>`;
+  }
+
+  private section_of(mode: SectionMode): TemplateResult | typeof nothing {
+    const { appearance } = this.session;
+    const words = texts.view;
+    if (mode === "off") return nothing;
+    if (mode === "box") return this.box();
+    if (mode !== "planes") return this.cut(kAxes.indexOf(mode));
+    return html`<div class="row">
+      <span class="hint" role="status">${words.section_of_view(appearance.section.planes.length)}</span>
+      <button class="link" @click=${() => appearance.set_section({ mode: "off" })}>${words.section_remove}</button>
+    </div>`;
+  }
+
+  private cut(axis: number): TemplateResult {
+    const { appearance } = this.session;
+    const words = texts.view;
+    const { position, flipped } = appearance.section;
+    return html`${this.slider({
+      name: kAxes[axis]!.toUpperCase(),
+      label: words.cut_position,
+      axis,
+      share: position,
+      choose: (share, moving) => appearance.set_section({ position: share }, moving),
+    })}
+      <div>
+        <button class="quiet" aria-pressed=${flipped} @click=${() => appearance.set_section({ flipped: !flipped })}>
+          ${icon("flip")}${words.flip}
+        </button>
+      </div>`;
+  }
+
+  private box(): TemplateResult {
+    const { appearance } = this.session;
+    const words = texts.view;
+    const side = (axis: number, which: "min" | "max"): TemplateResult =>
+      this.slider({
+        name:
+          which === "min" ? `${kAxes[axis]!.toUpperCase()} ≥` : `${kAxes[axis]!.toUpperCase()} ≤`,
+        label:
+          which === "min"
+            ? words.box_from(kAxes[axis]!.toUpperCase())
+            : words.box_to(kAxes[axis]!.toUpperCase()),
+        axis,
+        share: appearance.section.box[which][axis]!,
+        choose: (share, moving) =>
+          appearance.set_section(with_box_side(appearance.section, which, axis, share), moving),
+      });
+    return html`<div class="box">${[0, 1, 2].map((axis) => [side(axis, "min"), side(axis, "max")])}</div>`;
+  }
+
+  private slider(of: {
+    name: string;
+    label: string;
+    axis: number;
+    share: number;
+    choose(share: number, moving: boolean): void;
+  }): TemplateResult {
+    const { model } = this.session;
+    const at = model ? world_position(model.bounds, of.axis, of.share) * metres_per(model.unit) : 0;
+    const said = Math.abs(at) < 1e-9 ? "0" : `${at < 0 ? "−" : ""}${format_length(Math.abs(at))}`;
+    return html`<label class="slider">
+      <span class="caption numeric">${of.name}</span>
+      <input
+        type="range"
+        min="0"
+        max=${kSteps}
+        .value=${String(Math.round(of.share * kSteps))}
+        aria-label=${of.label}
+        aria-valuetext=${said}
+        @input=${(event: Event) => of.choose(number_of(event) / kSteps, true)}
+      />
+      <output class="numeric">${said}</output>
+    </label>`;
+  }
+}
+
+const number_of = (event: Event): number => Number((event.target as HTMLInputElement).value);

@@ -1,0 +1,561 @@
+// <strata-comment-card>: a thread beside its pin, or the one that is being begun; on a phone: a
+// sheet from below.
+
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { label_of } from "../../domain/cells";
+import { ApiError } from "../../net/api";
+import { beside } from "../../ui/beside";
+import { comments_in, type Thread } from "../../domain/comments";
+import { called } from "../../domain/people";
+import type { Comment } from "../../core/protocol.gen";
+import { comment_text, comment_text_styles } from "./comment-text";
+import type { DraftOf } from "./comments";
+import { ask } from "../../ui/dialog";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import { has_keyboard } from "../../shell/keyboard";
+import type { ModelSession } from "../../shell/model-session";
+import { NameCompletion, name_completion_styles } from "./name-completion";
+import { person_mark, person_mark_styles } from "../../ui/person-mark";
+import { hash_of_comment } from "../../ui/routes";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+import { told_time } from "../../domain/times";
+
+const words = texts.comments;
+const kGap_px = 20;
+const kMostCharacters = 10_000; // that the server takes
+const kNarrow = "(max-width: 820px)";
+
+@customElement("strata-comment-card")
+export class StrataCommentCard extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @state() private problem_: { of: DraftOf | "thread"; text: string } | null = null;
+  @state() private busy_ = false;
+  @state() private editing_: number | null = null;
+  @query("section") private section_!: HTMLElement | null;
+  private shown_: number | "new" | null = null;
+  private opener_: HTMLElement | null = null; // had the keyboard before
+  private readonly names_ = new NameCompletion(this, () => this.session.comments.load_people());
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    person_mark_styles,
+    comment_text_styles,
+    name_completion_styles,
+    css`
+      section {
+        position: absolute;
+        pointer-events: auto;
+        display: grid;
+        grid-template: auto minmax(0, 1fr) auto / minmax(0, 1fr);
+        width: min(20.625rem, calc(100% - 1.75rem));
+        max-height: min(30rem, calc(100% - 1.75rem));
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius);
+        background: var(--raised);
+        box-shadow: var(--shadow);
+        font-size: 0.9rem;
+      }
+      section:focus {
+        outline: none;
+      }
+      .head {
+        gap: 2px;
+        padding: 0.375rem 0.375rem 0.375rem 0.8125rem;
+        border-bottom: var(--edge) solid var(--line);
+      }
+      h2 {
+        font-size: 1.02rem;
+      }
+      .head button {
+        min-height: 2rem;
+        padding: 0 0.5rem;
+        font-size: 0.86rem;
+      }
+      .head button.icon {
+        width: 2rem;
+        padding: 0;
+      }
+      .list {
+        display: grid;
+        align-content: start;
+        gap: 0.8125rem;
+        padding: 0.6875rem 0.8125rem;
+        overflow: hidden auto;
+        overscroll-behavior: contain;
+      }
+      article {
+        display: grid;
+        grid-template-columns: auto minmax(0, 1fr);
+        gap: 3px 0.5625rem;
+      }
+      article > .person-mark {
+        grid-row: span 2;
+      }
+      .by {
+        display: flex;
+        flex-wrap: wrap;
+        align-items: baseline;
+        gap: 2px 0.5rem;
+        min-height: 1.25rem;
+      }
+      .by b {
+        overflow-wrap: anywhere;
+      }
+      .by a {
+        text-decoration: none;
+      }
+      .by a:hover,
+      .by a:focus-visible {
+        text-decoration: underline;
+      }
+      article .words.gone {
+        color: var(--ink-soft);
+        font-style: italic;
+      }
+      .acts {
+        grid-column: 2;
+        gap: 0.875rem;
+      }
+      .acts button.link {
+        font-size: 0.82rem;
+      }
+      .about,
+      .settled {
+        font-size: 0.84rem;
+        color: var(--ink-soft);
+      }
+      .about button.link {
+        white-space: normal;
+        text-align: left;
+      }
+      .settled {
+        display: flex;
+        gap: 0.375rem;
+        align-items: center;
+        color: var(--calm);
+      }
+      .settled svg.glyph {
+        width: 1rem;
+        height: 1rem;
+      }
+      form {
+        display: grid;
+        gap: 0.5rem;
+        padding: 0.625rem 0.8125rem 0.75rem;
+      }
+      article form {
+        grid-column: 2;
+        padding: 0;
+      }
+      .foot {
+        border-top: var(--edge) solid var(--line);
+      }
+      textarea {
+        min-height: 3.625rem;
+        max-height: 12.5rem;
+        field-sizing: content;
+        resize: none;
+        unicode-bidi: plaintext;
+      }
+      form .row {
+        justify-content: flex-end;
+      }
+      form .row button {
+        min-height: 2.125rem;
+      }
+      @media (max-width: 820px) {
+        section {
+          position: fixed;
+          inset: auto 0 0 0 !important;
+          width: auto;
+          max-height: 48dvh; /* what the camera flies to stays above it */
+          border-radius: 1rem 1rem 0 0;
+          border-bottom: 0;
+          padding-bottom: env(safe-area-inset-bottom);
+          box-shadow: var(--shadow-above);
+        }
+      }
+      @media (pointer: coarse) {
+        .head button {
+          min-height: 2.5rem;
+        }
+        .head button.icon {
+          width: 2.5rem;
+        }
+        .acts button.link {
+          min-height: 2rem;
+        }
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.opener_ = has_keyboard();
+  }
+
+  /** Whoever came by the keyboard goes on from where they came. */
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    if (has_keyboard() === null && this.opener_?.isConnected)
+      this.opener_.focus({ preventScroll: true });
+  }
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    super.willUpdate(changed);
+    const { card } = this.session.comments;
+    if (card === this.shown_) return;
+    const now = has_keyboard();
+    if (this.shown_ !== null && now && !this.contains_deep(now)) this.opener_ = now;
+    this.problem_ = null;
+    this.editing_ = null;
+  }
+
+  override render(): TemplateResult {
+    const { comments } = this.session;
+    if (comments.card === "new") return this.composer();
+    const thread = comments.card === null ? null : comments.find(comments.card);
+    return thread ? this.thread(thread) : html``;
+  }
+
+  override updated(): void {
+    const { comments } = this.session;
+    const { card } = comments;
+    this.put_beside();
+    const thread = typeof card === "number" ? comments.find(card) : null;
+    if (thread && document.visibilityState === "visible") comments.mark_read(thread);
+    const fresh = card !== this.shown_;
+    this.shown_ = card;
+    if (!fresh || card === null) return;
+    const target = card === "new" ? this.renderRoot.querySelector("textarea") : this.section_;
+    target?.focus({ preventScroll: true });
+  }
+
+  /** Only here is it known how large the card is. */
+  private put_beside(): void {
+    const { section_: section, session } = this;
+    if (!section || matchMedia(kNarrow).matches) return;
+    const { comments, view } = session;
+    const place =
+      comments.card === "new"
+        ? comments.draft("new")?.position
+        : comments.card === null
+          ? null
+          : comments.find(comments.card)?.first.position;
+    const at = place ? view.camera.project(place) : null;
+    const frame = { width: this.clientWidth, height: this.clientHeight };
+    const [x, y] = at ? [at.x / view.scale, at.y / view.scale] : [-1, -1];
+    const in_view = x >= 0 && y >= 0 && x <= frame.width && y <= frame.height;
+    const size = { width: section.offsetWidth, height: section.offsetHeight };
+    const margin = 14;
+    const found = in_view
+      ? beside(
+          [x - margin, y - margin],
+          size,
+          { width: frame.width - 2 * margin, height: frame.height - 2 * margin },
+          kGap_px + margin,
+        )
+      : null;
+    section.style.left = `${found ? found.left + margin : frame.width - size.width - margin}px`;
+    section.style.top = `${found ? found.top + margin : margin}px`;
+  }
+
+  // ── a new thread
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────
+
+  private composer(): TemplateResult {
+    const { comments } = this.session;
+    const draft = comments.draft("new");
+    const subjects = draft?.subjects ?? [];
+    return html`<section role="dialog" aria-label=${words.new_title} tabindex="-1" @keydown=${this.on_key}>
+      <div class="row head">
+        <h2 class="grow">${words.new_title}</h2>
+        ${this.close_button()}
+      </div>
+      <form
+        @submit=${(event: Event) => {
+          event.preventDefault();
+          void this.send("new", () => comments.send_new());
+        }}
+      >
+        ${this.field("new", words.text, words.text_hint)}
+        ${
+          subjects.length === 0
+            ? nothing
+            : html`<label class="field">
+              <span>${words.about}</span>
+              <select
+                @change=${(event: Event) => {
+                  const { value } = event.target as HTMLSelectElement;
+                  comments.choose_subject(value === "" ? null : Number(value));
+                }}
+              >
+                <option value="" ?selected=${draft?.subject === undefined}>${words.about_nothing}</option>
+                ${subjects.map(({ label }, index) => html`<option value=${index} ?selected=${draft?.subject === index}>${label}</option>`)}
+              </select>
+            </label>`
+        }
+        ${this.problem("new")}
+        <div class="row">
+          <button
+            type="button"
+            class="quiet"
+            @click=${() => {
+              comments.set_draft("new", null);
+              comments.close();
+            }}
+          >
+            ${words.give_up}
+          </button>
+          <button class="primary" ?disabled=${this.busy_ || !draft?.text.trim()}>${words.send}</button>
+        </div>
+      </form>
+    </section>`;
+  }
+
+  // ── a thread
+  // ──────────────────────────────────────────────────────────────────────────────────────────────────────
+
+  private thread(thread: Thread): TemplateResult {
+    const { session } = this;
+    const { comments } = session;
+    const { first } = thread;
+    const resolved = first.state === "resolved";
+    const reply: DraftOf = `reply ${first.id}`;
+    return html`<section role="dialog" aria-label=${words.thread(called(first))} tabindex="-1" @keydown=${this.on_key}>
+      <div class="row head">
+        <h2 class="grow">${words.heading}</h2>
+        ${
+          session.can_paint
+            ? html`<button class="quiet" ?disabled=${this.busy_} @click=${() => void this.turn(first, resolved ? "open" : "resolved")}>
+              ${icon(resolved ? "undo" : "check")}${resolved ? words.reopen : words.resolve}
+            </button>`
+            : nothing
+        }
+        <button class="icon quiet" aria-label=${words.fly} title=${words.fly} @click=${() => comments.fly_to(thread)}>${icon("fit")}</button>
+        ${this.close_button()}
+      </div>
+      <div class="list">
+        ${
+          first.resolved
+            ? html`<div class="settled">${icon("check")}<span>${words.resolved_by(called(first.resolved), told_time(first.resolved.time))}</span></div>`
+            : nothing
+        }
+        ${this.about(first)}
+        ${repeat(
+          comments_in(thread),
+          ({ id }) => id,
+          (comment) => this.comment(comment),
+        )}
+        ${this.problem("thread")}
+      </div>
+      ${
+        session.can_paint
+          ? html`<form
+            class="foot"
+            @submit=${(event: Event) => {
+              event.preventDefault();
+              void this.send(reply, () => comments.send_reply(first.id));
+            }}
+          >
+            ${this.field(reply, words.reply_text, words.reply_hint)} ${this.problem(reply)}
+            <div class="row" ?hidden=${!comments.draft(reply)}>
+              <button class="primary" ?disabled=${this.busy_ || !comments.draft(reply)?.text.trim()}>${words.send_reply}</button>
+            </div>
+          </form>`
+          : html`<div></div>`
+      }
+    </section>`;
+  }
+
+  private about({ layer: layer_id, table, record }: Comment): TemplateResult | typeof nothing {
+    const { session } = this;
+    const layer = session.layers.find(layer_id ?? null);
+    if (table === undefined || record === undefined)
+      return layer ? html`<div class="about">${words.about_is(label_of(layer))}</div>` : nothing;
+    const called = session.tables.label(table, record) ?? texts.tables.record(record);
+    if (!layer) return html`<div class="about">${words.about_is(called)}</div>`;
+    const what = words.about_is(words.record_of(called, label_of(layer)));
+    return html`<div class="about"><button class="link" @click=${() => session.tables.show_row(layer, record)}>${what}</button></div>`;
+  }
+
+  private comment(comment: Comment): TemplateResult {
+    const { session } = this;
+    const { comments } = session;
+    const { id, user, time, edited, text, deleted } = comment;
+    const is_own = user === comments.me && session.can_paint;
+    const link = hash_of_comment(id);
+    const edit: DraftOf = `edit ${id}`;
+    const is_written = this.editing_ === id || comments.draft(edit) !== null;
+    const acts = html`<div class="row acts">
+      ${is_own ? html`<button class="link" @click=${() => void this.begin_edit(comment)}>${words.edit}</button>` : nothing}
+      ${is_own || session.can_curate ? html`<button class="link" ?disabled=${this.busy_} @click=${() => void this.delete_comment(comment)}>${words.delete}</button>` : nothing}
+    </div>`;
+    return html`<article data-comment=${id}>
+      ${person_mark(comment)}
+      <div class="by">
+        <b>${called(comment)}</b>
+        <a class="hint" href=${link} title=${words.link}>${told_time(time)}</a>
+        ${edited ? html`<span class="hint" title=${told_time(edited)}>${words.edited(told_time(edited))}</span>` : nothing}
+      </div>
+      ${
+        deleted
+          ? html`<p class="words gone">${words.deleted}</p>`
+          : is_own && is_written
+            ? html`<form
+              @submit=${(event: Event) => {
+                event.preventDefault();
+                void this.save(comment);
+              }}
+            >
+              ${this.field(edit, words.text, "", text)} ${this.problem(edit)}
+              <div class="row">
+                <button type="button" class="quiet" @click=${() => this.end_edit(comment)}>${texts.cancel}</button>
+                <button class="primary" ?disabled=${this.busy_ || !(comments.draft(edit)?.text ?? text).trim()}>${texts.save}</button>
+              </div>
+            </form>`
+            : html`${comment_text(text, comments.people)} ${is_own || session.can_curate ? acts : nothing}`
+      }
+    </article>`;
+  }
+
+  // ── writing
+  // ───────────────────────────────────────────────────────────────────────────────────────────────────────
+
+  private field(of: DraftOf, label: string, hint: string, text = ""): TemplateResult {
+    const { comments } = this.session;
+    const offers = this.names_.offers_in(of);
+    const look = (event: Event): void => void this.names_.look(event.target as HTMLTextAreaElement);
+    return html`<textarea
+        name=${of}
+        aria-label=${label}
+        placeholder=${hint}
+        rows="2"
+        dir="auto"
+        role=${offers ? "combobox" : nothing}
+        aria-autocomplete=${offers ? "list" : nothing}
+        aria-expanded=${offers ? "true" : nothing}
+        aria-controls=${offers ? "names" : nothing}
+        aria-activedescendant=${offers ? this.names_.active : nothing}
+        .value=${comments.draft(of)?.text ?? text}
+        @input=${(event: Event) => {
+          comments.set_draft(of, { text: (event.target as HTMLTextAreaElement).value });
+          look(event);
+        }}
+        @click=${look}
+        @keydown=${(event: KeyboardEvent) => this.names_.on_key(event)}
+        @keyup=${({ key, target }: KeyboardEvent) => {
+          if (/^(Arrow(Left|Right)|Home|End)$/.test(key))
+            void this.names_.look(target as HTMLTextAreaElement);
+        }}
+        @blur=${() => this.names_.close()}
+      ></textarea>
+      ${offers ? this.names_.list() : nothing}`;
+  }
+
+  private problem(of: DraftOf | "thread"): TemplateResult | typeof nothing {
+    return this.problem_?.of === of
+      ? html`<p class="error" role="alert">${this.problem_.text}</p>`
+      : nothing;
+  }
+
+  private close_button(): TemplateResult {
+    return html`<button class="icon quiet" aria-label=${words.close} title=${words.close} @click=${() => this.session.comments.close()}>${icon("close")}</button>`;
+  }
+
+  private readonly on_key = (event: KeyboardEvent): void => {
+    if (event.key === "Escape") {
+      event.preventDefault();
+      this.session.comments.close();
+    } else if (
+      event.key === "Enter" &&
+      (event.ctrlKey || event.metaKey) &&
+      event.target instanceof HTMLTextAreaElement
+    ) {
+      event.preventDefault();
+      event.target.form?.requestSubmit();
+    }
+  };
+
+  private async begin_edit({ id }: Comment): Promise<void> {
+    this.editing_ = id;
+    await this.updateComplete;
+    const field = this.renderRoot.querySelector<HTMLTextAreaElement>(`textarea[name="edit ${id}"]`);
+    field?.focus();
+    field?.setSelectionRange(field.value.length, field.value.length);
+  }
+
+  private end_edit({ id }: Comment): void {
+    this.session.comments.set_draft(`edit ${id}`, null);
+    this.editing_ = null;
+    this.problem_ = null;
+    this.section_?.focus({ preventScroll: true });
+  }
+
+  private async save(comment: Comment): Promise<void> {
+    const { comments } = this.session;
+    const of: DraftOf = `edit ${comment.id}`;
+    const text = comments.draft(of)?.text ?? comment.text;
+    await this.send(
+      of,
+      async () => {
+        if (text !== comment.text) await comments.change(comment, { text });
+        this.end_edit(comment);
+      },
+      text,
+    );
+  }
+
+  private async send(
+    of: DraftOf,
+    work: () => Promise<void>,
+    text = this.session.comments.draft(of)?.text ?? "",
+  ): Promise<void> {
+    if (text.trim() === "" || this.busy_) return;
+    if ([...text].length > kMostCharacters)
+      this.problem_ = { of, text: words.too_long(kMostCharacters) };
+    else await this.attempt(of, work);
+  }
+
+  private turn(first: Comment, state: "open" | "resolved"): Promise<void> {
+    return this.attempt("thread", () => this.session.comments.change(first, { state }));
+  }
+
+  private async delete_comment(comment: Comment): Promise<void> {
+    const question = {
+      heading: words.delete_title,
+      lead: words.delete_lead,
+      yes: words.delete,
+      danger: true,
+    };
+    if (await ask(question))
+      await this.attempt("thread", () => this.session.comments.remove(comment));
+  }
+
+  /** What was written stays where it is, also when it was refused. */
+  private async attempt(of: DraftOf | "thread", work: () => Promise<void>): Promise<void> {
+    this.busy_ = true;
+    this.problem_ = null;
+    try {
+      await work();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.problem_ = { of, text: error.message };
+    } finally {
+      this.busy_ = false;
+    }
+  }
+
+  private contains_deep(element: Node): boolean {
+    return element.getRootNode() === this.renderRoot;
+  }
+}

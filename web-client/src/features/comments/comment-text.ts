@@ -1,0 +1,31 @@
+// What a comment says: its lines as they were written, addresses as links, @names of people marked.
+
+import { css, html, type TemplateResult } from "lit";
+import { text_parts } from "../../domain/comments";
+
+export const comment_text_styles = css`
+  .words {
+    margin: 0;
+    white-space: pre-wrap;
+    overflow-wrap: anywhere;
+    unicode-bidi: plaintext;
+  }
+  .words a {
+    color: var(--accent);
+  }
+  .words .mention {
+    padding: 0 3px;
+    border-radius: 4px;
+    background: var(--accent-soft);
+    font-weight: 600;
+  }
+`;
+
+export function comment_text(text: string, people: ReadonlySet<string>): TemplateResult {
+  const parts = text_parts(text, people).map((part) => {
+    if (part.kind === "link")
+      return html`<a href=${part.href} target="_blank" rel="noopener noreferrer nofollow">${part.text}</a>`;
+    return part.kind === "mention" ? html`<span class="mention">${part.text}</span>` : part.text;
+  });
+  return html`<p class="words">${parts}</p>`; // nothing between the tags: spaces count
+}

@@ -1,0 +1,62 @@
+// <strata-face-hint>: what to do while a face of the model is asked for, over the model; the dialog
+// that asks has stepped aside.
+
+import { css, html, LitElement, type TemplateResult } from "lit";
+import { customElement, property, query } from "lit/decorators.js";
+import type { ModelSession } from "../../shell/model-session";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+const words = texts.figures;
+
+@customElement("strata-face-hint")
+export class StrataFaceHint extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @query("button") private first_!: HTMLButtonElement;
+
+  static override styles = [
+    shared_styles,
+    css`
+      section {
+        position: fixed;
+        z-index: 30;
+        left: 50%;
+        top: 66px; /* below the head of the page: notices, and on phones the panel, are at the foot */
+        transform: translateX(-50%);
+        display: flex;
+        flex-wrap: wrap;
+        align-items: center;
+        gap: 8px 14px;
+        width: min(560px, calc(100vw - 24px));
+        padding: 12px 16px;
+        border: var(--edge) solid var(--line);
+        border-radius: 14px;
+        background: var(--surface);
+        color: var(--ink);
+        box-shadow: var(--shadow);
+      }
+      p {
+        flex: 1 1 240px;
+      }
+    `,
+  ];
+
+  override firstUpdated(): void {
+    this.first_.focus();
+  }
+
+  override render(): TemplateResult {
+    const { face } = this.session;
+    return html`<section aria-label=${words.pick_title} @keydown=${this.on_key}>
+      <p role="status">${words.pick_lead}</p>
+      <button @click=${() => face.take_in_middle()}>${words.pick_middle}</button>
+      <button @click=${() => face.give_up()}>${texts.cancel}</button>
+    </section>`;
+  }
+
+  private on_key(event: KeyboardEvent): void {
+    if (event.key !== "Escape") return;
+    event.preventDefault();
+    this.session.face.give_up();
+  }
+}

@@ -1,0 +1,64 @@
+// Measured figures that this person makes of the open model: the work on the server, the file that
+// comes of it, and what was written for one until then.
+
+import type { Api } from "../../net/api";
+import type { Face, FigureWords } from "../../domain/figures";
+import type { FigureRequest } from "../../core/protocol.gen";
+import type { Job } from "../../core/types";
+import type { LayerJobs } from "../layers/layer-jobs";
+import { notices } from "../../ui/notices";
+import { save_blob } from "../../ui/save-from";
+import { texts } from "../../texts";
+
+export class Figures {
+  /** Is there again when the dialog is opened anew, for as long as the model is open. */
+  draft: {
+    words: FigureWords;
+    labels: { layer: number; column: string } | null;
+    face: Face | null;
+  } = { words: { title: "", caption: "", credit: "" }, labels: null, face: null };
+  /**
+   * Key of the job that somebody waits for: its file is saved as soon as it is there, and others
+   * are offered.
+   */
+  awaited: number | null = null;
+  /** Name of the file that was saved last. */
+  saved = "";
+
+  constructor(
+    private readonly api_: Api,
+    private readonly jobs_: LayerJobs,
+  ) {}
+
+  /**
+   * Returns the key of the job, which is awaited. Throws an ApiError where the server refuses it at
+   * once.
+   */
+  async make(name: string, wish: FigureRequest): Promise<number> {
+    this.saved = "";
+    this.awaited = await this.jobs_.make_figure(name, wish, (key, job) => this.done(key, job));
+    return this.awaited;
+  }
+
+  async save(key: number): Promise<void> {
+    const job = this.jobs_.entries.find((entry) => entry.key === key)?.job;
+    if (!job?.file) return;
+    try {
+      save_blob(await this.api_.job_file(job.id), job.file.name);
+      this.saved = job.file.name;
+      this.jobs_.dismiss(key);
+    } catch (error) {
+      notices.error(error);
+    }
+  }
+
+  private done(key: number, { file }: Job): void {
+    if (!file) return;
+    if (this.awaited === key) void this.save(key);
+    else
+      notices.show("success", texts.figures.ready, file.name, {
+        label: texts.figures.save,
+        act: () => void this.save(key),
+      });
+  }
+}

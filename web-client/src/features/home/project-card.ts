@@ -1,0 +1,113 @@
+// <strata-project-card>: what is told of a project where one is chosen: a picture of one of its
+// models, how many it has, when it was last changed.
+
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { keyed } from "lit/directives/keyed.js";
+import { ApiError, type Api } from "../../net/api";
+import { card_styles } from "./home-styles";
+import { logo } from "../../ui/icons";
+import type { ListedProject } from "./project-list";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+import "../../ui/thumbnail";
+import { told_day } from "../../domain/times";
+import { when_seen } from "../../ui/when-seen";
+
+const words = texts.home;
+let busy: Promise<void> = Promise.resolve(); // one question at a time, as with pictures
+
+@customElement("strata-project-card")
+export class StrataProjectCard extends LitElement {
+  @property({ attribute: false }) api!: Api;
+  @property({ attribute: false }) listed!: ListedProject;
+  @state() private changed_ = ""; // when; nothing: it is not known
+  private is_seen_ = false;
+  private stop_waiting_: (() => void) | null = null;
+
+  static override styles = [
+    shared_styles,
+    card_styles,
+    css`
+      :host {
+        display: block;
+      }
+      .no-picture {
+        display: grid;
+        place-items: center;
+        aspect-ratio: 4 / 3;
+        background: var(--paper);
+      }
+      .no-picture .logo {
+        width: 3.5rem;
+        height: 3.5rem;
+        opacity: 0.4;
+      }
+      .about b {
+        overflow-wrap: anywhere;
+      }
+      p {
+        display: -webkit-box;
+        -webkit-box-orient: vertical;
+        -webkit-line-clamp: 2;
+        overflow: hidden;
+        font-size: 0.9rem;
+      }
+    `,
+  ];
+
+  override firstUpdated(): void {
+    this.stop_waiting_ = when_seen(this, () => {
+      this.is_seen_ = true;
+      this.ask();
+    });
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.stop_waiting_?.();
+  }
+
+  override updated(changed: PropertyValues<this>): void {
+    if (changed.has("listed") && this.is_seen_) this.ask();
+  }
+
+  private ask(): void {
+    busy = busy.then(() => this.load());
+  }
+
+  private async load(): Promise<void> {
+    if (!this.isConnected) return;
+    try {
+      const { activity } = await this.api.activity(this.listed.project.slug, {
+        model: undefined,
+        before: undefined,
+        limit: 1,
+      });
+      this.changed_ = activity[0]?.time ?? "";
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.changed_ = ""; // whoever opens the project is told what is wrong
+    }
+  }
+
+  override render(): TemplateResult {
+    const { project, models } = this.listed;
+    const [first] = models;
+    return html`${
+      first
+        ? keyed(
+            first.id,
+            html`<strata-thumbnail .api=${this.api} .model=${first}></strata-thumbnail>`,
+          )
+        : html`<div class="no-picture">${logo()}</div>`
+    }
+      <div class="about">
+        <b>${project.name}</b>
+        ${project.description ? html`<p>${project.description}</p>` : nothing}
+        <span class="numeric faint">
+          ${models.length === 0 ? words.empty_title : words.count(models.length)}${this.changed_ ? ` · ${words.changed(told_day(this.changed_))}` : nothing}
+        </span>
+      </div>`;
+  }
+}

@@ -1,0 +1,251 @@
+// <strata-bin-dialog>: what was deleted in a project, to restore or to delete for ever. Opened by
+// open_bin().
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { ApiError, type Api } from "../../net/api";
+import { format_bytes } from "../../domain/measure";
+import { called } from "../../domain/people";
+import type { BinEntry, BinList, Project } from "../../core/protocol.gen";
+import type { Model } from "../../core/types";
+import { told_restored, type BinApi } from "../../ui/trash";
+import { ask } from "../../ui/dialog";
+import { icon, type IconName } from "../../ui/icons";
+import { notices } from "../../ui/notices";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+import { told_ago, told_date } from "../../domain/times";
+
+const words = texts.bin;
+const kAtOnce = 100;
+const kIcons: Record<BinEntry["kind"], IconName> = {
+  layer: "layers",
+  model: "cube",
+  record: "table",
+};
+
+@customElement("strata-bin-dialog")
+export class StrataBinDialog extends LitElement {
+  @property({ attribute: false }) api!: BinApi;
+  @property({ attribute: false }) project!: Pick<Project, "slug" | "name">;
+  answer: (is_changed: boolean) => void = () => {};
+
+  @state() private bin_: BinList | null = null;
+  @state() private note_: { kind: "error" | "done"; text: string } | null = null;
+  @state() private busy_ = false;
+  private changed_ = false;
+
+  static override styles = [
+    shared_styles,
+    css`
+      ul {
+        display: grid;
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      li {
+        display: grid;
+        grid-template-columns: auto minmax(0, 1fr) auto;
+        align-items: center;
+        gap: 4px 0.75rem;
+        padding: 0.625rem 0;
+        border-top: var(--edge) solid var(--line);
+      }
+      li:first-child {
+        border-top: 0;
+      }
+      li > .glyph {
+        color: var(--ink-soft);
+      }
+      .about {
+        display: grid;
+        gap: 2px;
+        min-width: 0;
+      }
+      b {
+        font-weight: 600;
+        overflow-wrap: anywhere;
+        unicode-bidi: plaintext;
+      }
+      .hint {
+        overflow-wrap: anywhere;
+      }
+      .buttons {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 0.5rem;
+      }
+      .done {
+        color: var(--calm);
+      }
+      .more {
+        justify-self: start;
+      }
+      @media (max-width: 560px) {
+        li {
+          grid-template-columns: auto minmax(0, 1fr);
+        }
+        .buttons {
+          grid-column: 2;
+        }
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    void this.attempt(() => this.read());
+  }
+
+  override render(): TemplateResult {
+    const { bin_: bin, note_: note } = this;
+    return html`<strata-dialog broad heading=${words.title_of(this.project.name)} way_out=${texts.close} @closed=${() => this.finish()}>
+      ${bin ? html`<p class="hint">${bin.days === 0 ? words.not_kept_lead : words.lead(bin.days)}</p>` : nothing}
+      <p class=${note?.kind ?? "done"} role=${note?.kind === "error" ? "alert" : "status"} tabindex="-1" ?hidden=${!note}>${note?.text}</p>
+      ${
+        bin
+          ? this.entries(bin)
+          : html`<p class="hint" role="status" ?hidden=${note !== null}>${texts.loading}</p>
+            ${note ? html`<div><button @click=${() => void this.attempt(() => this.read())}>${texts.try_again}</button></div>` : nothing}`
+      }
+    </strata-dialog>`;
+  }
+
+  private entries({ entries, total }: BinList): TemplateResult {
+    if (entries.length === 0) return html`<p>${words.none}</p>`;
+    return html`<ul>
+        ${repeat(
+          entries,
+          ({ id }) => id,
+          (entry) => this.row(entry),
+        )}
+      </ul>
+      ${entries.length < total ? html`<button class="more" ?disabled=${this.busy_} @click=${() => void this.attempt(() => this.read_more())}>${words.more}</button>` : nothing}`;
+  }
+
+  private row(entry: BinEntry): TemplateResult {
+    const { kind, name, user, full_name, deleted, erased, bytes } = entry;
+    const where = entry.model_name ?? entry.table_name;
+    const facts = [
+      words.deleted_when(
+        told_ago(deleted),
+        user === undefined ? undefined : called({ user, ...(full_name ? { full_name } : {}) }),
+      ),
+      words.erased_on(told_date(erased)),
+      bytes === undefined ? "" : format_bytes(bytes),
+    ];
+    return html`<li data-entry=${entry.id}>
+      ${icon(kIcons[kind])}
+      <div class="about">
+        <b>${name}</b>
+        <span class="hint">${kind === "model" || where === undefined ? words.kinds[kind] : words.where[kind](where)}</span>
+        <span class="hint">${facts.filter(Boolean).join(" · ")}</span>
+      </div>
+      <div class="buttons">
+        <button ?disabled=${this.busy_} aria-label=${words.restore_of(name)} @click=${() => void this.restore(entry)}>${icon("undo")}${words.restore}</button>
+        ${
+          kind === "record"
+            ? nothing
+            : html`<button class="icon quiet" ?disabled=${this.busy_} aria-label=${words.erase_of(name)} title=${words.erase} @click=${() => void this.erase(entry)}>${icon("trash")}</button>`
+        }
+      </div>
+    </li>`;
+  }
+
+  private async read(): Promise<void> {
+    this.bin_ = await this.api.bin(this.project.slug, { limit: kAtOnce, offset: 0 });
+  }
+
+  private async read_more(): Promise<void> {
+    const known = this.bin_?.entries ?? [];
+    const next = await this.api.bin(this.project.slug, { limit: kAtOnce, offset: known.length });
+    const ids = new Set(known.map(({ id }) => id)); // something came to the Bin meanwhile
+    this.bin_ = { ...next, entries: [...known, ...next.entries.filter(({ id }) => !ids.has(id))] };
+  }
+
+  private restore(entry: BinEntry): Promise<void> {
+    return this.attempt(async () => {
+      const restored = await this.api.restore_from_bin(this.project.slug, entry.id);
+      this.take_out(entry, told_restored(restored));
+    });
+  }
+
+  private async erase(entry: BinEntry): Promise<void> {
+    if (
+      !(await ask({
+        heading: words.erase_title(entry.name),
+        lead: words.erase_lead,
+        yes: words.erase_yes,
+        danger: true,
+      }))
+    )
+      return;
+    await this.attempt(async () => {
+      await this.api.erase_from_bin(this.project.slug, entry.id);
+      this.take_out(entry, words.erased(entry.name));
+    });
+  }
+
+  /** Who went through the list by keys goes on at what was done. */
+  private take_out({ id }: BinEntry, text: string): void {
+    if (this.bin_)
+      this.bin_ = {
+        ...this.bin_,
+        entries: this.bin_.entries.filter((each) => each.id !== id),
+        total: this.bin_.total - 1,
+      };
+    this.changed_ = true;
+    this.note_ = { kind: "done", text };
+    void this.updateComplete.then(() =>
+      this.renderRoot.querySelector<HTMLElement>("p[tabindex]")?.focus(),
+    );
+  }
+
+  private async attempt(task: () => Promise<void>): Promise<void> {
+    if (this.busy_) return;
+    this.busy_ = true;
+    this.note_ = null;
+    try {
+      await task();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.note_ = { kind: "error", text: error.message };
+      // somebody else was faster
+      if (error.status === 404 && this.bin_) await this.read().catch(() => {});
+    } finally {
+      this.busy_ = false;
+    }
+  }
+
+  private finish(): void {
+    this.answer(this.changed_);
+    this.remove();
+  }
+}
+
+/** Whether something was restored or deleted for ever. */
+export function open_bin(api: BinApi, project: Pick<Project, "slug" | "name">): Promise<boolean> {
+  return new Promise((resolve) => {
+    const element = new StrataBinDialog();
+    Object.assign(element, { api, project, answer: resolve });
+    document.body.append(element);
+  });
+}
+
+/** That of the open model's project. */
+export async function open_bin_of({
+  api,
+  model,
+}: {
+  api: Api;
+  model: Pick<Model, "project"> | null;
+}): Promise<void> {
+  if (!model) return;
+  try {
+    await open_bin(api, (await api.project(model.project)).value);
+  } catch (error) {
+    notices.error(error);
+  }
+}

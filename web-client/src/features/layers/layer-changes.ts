@@ -1,0 +1,49 @@
+// What somebody changed in the dialog of a layer.
+
+import { rows_of } from "../../core/languages";
+import { same_palette } from "../../domain/palette";
+import type { Labels, Visibility } from "../../core/protocol.gen";
+import type { Layer, LayerPatch, Palette } from "../../core/types";
+
+export interface LayerWanted {
+  name: string;
+  unit: string;
+  description: string;
+  labels: Labels;
+  descriptions: Labels;
+  palette: Palette;
+  visibility: Visibility;
+  expression?: string; // of a computed layer
+  recompute?: "manual" | "automatic";
+}
+
+/** Only what differs: what this person left alone is not theirs to set. */
+export function layer_changes(
+  layer: Layer,
+  {
+    name,
+    unit,
+    description,
+    labels,
+    descriptions,
+    palette,
+    visibility,
+    expression,
+    recompute,
+  }: LayerWanted,
+): LayerPatch {
+  const change: LayerPatch = {};
+  if (name !== layer.name) change.name = name;
+  if (unit !== layer.unit) change.unit = unit;
+  if (description !== layer.description) change.description = description;
+  if (!same_words(labels, layer.labels)) change.labels = labels;
+  if (!same_words(descriptions, layer.descriptions)) change.descriptions = descriptions;
+  if (!same_palette(palette, layer.palette)) change.palette = palette;
+  if (visibility !== layer.visibility) change.visibility = visibility;
+  if (expression !== undefined && expression !== layer.expression) change.expression = expression;
+  if (recompute !== undefined && recompute !== layer.recompute) change.recompute = recompute;
+  return change;
+}
+
+const same_words = (a: Labels, b: Labels): boolean =>
+  JSON.stringify(rows_of(a)) === JSON.stringify(rows_of(b));

@@ -1,0 +1,136 @@
+// One row over the layers: work that makes some or a file, how far it is, and what came of it.
+
+import { css, html, nothing, type TemplateResult } from "lit";
+import { format_area, format_bytes } from "../../domain/measure";
+import type { TransferReport } from "../../core/types";
+import { icon } from "../../ui/icons";
+import { is_busy, type LayerJob } from "./layer-jobs";
+import type { ModelSession } from "../../shell/model-session";
+import { notices } from "../../ui/notices";
+import { styled } from "../../ui/styled";
+import { texts } from "../../texts";
+import { share_text } from "./transfer-dialog";
+
+export const layer_job_styles = css`
+  .job {
+    display: grid;
+    gap: 8px;
+    margin-bottom: 8px;
+    padding: 10px 8px 12px 14px;
+    border: var(--edge) solid var(--line);
+    border-radius: var(--radius);
+    background: var(--raised);
+    font-size: 0.88rem;
+  }
+  .job .head {
+    display: flex;
+    align-items: center;
+    gap: 8px;
+  }
+  .job .head b {
+    flex: 1;
+    min-width: 0;
+  }
+  .job.failed .said {
+    color: var(--danger);
+  }
+  .job .bar {
+    height: 5px;
+    margin-right: 6px;
+    border-radius: 3px;
+    overflow: hidden;
+    background: var(--line);
+  }
+  .job .bar i {
+    display: block;
+    height: 100%;
+    background: var(--accent);
+  }
+  .job table {
+    border-collapse: collapse;
+    margin-right: 6px;
+  }
+  .job th {
+    padding: 0 0 3px 8px;
+    font-weight: normal;
+    color: var(--ink-soft);
+  }
+  .job td {
+    padding: 3px 0 3px 8px;
+    border-top: var(--edge) solid var(--line);
+    text-align: right;
+    white-space: nowrap;
+  }
+  .job th:first-child,
+  .job td:first-child {
+    padding-left: 0;
+    text-align: left;
+    white-space: normal;
+    overflow-wrap: anywhere;
+  }
+`;
+
+export function layer_job_row(session: ModelSession, entry: LayerJob): TemplateResult {
+  const words = texts.layer_jobs;
+  const { job, problem, report } = entry;
+  const busy = is_busy(entry);
+  const percent = Math.round(job.progress * 100);
+  return html`<div class="job ${problem ? "failed" : ""}">
+    <div class="head">
+      <b class="ellipsis" title=${entry.name}>${entry.name}</b>
+      ${
+        busy
+          ? html`<button aria-label=${words.cancel(entry.name)} @click=${() => void cancel(session, entry)}>${texts.cancel}</button>`
+          : html`${job.file && !problem ? html`<button @click=${() => void session.figures.save(entry.key)}>${icon("import")}${texts.figures.save}</button>` : nothing}<button
+            class="icon quiet"
+            aria-label=${words.dismiss(entry.name)}
+            @click=${() => session.jobs.dismiss(entry.key)}
+          >
+            ${icon("close")}
+          </button>`
+      }
+    </div>
+    ${
+      busy
+        ? html`<div
+            class="bar"
+            role="progressbar"
+            aria-label=${entry.name}
+            aria-valuemin="0"
+            aria-valuemax="100"
+            aria-valuenow=${percent}
+          >
+            <i ${styled({ width: `${percent}%` })}></i>
+          </div>
+          <span class="said hint">${job.state === "queued" ? words.queued : job.message || words.running}</span>`
+        : nothing
+    }
+    ${job.file && !problem ? html`<span class="said hint">${job.file.name}, <span class="numeric">${format_bytes(job.file.bytes)}</span></span>` : nothing}
+    ${problem ? html`<span class="said" role="alert">${[problem.title, problem.detail].filter(Boolean).join(". ")}</span>` : nothing}
+    ${report ? report_table(report) : nothing}
+  </div>`;
+}
+
+function report_table(report: TransferReport): TemplateResult {
+  const words = texts.transfer;
+  return html`<span class="hint">${words.matched(share_text(report.matched_m2, report.area_m2))}</span>
+    <table>
+      <tr>
+        <th scope="col">${words.layer}</th>
+        <th scope="col">${words.brought}</th>
+        <th scope="col">${words.lost}</th>
+      </tr>
+      ${report.layers.map(
+        (layer) =>
+          html`<tr>
+            <td>${layer.name ?? layer.layer}</td>
+            <td class="numeric">${format_area(layer.transferred_m2)}</td>
+            <td class="numeric">${share_text(layer.lost_m2, layer.source_m2)}</td>
+          </tr>`,
+      )}
+    </table>`;
+}
+
+async function cancel(session: ModelSession, entry: LayerJob): Promise<void> {
+  await session.jobs.cancel(entry.key).catch((error: unknown) => notices.error(error));
+}

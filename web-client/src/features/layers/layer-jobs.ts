@@ -1,0 +1,110 @@
+// Work under way that makes layers or looks of the open model, or files for this person: computing
+// a layer from the shape, bringing some over from another scan, a measured figure. Layers
+// themselves come to the page like anyone's, when they are done; a file stays listed until it is
+// saved.
+
+import { ApiError, type Api } from "../../net/api";
+import type { FigureRequest } from "../../core/protocol.gen";
+import type { Job, LayerCreate, ProblemBody, Transfer, TransferReport } from "../../core/types";
+import { follow_job, job_is_over } from "../../net/follow-job";
+
+export interface LayerJob {
+  key: number;
+  name: string;
+  job: Job;
+  problem: ProblemBody | null;
+  report: TransferReport | null;
+}
+
+/** Work that the server has taken on. */
+export interface StartedJob {
+  /** Ids of the layers it made; none where it was cancelled or failed. */
+  done: Promise<readonly number[]>;
+}
+
+export const is_busy = (entry: LayerJob): boolean => !entry.problem && !job_is_over(entry.job);
+
+export class LayerJobs {
+  entries: readonly LayerJob[] = [];
+  private next_key_ = 1;
+
+  constructor(
+    private readonly api_: Api,
+    private readonly model_id_: string,
+    private readonly changed_: () => void,
+  ) {}
+
+  /** Throws an ApiError where the server refuses it at once. */
+  async compute(layer: LayerCreate): Promise<StartedJob> {
+    const job = await this.api_.compute_layer(this.model_id_, layer);
+    return { done: this.follow(this.add(layer.name, job), job) };
+  }
+
+  /** The same. `name`: what the person is told that it is. */
+  async transfer(name: string, wish: Transfer): Promise<StartedJob> {
+    const job = await this.api_.transfer(this.model_id_, wish);
+    return { done: this.follow(this.add(name, job), job) };
+  }
+
+  /** Work that something else has started; `made` hears of it once it is done. */
+  watch(name: string, job: Job, made: (job: Job) => void): void {
+    void this.follow(this.add(name, job), job, made);
+  }
+
+  /**
+   * A file. Returns the key of its entry; `made` hears of it once it is done. Throws as the others.
+   */
+  async make_figure(
+    name: string,
+    wish: FigureRequest,
+    made: (key: number, job: Job) => void,
+  ): Promise<number> {
+    const job = await this.api_.make_figure(this.model_id_, wish);
+    const key = this.add(name, job);
+    void this.follow(key, job, (last) => made(key, last));
+    return key;
+  }
+
+  async cancel(key: number): Promise<void> {
+    const job = this.entries.find((entry) => entry.key === key)?.job;
+    if (job) await this.api_.cancel_job(job.id);
+  }
+
+  dismiss(key: number): void {
+    this.entries = this.entries.filter((entry) => entry.key !== key);
+    this.changed_();
+  }
+
+  private add(name: string, job: Job): number {
+    const key = this.next_key_++;
+    this.entries = [...this.entries, { key, name, job, problem: null, report: null }];
+    return key;
+  }
+
+  private async follow(
+    key: number,
+    first: Job,
+    made: (job: Job) => void = () => {},
+  ): Promise<readonly number[]> {
+    try {
+      const job = await follow_job(this.api_, first, (now) => this.change(key, { job: now }));
+      if (job.state === "failed")
+        this.change(key, { problem: job.problem ?? { status: 500, title: job.message } });
+      else if (job.report) this.change(key, { report: job.report });
+      else if (!job.file) this.dismiss(key);
+      if (job.state === "done") made(job);
+      return job.layers ?? [];
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.change(key, { problem: error.problem });
+      return [];
+    }
+  }
+
+  private change(key: number, change: Partial<LayerJob>): void {
+    this.entries = this.entries.map((entry) =>
+      entry.key === key ? { ...entry, ...change } : entry,
+    );
+    this.changed_();
+  }
+}

@@ -1,0 +1,210 @@
+// The legend of a palette: gradient with ticks, or swatches with labels.
+
+import { css, html, nothing, type TemplateResult } from "lit";
+import { label_of } from "../../domain/cells";
+import { format_number, ticks } from "../../domain/measure";
+import { css_color, css_gradient, kNoValueColor, swatch_style } from "../../domain/palette";
+import type { Layer, Palette, PalettePoint } from "../../core/types";
+import type { Column, Table } from "../../core/protocol.gen";
+import { describe_value, type RecordLabels } from "../painting/brush-settings";
+import { styled } from "../../ui/styled";
+import type { TermTree } from "../tables/term-tree";
+import { texts } from "../../texts";
+
+export const legend_styles = css`
+  .legend-gradient {
+    height: 0.875rem;
+    border-radius: 4px;
+    box-shadow: inset 0 0 0 1px var(--swatch-rim);
+  }
+  .legend-ticks {
+    position: relative;
+    height: 1.25rem;
+    margin: 0 2px;
+    font-size: 0.76rem;
+    color: var(--ink-soft);
+  }
+  .legend-ticks span {
+    position: absolute;
+    top: 5px;
+    transform: translateX(-50%);
+    white-space: nowrap;
+  }
+  .legend-ticks span::before {
+    content: "";
+    position: absolute;
+    left: 50%;
+    top: -5px;
+    height: 4px;
+    border-left: var(--edge) solid var(--line-strong);
+  }
+  .legend-ticks span.first {
+    transform: none;
+  }
+  .legend-ticks span.last {
+    transform: translateX(-100%);
+  }
+  .legend-ticks span.first::before {
+    left: 0;
+  }
+  .legend-ticks span.last::before {
+    left: 100%;
+  }
+  .legend-classes {
+    display: grid;
+    gap: 5px;
+    margin: 0;
+    padding: 0;
+    list-style: none;
+    font-size: 0.9rem;
+    max-height: 16.25rem;
+    overflow: auto;
+  }
+  .legend-column {
+    display: grid;
+    gap: 0.4375rem;
+  }
+  .legend-classes li {
+    display: flex;
+    align-items: center;
+    gap: 0.5625rem;
+    min-width: 0;
+  }
+`;
+
+/** What the legend needs to know of records. */
+export interface LegendNames extends RecordLabels {
+  find(table: number): Table | null;
+  terms(table: number): TermTree | null;
+  lacks(table: number, key: number): boolean;
+}
+
+/** `palette`: what the layer is drawn with for this person. */
+export function legend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
+  if (palette.column) return column_legend(layer, palette, records);
+  const { unit } = layer;
+  if (palette.mode === "categorical") {
+    const { table } = layer;
+    const terms = table === undefined ? null : records.terms(table);
+    // A palette has colours for records that may come.
+    const there =
+      table === undefined
+        ? palette.points
+        : palette.points.filter(({ at }) => !records.lacks(table, at));
+    if (there.length === 0)
+      return html`<p class="hint">${layer.kind === "database" ? texts.layers.no_records : texts.layers.no_labels}</p>`;
+    const points = in_tree(there, terms);
+    return html`<ul class="legend-classes" aria-label=${label_of(layer)} tabindex=${points.length > kLinesInSight ? 0 : nothing}>
+      ${points.slice(0, kMostLines).map(({ point, depth }) => line(point, describe_value(layer, point.at, records), depth))}
+      ${points.length > kMostLines ? html`<li class="hint">${texts.layers.more_classes(points.length - kMostLines)}</li>` : nothing}
+    </ul>`;
+  }
+  return gradient(palette, unit);
+}
+
+/** Points of terms stand as in their list, each below the one above it. */
+function in_tree(
+  points: readonly PalettePoint[],
+  terms: TermTree | null,
+): { point: PalettePoint; depth: number }[] {
+  terms?.want();
+  if (!terms?.loaded) return points.map((point) => ({ point, depth: 0 }));
+  const places = new Map(terms.terms.map(({ key, depth }, place) => [key, { place, depth }]));
+  const last = { place: Infinity, depth: 0 }; // of points that are no terms
+  return points
+    .map((point) => ({ point, ...(places.get(point.at) ?? last) }))
+    .sort((a, b) => (a.place === b.place ? 0 : a.place - b.place));
+}
+
+const kLinesInSight = 8; // of those that may stand in it: with more it scrolls, also by keys
+const kMostLines = 300; // a list of terms may have thousands
+const kIndent_px = 14;
+
+const line = (
+  point: Pick<PalettePoint, "color" | "pattern" | "angle">,
+  text: string,
+  depth = 0,
+): TemplateResult =>
+  html`<li ${styled({ "padding-left": depth > 0 ? `${depth * kIndent_px}px` : null })}>
+    <span class="swatch" ${styled(swatch_style(point))}></span>
+    <span class="ellipsis">${text}</span>
+  </li>`;
+
+/** By what the records say. */
+function column_legend(layer: Layer, palette: Palette, records: LegendNames): TemplateResult {
+  const column =
+    layer.table === undefined
+      ? undefined
+      : records.find(layer.table)?.columns.find((each) => each.slug === palette.column);
+  const unit = column?.unit ?? "";
+  const lines =
+    palette.mode === "categorical"
+      ? palette.points.map((point) => line(point, value_label(point, column, records)))
+      : palette.points.map((point, index) =>
+          line(point, class_range(point.at, palette.points[index + 1]?.at ?? palette.max, unit)),
+        );
+  return html`<div class="legend-column">
+    <p class="caption">${texts.colors.by(column ? label_of(column) : (palette.column ?? ""))}</p>
+    ${palette.mode === "linear" ? gradient(palette, unit) : nothing}
+    <ul class="legend-classes">
+      ${palette.mode === "linear" ? nothing : lines}
+      ${line({ color: palette.others ?? kNoValueColor }, palette.mode === "categorical" ? texts.colors.others : texts.colors.without)}
+    </ul>
+  </div>`;
+}
+
+export const class_range = (from: number, to: number, unit: string): string =>
+  `${format_number(from, 4)} – ${format_number(to, 4)}${unit ? ` ${unit}` : ""}`;
+
+/** What a class of a column's values is called. */
+export function value_label(
+  { label, value, at }: PalettePoint,
+  column: Column | undefined,
+  records: RecordLabels,
+): string {
+  if (label) return label;
+  if (value === undefined || value === "")
+    return `${format_number(at, 6)}${column?.unit ? ` ${column.unit}` : ""}`;
+  if (column?.kind === "term")
+    return records.label(column.target ?? 0, Number(value)) ?? texts.tables.record(Number(value));
+  if (column?.kind === "boolean") return value === "true" ? texts.tables.yes : texts.tables.no;
+  return value;
+}
+
+function gradient(palette: Palette, unit: string): TemplateResult {
+  const span = palette.max - palette.min || 1;
+  const marks = ticks(palette.min, palette.max);
+  return html`<div>
+    <div class="legend-gradient" ${styled({ background: css_gradient(palette) })}></div>
+    <div class="legend-ticks numeric">
+      ${marks.map((mark, index) => {
+        const share = (mark - palette.min) / span;
+        const edge = share < 0.04 ? "first" : share > 0.96 ? "last" : "";
+        const shown_unit = unit && index === marks.length - 1 ? ` ${unit}` : "";
+        return html`<span class=${edge} ${styled({ left: `${(share * 100).toFixed(2)}%` })}
+          >${format_number(mark, 4)}${shown_unit}</span
+        >`;
+      })}
+    </div>
+  </div>`;
+}
+
+/** One small square that stands for the layer. */
+export function layer_chip(palette: Palette): TemplateResult {
+  const first = palette.points[0];
+  const background =
+    palette.mode !== "categorical"
+      ? css_gradient(palette, "135deg")
+      : palette.points.length > 1
+        ? `conic-gradient(${palette.points
+            .slice(0, 6)
+            .map(
+              (point, index, all) =>
+                `${css_color(point.color)} ${index / all.length}turn ${(index + 1) / all.length}turn`,
+            )
+            .join(", ")})`
+        : first
+          ? css_color(first.color)
+          : "conic-gradient(#e69f00, #56b4e9, #009e73, #cc79a7, #e69f00)";
+  return html`<span class="swatch" ${styled({ background })}></span>`;
+}

@@ -1,0 +1,118 @@
+// <strata-map-colors>: the few colours of a scanned map, and the value that each stands for.
+// Changes `rows` in place of its owner: "rows" tells the new ones.
+
+import { css, html, LitElement, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { format_fixed, read_number } from "../../core/locale";
+import type { Layer } from "../../core/types";
+import { describe_value } from "../painting/brush-settings";
+import type { ColorRow } from "./map-file";
+import { number_input } from "../../ui/number-input";
+import { styled } from "../../ui/styled";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+const words = texts.maps;
+
+@customElement("strata-map-colors")
+export class StrataMapColors extends LitElement {
+  @property({ attribute: false }) layer!: Layer;
+  @property({ attribute: false }) rows: readonly ColorRow[] = [];
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+        max-height: 236px;
+        overflow: auto;
+      }
+      table {
+        width: 100%;
+        border-collapse: collapse;
+        font-size: 0.88rem;
+      }
+      th {
+        padding: 0 6px 4px 0;
+        text-align: left;
+        font-size: 0.8rem;
+        color: var(--ink-soft);
+      }
+      td {
+        padding: 4px 6px 4px 0;
+        border-top: var(--edge) solid var(--line);
+      }
+      label {
+        display: flex;
+        align-items: center;
+        gap: 9px;
+      }
+      tr.off .numeric {
+        color: var(--ink-soft);
+      }
+      tr.off .swatch {
+        opacity: 0.5;
+      }
+      input[type="text"] {
+        width: 84px;
+        min-height: 32px;
+        text-align: right;
+      }
+      .value {
+        display: flex;
+        align-items: center;
+        gap: 9px;
+        min-width: 0;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    return html`<table>
+      <tr>
+        <th scope="col">${words.color}</th>
+        <th scope="col">${words.share}</th>
+        <th scope="col">${words.gets}</th>
+      </tr>
+      ${this.rows.map((row, index) => this.row(row, index))}
+    </table>`;
+  }
+
+  private row(row: ColorRow, index: number): TemplateResult {
+    const number = read_number(row.value);
+    const said =
+      Number.isFinite(number) && this.layer.palette.mode === "categorical"
+        ? describe_value(this.layer, number)
+        : "";
+    return html`<tr class=${row.used ? "" : "off"}>
+      <td>
+        <label>
+          <input
+            type="checkbox"
+            .checked=${row.used}
+            @change=${(event: Event) => this.change(index, { used: (event.target as HTMLInputElement).checked })}
+          />
+          <span class="swatch" ${styled({ background: row.color })}></span><span class="numeric">${row.color}</span>
+        </label>
+      </td>
+      <td class="numeric">${format_fixed(100 * row.share, 1)} %</td>
+      <td>
+        <span class="value">
+          ${number_input({
+            label: words.value_of(row.color),
+            value: row.value,
+            disabled: !row.used,
+            wrong: row.used && Number.isNaN(number),
+            typed: (value) => this.change(index, { value }),
+          })}
+          <span class="ellipsis hint">${row.used ? said : words.left_out}</span>
+        </span>
+      </td>
+    </tr>`;
+  }
+
+  private change(index: number, change: Partial<ColorRow>): void {
+    const detail = this.rows.map((row, i) => (i === index ? { ...row, ...change } : row));
+    this.dispatchEvent(new CustomEvent<ColorRow[]>("rows", { detail }));
+  }
+}

@@ -1,0 +1,114 @@
+// Files that are painted over a layer: what they are, and what is asked for.
+
+import type { UploadFile } from "../../net/api";
+import { read_number, typed_number } from "../../core/locale";
+import type { MapColor, MapContents } from "../../core/types";
+
+export const kAlong = ["-z", "+z", "-y", "+y", "-x", "+x"] as const;
+export type Along = (typeof kAlong)[number];
+
+export const kTableEndings = ["csv", "tsv", "txt"] as const;
+export const kPictureEndings = [
+  "tif",
+  "tiff",
+  "png",
+  "jpg",
+  "jpeg",
+  "tfw",
+  "tifw",
+  "pgw",
+  "jgw",
+  "wld",
+  "zip",
+] as const;
+export const kMapEndings = [
+  "geojson",
+  "json",
+  "shp",
+  "dbf",
+  "prj",
+  "cpg",
+  "shx",
+  ...kPictureEndings,
+] as const;
+
+/** For the `accept` of a file field. */
+export const accepted = (endings: readonly string[]): string =>
+  endings.map((ending) => `.${ending}`).join(",");
+
+const ending_of = (name: string): string => /\.([a-z]+)$/i.exec(name)?.[1]?.toLowerCase() ?? "";
+
+/** A table of numbers, or a map that the server looks into; null: something else is among them. */
+export function file_kind(names: readonly string[]): "table" | "map" | null {
+  const endings = names.map(ending_of);
+  if (endings.length === 1 && (kTableEndings as readonly string[]).includes(endings[0]!))
+    return "table";
+  return endings.length > 0 &&
+    endings.every((each) => (kMapEndings as readonly string[]).includes(each))
+    ? "map"
+    : null;
+}
+
+/** The first of the files that is neither. */
+export const unknown_file = (names: readonly string[]): string =>
+  names.find((name) => file_kind([name]) === null) ?? names[0] ?? "";
+
+/** By the first line of a table: measured places, or one number for each vertex. */
+export function table_kind(text: string): "readings" | "vertices" {
+  const names = (text.trimStart().split(/\r?\n/, 1)[0] ?? "")
+    .split(/[,;\t]/)
+    .map((name) => name.replace(/["\s]/g, "").toLowerCase());
+  return ["x", "y", "z", "value"].every((name) => names.includes(name)) ? "readings" : "vertices";
+}
+
+export const as_uploads = (files: readonly File[]): UploadFile[] =>
+  files.map((file) => ({ file, path: file.name }));
+
+/** The six numbers of a world file, parted by commas; null: there are not six. */
+export function world_numbers(text: string): string | null {
+  const numbers = text.trim().split(/[\s,;]+/);
+  return numbers.length === 6 &&
+    numbers.every((each) => each !== "" && Number.isFinite(Number(each)))
+    ? numbers.join(",")
+    : null;
+}
+
+/** How the numbers of a picture are made. */
+export type PictureMode = "luminance" | "band" | "colors";
+
+/** Those that this picture allows, the likeliest first. */
+export function picture_modes(contents: MapContents): PictureMode[] {
+  const modes: PictureMode[] = [];
+  if (contents.bands !== undefined && !contents.is_rgb) modes.push("band");
+  if (contents.has_colors && contents.is_rgb && (contents.colors?.length ?? 0) > 1)
+    modes.push("colors");
+  if (contents.has_colors) modes.push("luminance");
+  if (contents.bands !== undefined && contents.is_rgb) modes.push("band");
+  if (contents.has_colors && !contents.is_rgb && (contents.colors?.length ?? 0) > 1)
+    modes.push("colors");
+  return modes;
+}
+
+export interface ColorRow {
+  color: string; // "#rrggbb"
+  share: number;
+  used: boolean;
+  value: string; // as typed
+}
+
+/** The colours found, each with the next of these values; the paper's is left out. */
+export function color_rows(colors: readonly MapColor[], values: readonly number[]): ColorRow[] {
+  let next = 0;
+  let above = Math.max(0, ...values);
+  return colors.map(({ color, share, background }) => {
+    const value = background ? "" : typed_number(values[next++] ?? ++above);
+    return { color, share, used: !background, value };
+  });
+}
+
+/** `{"#c02020":1}`; null: a colour that is used has no number, or none is used. */
+export function color_keys(rows: readonly ColorRow[]): string | null {
+  const used = rows.filter((row) => row.used);
+  if (used.length === 0 || used.some((row) => Number.isNaN(read_number(row.value)))) return null;
+  return JSON.stringify(Object.fromEntries(used.map((row) => [row.color, read_number(row.value)])));
+}

@@ -1,0 +1,63 @@
+// Where a flat map lies: the direction it is looked at, and the place of a picture. Parts of
+// dialogs.
+
+import { html, nothing, type TemplateResult } from "lit";
+import { format_number } from "../../domain/measure";
+import type { MapContents } from "../../core/types";
+import { kAlong, type Along } from "./map-file";
+import { texts } from "../../texts";
+
+const words = texts.maps;
+
+export const direction_field = (chosen: Along, choose: (along: Along) => void): TemplateResult =>
+  html`<label class="field">
+    <span>${words.along}</span>
+    <select name="along" @change=${(event: Event) => choose((event.target as HTMLSelectElement).value as Along)}>
+      ${kAlong.map((along) => html`<option value=${along} ?selected=${along === chosen}>${words.direction[along]}</option>`)}
+    </select>
+  </label>`;
+
+/** A picture that says where it lies needs no numbers. */
+export const world_field = (
+  contents: MapContents,
+  text: string,
+  type: (text: string) => void,
+): TemplateResult =>
+  contents.world
+    ? html`<p class="hint">${words.world_known}</p>`
+    : html`<label class="field">
+        <span>${words.world}</span>
+        <textarea
+          name="world"
+          rows="2"
+          placeholder="0.5, 0, 0, -0.5, 100, 200"
+          .value=${text}
+          @input=${(event: Event) => type((event.target as HTMLTextAreaElement).value)}
+        ></textarea>
+      </label>`;
+
+/** What was found in the files, in one line. */
+export function found_line(contents: MapContents): TemplateResult {
+  const { kind, polygons, columns, width, height, bands, bounds, crs } = contents;
+  const parts =
+    kind === "polygons"
+      ? [words.polygons(polygons ?? 0), words.columns(columns?.length ?? 0)]
+      : [`${width} × ${height} px`, ...(bands && !contents.is_rgb ? [words.bands(bands)] : [])];
+  if (crs) parts.push(crs);
+  const number = (value: number): string => format_number(value, 6);
+  return html`<p class="found">
+    ${parts.join(" · ")}${
+      bounds
+        ? html`<br /><span class="hint numeric"
+            >${words.bounds(number(bounds[0]), number(bounds[2]), number(bounds[1]), number(bounds[3]))}</span
+          >`
+        : nothing
+    }
+  </p>`;
+}
+
+export const progress_line = (share: number | null, after: string): TemplateResult =>
+  html`<div role="status">
+    <progress max="1" .value=${share ?? 0} ?hidden=${share === null}></progress>
+    <p class="hint">${share === null || share >= 1 ? after : words.sending(Math.round(share * 100))}</p>
+  </div>`;

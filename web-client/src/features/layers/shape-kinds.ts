@@ -1,0 +1,110 @@
+// What can be computed from a model's shape, in the words of who studies it.
+
+import { read_number } from "../../core/locale";
+import type { Model, ShapeRecipe } from "../../core/types";
+import { texts } from "../../texts";
+
+/** Of openness, at each point. */
+export const kRays = { least: 16, most: 1024, usual: 64 } as const;
+
+export type ShapeKind = ShapeRecipe["kind"];
+
+export interface ShapeKindInfo {
+  kind: ShapeKind;
+  title: string;
+  lead: string;
+  /** What may be set for it. */
+  takes: readonly ("radius" | "distance" | "rays" | "absolute" | "model" | "property")[];
+}
+
+const words = texts.shape.kinds;
+
+export const kShapeGroups: readonly { title: string; kinds: readonly ShapeKindInfo[] }[] = [
+  {
+    title: texts.shape.groups.form,
+    kinds: [
+      { kind: "mean_curvature", ...words.mean_curvature, takes: ["radius"] },
+      { kind: "gaussian_curvature", ...words.gaussian_curvature, takes: ["radius"] },
+      { kind: "max_curvature", ...words.max_curvature, takes: ["radius"] },
+      { kind: "min_curvature", ...words.min_curvature, takes: ["radius"] },
+      { kind: "roughness", ...words.roughness, takes: ["radius"] },
+      { kind: "ambient_occlusion", ...words.ambient_occlusion, takes: ["distance", "rays"] },
+    ],
+  },
+  {
+    title: texts.shape.groups.place,
+    kinds: [
+      { kind: "height", ...words.height, takes: ["absolute"] },
+      { kind: "slope", ...words.slope, takes: [] },
+      { kind: "azimuth", ...words.azimuth, takes: [] },
+    ],
+  },
+  {
+    title: texts.shape.groups.distance,
+    kinds: [
+      { kind: "boundary_distance", ...words.boundary_distance, takes: [] },
+      { kind: "model_distance", ...words.model_distance, takes: ["model", "distance"] },
+    ],
+  },
+  {
+    title: texts.shape.groups.file,
+    kinds: [{ kind: "vertex_property", ...words.vertex_property, takes: ["property"] }],
+  },
+];
+
+export const shape_kind = (kind: ShapeKind): ShapeKindInfo =>
+  kShapeGroups.flatMap((group) => group.kinds).find((info) => info.kind === kind)!;
+
+/** What the person filled in, as texts. */
+export interface ShapeInput {
+  kind: ShapeKind;
+  radius: string;
+  distance: string;
+  rays: string;
+  absolute: boolean;
+  model: string;
+  property: string; // "source/property"
+}
+
+/** The recipe, or what is wrong with the input. Fields that the kind does not take are left out. */
+export function recipe_of(input: ShapeInput): ShapeRecipe | { problem: string; field: string } {
+  const { takes } = shape_kind(input.kind);
+  const recipe: ShapeRecipe = { kind: input.kind };
+  for (const [name, member, text] of [
+    ["radius", "radius_mm", input.radius],
+    ["distance", "distance_mm", input.distance],
+  ] as const) {
+    if (!takes.includes(name) || text.trim() === "") continue;
+    const value = read_number(text);
+    if (!(value > 0)) return { problem: texts.shape.bad_length, field: name };
+    recipe[member] = value;
+  }
+  if (takes.includes("rays") && input.rays.trim() !== "") {
+    const rays = read_number(input.rays);
+    const { least, most } = kRays;
+    if (!Number.isInteger(rays) || rays < least || rays > most)
+      return { problem: texts.shape.bad_rays(least, most), field: "rays" };
+    recipe.rays = rays;
+  }
+  if (takes.includes("absolute") && input.absolute) recipe.absolute = true;
+  if (takes.includes("model")) {
+    if (!input.model) return { problem: texts.shape.model_missing, field: "model" };
+    recipe.model = input.model;
+  }
+  if (takes.includes("property")) {
+    const slash = input.property.indexOf("/"); // a property's name may hold one, a file's may not
+    if (slash < 0) return { problem: texts.shape.property_missing, field: "property" };
+    recipe.source = input.property.slice(0, slash);
+    recipe.property = input.property.slice(slash + 1);
+  }
+  return recipe;
+}
+
+/** Others that this one can be compared with: of the same project first. */
+export function other_models(all: readonly Model[], model: Model): Model[] {
+  const others = all.filter((other) => other.id !== model.id);
+  return [
+    ...others.filter((other) => other.project === model.project),
+    ...others.filter((other) => other.project !== model.project),
+  ];
+}

@@ -1,0 +1,354 @@
+// <strata-statistics-dialog>: how much of the surface a layer's values cover.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { format_area, format_number } from "../../domain/measure";
+import { color_of, css_color, with_range } from "../../domain/palette";
+import type { SheetQuery } from "../../net/api";
+import type { KeyStatistics, Layer, Palette, Statistics } from "../../core/types";
+import { label_of } from "../../domain/cells";
+import { describe_value } from "../painting/brush-settings";
+import "./cross-table";
+import { has_classes } from "./cross-table";
+import "../../ui/dialog";
+import { follow_session } from "../../session/follow-session";
+import type { ModelSession } from "../../shell/model-session";
+import { save_from } from "../../ui/save-from";
+import { sheet_buttons, sheet_query } from "../../ui/workbook-buttons";
+import { styled } from "../../ui/styled";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+const kMostRows = 60;
+
+@customElement("strata-statistics-dialog")
+export class StrataStatisticsDialog extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) layer!: Layer;
+  @state() private statistics_: Statistics | null = null;
+  @state() private problem_ = "";
+  @state() private tried_: Palette | null = null; // while a limit of the colours is moved
+  private saving_ = false;
+  private counted_ = 0; // the layer's sequence then
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      .total {
+        display: flex;
+        align-items: baseline;
+        gap: 0.625rem;
+      }
+      .total b {
+        font: 600 1.7rem var(--serif);
+      }
+      .row {
+        flex-wrap: wrap;
+      }
+      .bars {
+        display: grid;
+        gap: 0.625rem;
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      .bars .words {
+        display: flex;
+        gap: 0.5625rem;
+        align-items: center;
+        font-size: 0.92rem;
+      }
+      .bars .share {
+        min-width: 4rem;
+        text-align: end;
+      }
+      .bars .track {
+        height: 0.5625rem;
+        margin-top: 4px;
+        border-radius: 3px;
+        background: var(--hover);
+      }
+      .bars .track i {
+        display: block;
+        height: 100%;
+        min-width: 2px;
+        border-radius: 3px;
+        box-shadow: inset 0 0 0 1px var(--swatch-rim);
+      }
+      dl {
+        display: grid;
+        grid-template-columns: repeat(auto-fit, minmax(6.875rem, 1fr));
+        gap: 0.75rem;
+        margin: 0;
+      }
+      dt {
+        font-size: 0.8rem;
+        font-weight: 600;
+        color: var(--ink-soft);
+      }
+      dd {
+        margin: 0;
+        font-size: 1.05rem;
+      }
+      .histogram {
+        display: flex;
+        align-items: flex-end;
+        gap: 1px;
+        height: 7.5rem;
+        border-bottom: var(--edge) solid var(--line-strong);
+      }
+      .histogram i {
+        flex: 1;
+        border-radius: 2px 2px 0 0;
+      }
+      .limits {
+        position: relative;
+        height: 1.5rem;
+      }
+      .limits input {
+        position: absolute;
+        inset: 0;
+        background: none;
+        pointer-events: none;
+        appearance: none;
+      }
+      .limits input::-webkit-slider-thumb {
+        width: 0.875rem;
+        height: 1.25rem;
+        border: 2px solid var(--raised);
+        border-radius: 5px;
+        background: var(--accent);
+        cursor: ew-resize;
+        pointer-events: auto;
+        appearance: none;
+      }
+      .limits input::-moz-range-thumb {
+        width: 0.75rem;
+        height: 1.125rem;
+        border-radius: 5px;
+        background: var(--accent);
+        cursor: ew-resize;
+        pointer-events: auto;
+      }
+      .ends {
+        display: flex;
+        justify-content: space-between;
+        margin-top: 3px;
+        font-size: 0.8rem;
+        color: var(--ink-soft);
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    void this.load();
+  }
+
+  /** Counted again where somebody painted. */
+  override updated(): void {
+    if (this.statistics_ && this.layer.sequence > this.counted_) void this.load();
+  }
+
+  private async load(): Promise<void> {
+    this.problem_ = "";
+    this.counted_ = this.layer.sequence;
+    try {
+      this.statistics_ = await this.session.api.statistics(this.session.model_id, this.layer.id);
+    } catch (error) {
+      this.problem_ = error instanceof Error ? error.message : texts.problems.unexpected;
+    }
+  }
+
+  override render(): TemplateResult {
+    return html`<strata-dialog
+      wide
+      heading=${texts.statistics.title(label_of(this.layer))}
+      @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
+    >
+      ${
+        this.problem_
+          ? html`<p class="error" role="alert">${this.problem_}</p>`
+          : this.statistics_
+            ? this.content(this.statistics_)
+            : html`<p class="hint" role="status">${texts.loading}</p>`
+      }
+      ${this.statistics_ && has_classes(this.layer) ? html`<strata-cross-table .session=${this.session} .layer=${this.layer}></strata-cross-table>` : nothing}
+      <button slot="actions" @click=${() => void this.load()}>${texts.statistics.refresh}</button>
+    </strata-dialog>`;
+  }
+
+  private content(statistics: Statistics): TemplateResult {
+    const words = texts.statistics;
+    if (statistics.texels === 0) return html`<p>${words.nothing}</p>`;
+    const share = this.share(statistics.area_m2);
+    return html`<div class="total numeric">
+        <b>${format_area(statistics.area_m2)}</b>
+        ${share ? html`<span class="hint">${words.of_surface(share)}</span>` : nothing}
+      </div>
+      <div class="row" role="group" aria-label=${words.title(label_of(this.layer))}>
+        ${sheet_buttons({ what: words.title(label_of(this.layer)), rows: () => this.rows(statistics), save: (f) => this.save(f) })}
+      </div>
+      ${this.layer.palette.mode === "categorical" ? this.keys(statistics) : this.spread(statistics)}`;
+  }
+
+  /** Of the model's surface. */
+  private share(area_m2: number): string {
+    const whole = this.session.model?.area_m2 ?? 0;
+    return whole > 0 ? `${format_number((area_m2 / whole) * 100)} %` : "";
+  }
+
+  /** As they are copied: what is read here, each number in a cell. */
+  private rows(statistics: Statistics): string[][] {
+    const words = texts.statistics;
+    const line = (name: string, area: number): string[] => [
+      name,
+      format_area(area),
+      this.share(area),
+    ];
+    if (this.layer.palette.mode === "categorical")
+      return [
+        [words.class, words.area, words.share],
+        ...sorted(statistics).map((key) =>
+          line(describe_value(this.layer, key.key, this.session.tables), key.area_m2),
+        ),
+        line(words.sum, statistics.area_m2),
+      ];
+    const { unit } = this.layer;
+    return [
+      line(words.area, statistics.area_m2),
+      ...this.measures(statistics).map(([name, value]) => [name, format_number(value, 4), unit]),
+      [words.from, words.to, words.area],
+      ...statistics.histogram.map((bin) => [
+        format_number(bin.from, 4),
+        format_number(bin.to, 4),
+        format_area(bin.area_m2),
+      ]),
+    ];
+  }
+
+  private save(f: SheetQuery["f"]): void {
+    save_from(
+      this.session.api.quantities_url(this.session.model_id, this.layer.id, sheet_query(f)),
+      `${this.layer.slug}-quantities.${f}`,
+    );
+  }
+
+  private measures(statistics: Statistics): [string, number][] {
+    const words = texts.statistics;
+    const all: [string, number | null | undefined][] = [
+      [words.mean, statistics.mean],
+      [words.min, statistics.min],
+      [words.max, statistics.max],
+      [words.std, statistics.std],
+    ];
+    return all.flatMap(([name, value]): [string, number][] =>
+      value === null || value === undefined ? [] : [[name, value]],
+    );
+  }
+
+  private keys(statistics: Statistics): TemplateResult {
+    const keys = sorted(statistics);
+    const largest = keys[0]?.area_m2 ?? 1;
+    return html`<ul class="bars">
+      ${keys.slice(0, kMostRows).map((key) => {
+        const color = color_of(this.layer.palette, key.key);
+        const background = color ? css_color(color) : "var(--line-strong)";
+        return html`<li>
+          <div class="words">
+            <span class="swatch" ${styled({ background })}></span>
+            <span class="grow ellipsis">${describe_value(this.layer, key.key, this.session.tables)}</span>
+            <span class="numeric">${format_area(key.area_m2)}</span>
+            <span class="numeric hint share">${this.share(key.area_m2)}</span>
+          </div>
+          <div class="track"><i ${styled({ width: `${(key.area_m2 / largest) * 100}%`, background })}></i></div>
+        </li>`;
+      })}
+    </ul>`;
+  }
+
+  private spread(statistics: Statistics): TemplateResult {
+    const words = texts.statistics;
+    const unit = this.layer.unit ? ` ${this.layer.unit}` : "";
+    const bins = statistics.histogram;
+    const largest = Math.max(...bins.map((bin) => bin.area_m2), Number.MIN_VALUE);
+    const palette = this.tried_ ?? this.layer.palette;
+    return html`<dl class="numeric">
+        ${this.measures(statistics).map(([name, value]) => html`<div><dt>${name}</dt><dd>${format_number(value, 4)}${unit}</dd></div>`)}
+      </dl>
+      ${
+        bins.length > 1
+          ? html`<div>
+            <p class="caption">${words.spread}</p>
+            <div class="histogram" role="img" aria-label=${words.spread}>
+              ${bins.map((bin) => {
+                const color = color_of(palette, (bin.from + bin.to) / 2);
+                const height = `${((bin.area_m2 / largest) * 100).toFixed(1)}%`;
+                return html`<i ${styled({ height, background: color ? css_color(color) : "var(--calm)" })}></i>`;
+              })}
+            </div>
+            ${this.session.can_curate ? this.limits(palette, bins[0]!.from, bins[bins.length - 1]!.to, unit) : nothing}
+            <div class="ends numeric">
+              <span>${format_number(bins[0]!.from, 4)}${unit}</span>
+              <span>${format_number(bins[bins.length - 1]!.to, 4)}${unit}</span>
+            </div>
+          </div>`
+          : nothing
+      }`;
+  }
+
+  /** Two handles, for the pointer and the arrow keys: the colours run from the one to the other. */
+  private limits(palette: Palette, from: number, to: number, unit: string): TemplateResult {
+    const words = texts.statistics;
+    const handle = (
+      label: string,
+      value: number,
+      range: (moved: number) => [number, number],
+    ): TemplateResult =>
+      html`<input
+        type="range"
+        aria-label=${label}
+        aria-valuetext="${format_number(value, 4)}${unit}"
+        min=${from}
+        max=${to}
+        step=${(to - from) / 200}
+        .value=${String(value)}
+        @input=${(event: Event) => {
+          const [min, max] = range(Number((event.target as HTMLInputElement).value));
+          if (min < max) this.tried_ = with_range(this.layer.palette, min, max);
+        }}
+        @change=${() => void this.save_range()}
+      />`;
+    return html`<div class="limits">
+        ${handle(words.range_from, palette.min, (moved) => [moved, palette.max])} ${handle(words.range_to, palette.max, (moved) => [palette.min, moved])}
+      </div>
+      <p class="hint numeric" role="status">${words.range(`${format_number(palette.min, 4)}${unit}`, `${format_number(palette.max, 4)}${unit}`)}</p>`;
+  }
+
+  /** One after the other: each key press is a change, and the newest is what stays. */
+  private async save_range(): Promise<void> {
+    if (this.saving_) return;
+    this.saving_ = true;
+    try {
+      while (this.tried_) {
+        const palette = this.tried_;
+        await this.session.layers.change(this.layer, { palette });
+        if (this.tried_ === palette) this.tried_ = null;
+      }
+    } catch (error) {
+      this.tried_ = null;
+      this.problem_ = error instanceof Error ? error.message : texts.problems.unexpected;
+    } finally {
+      this.saving_ = false;
+    }
+  }
+}
+
+/** The largest first. */
+const sorted = (statistics: Statistics): KeyStatistics[] =>
+  [...(statistics.keys ?? [])].sort((a, b) => b.area_m2 - a.area_m2);

@@ -1,0 +1,193 @@
+// <strata-template-dialog>: templates, and what each makes; one press makes its tables, and its
+// layers on this model.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { ApiError } from "../../net/api";
+import { label_of } from "../../domain/cells";
+import { person_languages } from "../../core/locale";
+import type { Template, TemplateTable } from "../../core/protocol.gen";
+import "../../ui/dialog";
+import type { StrataDialog } from "../../ui/dialog";
+import { icon } from "../../ui/icons";
+import type { ModelSession } from "../../shell/model-session";
+import { notices } from "../../ui/notices";
+import { shared_styles } from "../../ui/styles";
+import { styled } from "../../ui/styled";
+import { texts } from "../../texts";
+
+const words = texts.templates;
+const kMostColors = 6; // of a list, to give an idea of it
+
+@customElement("strata-template-dialog")
+export class StrataTemplateDialog extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @state() private templates_: Template[] | null = null;
+  @state() private problem_ = "";
+  @state() private refused_: { slug: string; problem: string } | null = null;
+  @state() private making_ = ""; // slug
+  @query("strata-dialog") private dialog_!: StrataDialog;
+
+  static override styles = [
+    shared_styles,
+    css`
+      ul {
+        display: grid;
+        gap: 0.625rem;
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      li {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr) auto;
+        align-items: start;
+        gap: 0.375rem 0.875rem;
+        padding: 0.8125rem 0.875rem;
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius);
+        background: var(--raised);
+      }
+      b {
+        font: 600 1.05rem var(--serif);
+      }
+      .made {
+        display: grid;
+        gap: 4px;
+        grid-column: 1 / -1;
+        font-size: 0.88rem;
+      }
+      .made div {
+        display: flex;
+        align-items: center;
+        gap: 0.5rem;
+        min-width: 0;
+      }
+      .made svg.glyph {
+        width: 1rem;
+        height: 1rem;
+        color: var(--ink-soft);
+      }
+      .made .hint {
+        white-space: nowrap;
+      }
+      .colors {
+        display: inline-flex;
+        gap: 3px;
+      }
+      .colors span {
+        width: 0.6875rem;
+        height: 0.6875rem;
+        border-radius: 3px;
+      }
+      li .error {
+        grid-column: 1 / -1;
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    void this.load();
+  }
+
+  private async load(): Promise<void> {
+    this.problem_ = "";
+    try {
+      this.templates_ = await this.session.api.templates();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.problem_ = error.message;
+    }
+  }
+
+  override render(): TemplateResult {
+    const { templates_: templates } = this;
+    return html`<strata-dialog wide prose heading=${words.title} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+      <p class="hint">${words.lead}</p>
+      ${
+        templates
+          ? templates.length === 0
+            ? html`<p>${words.none}</p>`
+            : html`<ul>${templates.map((template) => this.card(template))}</ul>`
+          : html`<p class="hint" role="status" ?hidden=${this.problem_ !== ""}>${texts.loading}</p>`
+      }
+      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
+      ${this.problem_ ? html`<button slot="actions" class="primary" @click=${() => void this.load()}>${texts.try_again}</button>` : nothing}
+    </strata-dialog>`;
+  }
+
+  private card(template: Template): TemplateResult {
+    const { slug = "", description } = template;
+    const name = named(template);
+    return html`<li aria-label=${name}>
+      <div>
+        <b>${name}</b>
+        <p class="hint">${description}</p>
+      </div>
+      <button class="primary" aria-label=${words.make_of(name)} ?disabled=${this.making_ !== ""} @click=${() => void this.make(template)}>
+        ${this.making_ === slug ? words.making : words.make}
+      </button>
+      <div class="made">
+        ${template.tables.map(
+          (table) =>
+            html`<div>
+              ${icon("table")}<span class="ellipsis">${named(table)}</span>${colors(table)}<span class="hint">${contents(table)}</span>
+            </div>`,
+        )}
+        ${template.layers.map(
+          (layer) =>
+            html`<div>${icon("brush")}<span class="ellipsis">${named(layer)}</span><span class="hint">${words.layer}</span></div>`,
+        )}
+      </div>
+      ${this.refused_?.slug === slug ? html`<p class="error" role="alert">${this.refused_.problem}</p>` : nothing}
+    </li>`;
+  }
+
+  private async make(template: Template): Promise<void> {
+    const { session } = this;
+    const { slug = "" } = template;
+    if (!session.model) return;
+    this.making_ = slug;
+    this.refused_ = null;
+    try {
+      const { tables, layers } = await session.api.use_template(session.model.project, slug, {
+        model: session.model_id,
+        language: person_languages()[0]!,
+      });
+      for (const layer of layers) session.layers.put(layer);
+      const first = layers.find(({ kind }) => kind === "database");
+      if (first) session.add_created(first);
+      notices.show("success", words.made(tables.length, layers.length));
+      this.dialog_.close();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      this.refused_ = { slug, problem: error.message };
+    } finally {
+      this.making_ = "";
+    }
+  }
+}
+
+/**
+ * The server names what it makes in one language, that of the page's person: here it is called the
+ * same.
+ */
+const named = ({ name, labels = {} }: Pick<Template, "name" | "labels">): string =>
+  label_of({ name, labels });
+
+const contents = ({ terms, columns }: TemplateTable): string =>
+  terms ? words.terms(terms.length) : words.columns(columns?.length ?? 0);
+
+function colors({ terms = [] }: TemplateTable): TemplateResult | typeof nothing {
+  const some = terms.flatMap(({ color }) => color ?? []).slice(0, kMostColors);
+  return some.length === 0
+    ? nothing
+    : html`<span class="colors">${some.map((color) => html`<span ${styled({ background: color })}></span>`)}</span>`;
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "strata-template-dialog": StrataTemplateDialog;
+  }
+}

@@ -1,0 +1,94 @@
+// The steps of the tour of a model's page: for whom each is, what it speaks of, and where that is
+// just now.
+
+import type { Box } from "../../ui/beside";
+
+export const kSteps = ["turn", "layers", "brush", "undo", "values", "share"] as const;
+export type StepName = (typeof kSteps)[number];
+
+const kForPainters: readonly StepName[] = ["brush", "undo"];
+
+/** Those for who may paint here, or only look. */
+export const steps_for = (can_paint: boolean): StepName[] =>
+  kSteps.filter((name) => can_paint || !kForPainters.includes(name));
+
+/**
+ * The step itself where its thing is there; otherwise the next one whose is, or else the last one
+ * before. Null: nothing is there.
+ */
+export function nearest_step(name: StepName, there: readonly StepName[]): StepName | null {
+  const after = kSteps.slice(kSteps.indexOf(name)).find((each) => there.includes(each));
+  return after ?? there[there.length - 1] ?? null;
+}
+
+/**
+ * What a step speaks of, and the bar that it stands in. `is_room`: there is no one thing to mark.
+ */
+export interface TourThing {
+  element: Element;
+  bar: Element;
+  is_room?: boolean;
+  /** What it speaks of is put away; this brings it back. */
+  is_way?: boolean;
+}
+
+/** Where it is on the page; null: nowhere, or not to be seen. */
+export function thing_of(name: StepName, page: ParentNode): TourThing | null {
+  const found = find(name, page);
+  return found && found.element.checkVisibility() && found.element.getClientRects().length > 0
+    ? found
+    : null;
+}
+
+function find(name: StepName, page: ParentNode): TourThing | null {
+  const rail = page.querySelector("strata-tool-rail");
+  const head = page.querySelector("header");
+  const within = (
+    bar: Element | null,
+    root: ParentNode | null | undefined,
+    what: string,
+  ): TourThing | null => {
+    const element = root?.querySelector(what);
+    return bar && element ? { element, bar } : null;
+  };
+  switch (name) {
+    case "turn": {
+      const stage = page.querySelector("strata-stage");
+      return stage && { element: stage, bar: stage, is_room: true };
+    }
+    case "layers": {
+      const panel = within(page.querySelector("aside"), page, "strata-layer-panel");
+      const button = within(head, head, "[data-tour=panel]");
+      return panel?.bar.checkVisibility() ? panel : button && { ...button, is_way: true };
+    }
+    case "brush":
+    case "undo":
+    case "values":
+      return within(rail, rail?.shadowRoot, `[data-tour=${name}]`);
+    case "share":
+      return within(head, head, "[data-tour=share]");
+  }
+}
+
+/** The part of an element that lies in its bar and in the window. */
+export function seen_box({ element, bar, is_room }: TourThing): Box {
+  const [own, outer] = [element.getBoundingClientRect(), bar.getBoundingClientRect()];
+  if (is_room) return middle_of(own);
+  const left = Math.max(own.left, outer.left, 0);
+  const top = Math.max(own.top, outer.top, 0);
+  return {
+    left,
+    top,
+    width: Math.max(0, Math.min(own.right, outer.right, innerWidth) - left),
+    height: Math.max(0, Math.min(own.bottom, outer.bottom, innerHeight) - top),
+  };
+}
+
+const kMargin = 0.3; // of the stage, beside what is looked at
+
+const middle_of = ({ left, top, width, height }: DOMRect): Box => ({
+  left: left + kMargin * width,
+  top: top + kMargin * height,
+  width: (1 - 2 * kMargin) * width,
+  height: (1 - 2 * kMargin) * height,
+});

@@ -1,0 +1,357 @@
+// <strata-brush-panel>: what the chosen painting tool paints in the selected layer, how wide, and
+// what it reaches.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { label_of } from "../../domain/cells";
+import { read_number, typed_number } from "../../core/locale";
+import type { MarkKind } from "../../domain/marks";
+import { format_length, format_number } from "../../domain/measure";
+import type { Layer } from "../../core/types";
+import { describe_value, kWidths, type WidthUnit } from "./brush-settings";
+import { ask } from "../../ui/dialog";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import { unlock_label, why_locked } from "../layers/layer-lock";
+import type { ModelSession } from "../../shell/model-session";
+import { notices } from "../../ui/notices";
+import { number_input } from "../../ui/number-input";
+import { radio_group } from "../../ui/radio-group";
+import { number_field_styles, shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+import "./shape-picker";
+import "./value-picker";
+
+const kSliderSteps = 1000;
+
+/** Asks for the dialog of a fill by a condition. */
+export type WhereRequest = { dialog: "where"; layer: Layer };
+
+@customElement("strata-brush-panel")
+export class StrataBrushPanel extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    number_field_styles,
+    css`
+      :host {
+        display: grid;
+        gap: 0.8125rem;
+      }
+      h2 {
+        font-size: 1.08rem;
+      }
+      .width {
+        display: grid;
+        grid-template-columns: 1fr 5.75rem;
+        align-items: center;
+        gap: 0.5rem 0.75rem;
+      }
+      .slant {
+        display: grid;
+        grid-template-columns: 1fr 5.75rem;
+        align-items: center;
+        gap: 0.75rem;
+      }
+      .slant .check input:disabled + span {
+        opacity: var(--unavailable);
+      }
+      .locked {
+        display: flex;
+        gap: 0.5625rem;
+        align-items: start;
+        padding: 0.625rem 0.75rem;
+        border: var(--edge) solid var(--calm);
+        border-radius: var(--radius-small);
+        background: var(--calm-soft);
+        font-size: 0.88rem;
+        overflow-wrap: anywhere;
+      }
+      .locked .glyph {
+        flex: none;
+      }
+      .pair {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 0.625rem;
+      }
+      .pair .segments {
+        flex: 1 1 auto;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const layer = session.layers.selected;
+    if (!layer) return html`<p class="hint">${texts.brush.no_layer}</p>`;
+    const tool = session.tools.active;
+    if (session.locked_target) return this.locked(session.locked_target);
+    if (tool === "brush" || tool === "eraser") return this.strokes(layer, tool === "eraser");
+    if (tool === "line" || tool === "point") return this.marks(layer, tool);
+    return this.areas(layer, tool === "bucket" ? "bucket" : tool === "lasso" ? "lasso" : "polygon");
+  }
+
+  private locked(layer: Layer): TemplateResult {
+    const { layers, can_curate } = this.session;
+    const unlock = (): void =>
+      void layers.change(layer, { locked: false }).catch((error: unknown) => notices.error(error));
+    return html`<h2>${texts.tools[this.session.tools.active]}</h2>
+      <p class="locked" role="status">${icon("lock")}<span>${why_locked(layer)}</span></p>
+      ${can_curate ? html`<button @click=${unlock}>${icon("unlock")}${unlock_label(layer)}</button>` : nothing}`;
+  }
+
+  private strokes(layer: Layer, erases: boolean): TemplateResult {
+    return html`<h2>${erases ? texts.brush.eraser_title : texts.brush.title}</h2>
+      ${erases ? html`<p class="hint">${texts.brush.erases(label_of(layer))}</p>` : this.value(layer)} ${this.width()}
+      ${this.through()} ${this.slant()} ${this.session.painting.pen_used ? this.pressure() : nothing} ${erases ? nothing : this.whole(layer)}`;
+  }
+
+  private areas(layer: Layer, tool: "bucket" | "lasso" | "polygon"): TemplateResult {
+    const { painting } = this.session;
+    const { erases, reach } = painting.brush.areas;
+    const words = texts.areas;
+    return html`<h2>${texts.tools[tool]}</h2>
+      <p class="hint">${words.how[tool]}</p>
+      ${radio_group<boolean>({
+        label: words.does,
+        class: "segments",
+        choices: [
+          { value: false, content: words.paints },
+          { value: true, content: words.erases },
+        ],
+        chosen: erases,
+        choose: (chosen) => painting.set_brush((brush) => (brush.areas.erases = chosen)),
+      })}
+      ${erases ? html`<p class="hint">${texts.brush.erases(label_of(layer))}</p>` : this.value(layer)}
+      ${
+        tool === "bucket"
+          ? radio_group<typeof reach>({
+              label: words.reach,
+              class: "segments",
+              choices: [
+                { value: "connected", content: words.connected, title: words.connected_hint },
+                { value: "island", content: words.island, title: words.island_hint },
+              ],
+              chosen: reach,
+              choose: (chosen) => painting.set_brush((brush) => (brush.areas.reach = chosen)),
+            })
+          : this.through()
+      }
+      ${this.whole(layer)}`;
+  }
+
+  /** Of which record lines and points will be, and in which column. */
+  private marks(layer: Layer, kind: MarkKind): TemplateResult {
+    const { marks } = this.session;
+    const words = texts.marks;
+    const columns = marks.columns(kind);
+    const { table } = layer;
+    if (table === undefined || columns.length === 0)
+      return html`<h2>${texts.tools[kind]}</h2><p class="hint">${words.no_column[kind]}</p>`;
+    const choose = (event: Event): void => {
+      const chosen = columns.find(
+        ({ id }) => `${id}` === (event.target as HTMLSelectElement).value,
+      );
+      if (chosen) marks.choose_column(table, chosen);
+    };
+    return html`<h2>${texts.tools[kind]}</h2>
+      <p class="hint">${words.how[kind]}</p>
+      ${this.value(layer)}
+      ${
+        columns.length > 1
+          ? html`<label class="field">
+            <span>${words.into}</span>
+            <select @change=${choose}>
+              ${columns.map((column) => html`<option value=${column.id} ?selected=${column.id === marks.column(kind)?.id}>${label_of(column)}</option>`)}
+            </select>
+          </label>`
+          : nothing
+      }`;
+  }
+
+  private value(layer: Layer): TemplateResult {
+    return html`<strata-value-picker
+      .session=${this.session}
+      .layer=${layer}
+      .value=${this.session.painting.brush.value_of(layer)}
+    ></strata-value-picker>`;
+  }
+
+  private through(): TemplateResult {
+    const { painting } = this.session;
+    return html`<label class="check">
+      <input
+        type="checkbox"
+        .checked=${painting.brush.through}
+        @change=${(event: Event) => {
+          const { checked } = event.target as HTMLInputElement;
+          painting.set_brush((brush) => (brush.through = checked));
+        }}
+      />
+      <span>${texts.areas.through}</span>
+    </label>`;
+  }
+
+  private pressure(): TemplateResult {
+    const { painting } = this.session;
+    return html`<label class="check">
+      <input
+        type="checkbox"
+        .checked=${painting.brush.pressure}
+        @change=${(event: Event) => {
+          const { checked } = event.target as HTMLInputElement;
+          painting.set_brush((brush) => (brush.pressure = checked));
+        }}
+      />
+      <span>${texts.brush.pressure}</span>
+    </label>`;
+  }
+
+  private slant(): TemplateResult {
+    const { painting } = this.session;
+    const { slant, through } = painting.brush;
+    const limited = slant.limited && !through;
+    return html`<div class="slant">
+      <label class="check" title=${through ? texts.brush.slant_through : ""}>
+        <input
+          type="checkbox"
+          .checked=${limited}
+          ?disabled=${through}
+          @change=${(event: Event) => {
+            const { checked } = event.target as HTMLInputElement;
+            painting.set_brush((brush) => (brush.slant.limited = checked));
+          }}
+        />
+        <span>${texts.brush.slant}</span>
+      </label>
+      <span class="number">
+        ${number_input({
+          label: texts.brush.slant_degrees,
+          value: slant.max_deg,
+          min: 1,
+          max: 90,
+          disabled: !limited,
+          changed: (text, input) => {
+            painting.set_brush((brush) => brush.set_slant(read_number(text)));
+            input.value = typed_number(painting.brush.slant.max_deg);
+          },
+        })}
+        <span>°</span>
+      </span>
+    </div>`;
+  }
+
+  /** What needs no pointer. */
+  private whole(layer: Layer): TemplateResult {
+    const detail: WhereRequest = { dialog: "where", layer };
+    const ask_where = (): void =>
+      void this.dispatchEvent(new CustomEvent<WhereRequest>("request", { detail }));
+    return html`<div class="pair">
+      <button class="quiet" @click=${() => void this.fill(layer)}>${icon("drop")}${texts.brush.fill}</button>
+      <button class="quiet" @click=${ask_where}>${icon("formula")}${texts.areas.where}</button>
+    </div>`;
+  }
+
+  private width(): TemplateResult {
+    const { session } = this;
+    const { unit, width } = session.painting.brush;
+    const range = kWidths[unit];
+    const now = width[unit];
+    const slider = (kSliderSteps * Math.log(now / range.min)) / Math.log(range.max / range.min);
+    return html`<div class="width">
+        <span class="caption">${texts.brush.width}</span><span></span>
+        <input
+          type="range"
+          min="0"
+          max=${kSliderSteps}
+          .value=${String(Math.round(slider))}
+          aria-label=${texts.brush.width}
+          aria-valuetext="${format_number(now)} ${unit}"
+          @input=${(event: Event) => {
+            const share = Number((event.target as HTMLInputElement).value) / kSliderSteps;
+            const value = range.min * Math.pow(range.max / range.min, share);
+            this.set_width(unit, unit === "px" ? Math.round(value) : Number(value.toPrecision(2)));
+          }}
+        />
+        <span class="number">
+          ${number_input({
+            label: `${texts.brush.width}, ${unit}`,
+            value: now,
+            ...range,
+            changed: (text, input) => {
+              this.set_width(unit, read_number(text));
+              input.value = typed_number(this.session.painting.brush.width[unit]);
+            },
+          })}
+          <span>${unit === "px" ? texts.brush.width_px : texts.brush.width_mm}</span>
+        </span>
+      </div>
+      <p class="hint numeric">${this.equivalent(unit)}</p>
+      <div class="pair">
+        ${radio_group<WidthUnit>({
+          label: texts.brush.fixed_on,
+          class: "segments",
+          choices: [
+            { value: "px", content: texts.brush.on_screen },
+            { value: "mm", content: texts.brush.on_object },
+          ],
+          chosen: unit,
+          choose: (chosen) => this.set_unit(chosen),
+        })}
+      </div>
+      <strata-shape-picker .session=${session}></strata-shape-picker>`;
+  }
+
+  /** The width in the other unit, at the surface under the pointer. */
+  private equivalent(unit: WidthUnit): string {
+    const { session } = this;
+    if (!session.model) return "";
+    const radius_px = session.painting.radius_window_px();
+    if (unit === "mm")
+      return `≈ ${format_number((2 * radius_px) / session.view.scale, 2)} ${texts.brush.width_px} ${texts.brush.on_screen}`;
+    const metres = session.painting.width_metres();
+    return `≈ ${format_length(metres)} ${texts.brush.on_object}`;
+  }
+
+  /** Keeps the brush as wide as it looks now. */
+  private set_unit(unit: WidthUnit): void {
+    const { session } = this;
+    if (session.painting.brush.unit === unit || !session.model) return;
+    const radius_px = session.painting.radius_window_px();
+    const mm = session.painting.width_metres() * 1000;
+    session.painting.set_brush((brush) => {
+      brush.unit = unit;
+      if (unit === "mm") brush.set_width("mm", Number(mm.toPrecision(2)));
+      else brush.set_width("px", Math.round((2 * radius_px) / session.view.scale));
+    });
+  }
+
+  private set_width(unit: WidthUnit, width: number): void {
+    this.session.painting.set_brush((brush) => brush.set_width(unit, width));
+  }
+
+  private async fill(layer: Layer): Promise<void> {
+    const what = describe_value(
+      layer,
+      this.session.painting.brush.value_of(layer),
+      this.session.tables,
+    );
+    const words = texts.brush;
+    if (
+      await ask({
+        heading: words.fill_title(label_of(layer)),
+        lead: words.fill_lead(`“${what}”`),
+        yes: words.fill,
+      })
+    ) {
+      this.session.painting.fill(layer);
+    }
+  }
+}

@@ -1,0 +1,19 @@
+// A press fills what is connected with the place under it.
+
+import type { PointerSample } from "../../ui/input";
+import type { Tool } from "../../tools/tool";
+
+export class BucketTool implements Tool {
+  readonly name = "bucket";
+
+  constructor(private readonly fill_at_: (sample: PointerSample) => void) {}
+
+  activate(): void {}
+  deactivate(): void {}
+  down(sample: PointerSample): void {
+    this.fill_at_(sample);
+  }
+  move(): void {}
+  up(): void {}
+  cancel(): void {}
+}

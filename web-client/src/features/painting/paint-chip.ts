@@ -1,0 +1,98 @@
+// <strata-paint-chip>: what the chosen tool would paint now, on one line above the tools. For
+// windows in which the panel that says so lies over the model or is put away. Pressed, it brings
+// that panel.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { format_number } from "../../domain/measure";
+import { label_of } from "../../domain/cells";
+import { color_of, css_color } from "../../domain/palette";
+import { kPaintingTools } from "../../tools/tool";
+import { describe_value } from "./brush-settings";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import type { ModelSession } from "../../shell/model-session";
+import { shared_styles } from "../../ui/styles";
+import { styled } from "../../ui/styled";
+import { texts } from "../../texts";
+
+@customElement("strata-paint-chip")
+export class StrataPaintChip extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: none;
+      }
+      @media (max-width: 820px) {
+        :host {
+          display: block;
+          grid-area: chip;
+          z-index: 3;
+          min-width: 0;
+          background: var(--surface);
+        }
+      }
+      button {
+        width: 100%;
+        justify-content: start;
+        min-height: 2.5rem;
+        padding: 0 0.875rem;
+        border: 0;
+        border-top: var(--edge) solid var(--line);
+        border-radius: 0;
+      }
+      b {
+        font-weight: 600;
+      }
+      .on {
+        flex: 1;
+        min-width: 0;
+        color: var(--ink-soft);
+        text-align: start;
+      }
+      .width {
+        flex: none;
+        color: var(--ink-soft);
+      }
+    `,
+  ];
+
+  override render(): TemplateResult | typeof nothing {
+    const { session } = this;
+    const { painting } = session;
+    const tool = session.tools.active;
+    const layer = session.layers.selected;
+    if (!kPaintingTools.includes(tool) || !layer) return nothing;
+    const words = texts.brush;
+    const { brush } = painting;
+    const areas = tool === "polygon" || tool === "lasso" || tool === "bucket";
+    const erases = tool === "eraser" || (areas && brush.areas.erases);
+    const value = brush.value_of(layer);
+    const color = erases ? null : color_of(session.layers.palette(layer), value);
+    const what = erases ? texts.areas.erases : describe_value(layer, value, session.tables);
+    const width =
+      tool === "brush" || tool === "eraser"
+        ? `${format_number(brush.width[brush.unit])} ${brush.unit === "px" ? words.width_px : words.width_mm}`
+        : "";
+    return html`<button class="quiet" title=${words.change} @click=${() => this.dispatchEvent(new CustomEvent("options"))}>
+      ${session.locked_target ? icon("lock") : color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : icon(tool === "face" ? "brush" : tool)}
+      <b class="ellipsis">${what}</b>
+      <span class="on ellipsis">${label_of(layer)}</span>
+      ${width ? html`<span class="width numeric">${width}</span>` : nothing} ${icon("up")}
+    </button>`;
+  }
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "strata-paint-chip": StrataPaintChip;
+  }
+}

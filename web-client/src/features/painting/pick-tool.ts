@@ -1,0 +1,22 @@
+// Shows the values under a point and, on a click, takes the selected layer's value onto the brush.
+
+import type { PointerSample } from "../../ui/input";
+import type { Tool } from "../../tools/tool";
+
+export class PickTool implements Tool {
+  readonly name = "pick";
+
+  constructor(private readonly picked_: (sample: PointerSample) => void) {}
+
+  activate(): void {}
+  deactivate(): void {}
+  down(sample: PointerSample): void {
+    this.picked_(sample);
+  }
+  move(samples: PointerSample[]): void {
+    const last = samples[samples.length - 1];
+    if (last) this.picked_(last);
+  }
+  up(): void {}
+  cancel(): void {}
+}

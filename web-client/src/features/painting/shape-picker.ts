@@ -1,0 +1,192 @@
+// <strata-shape-picker>: what the brush is shaped like: round, square, or as a picture that
+// somebody gave. A picture that is dropped here becomes a shape.
+
+import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import type { Tool, ToolShape } from "../../core/protocol.gen";
+import { ask, ask_text } from "../../ui/dialog";
+import { FileDrop } from "../../ui/drop";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import "../../ui/menu";
+import type { ModelSession } from "../../shell/model-session";
+import { notices } from "../../ui/notices";
+import { radio_group, type RadioChoice } from "../../ui/radio-group";
+import "./shape-dialog";
+import { styled } from "../../ui/styled";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+import { shape_picture } from "./tool-shapes";
+
+const is_picture = ({ type }: { type: string }): boolean =>
+  type === "image/png" || type === "image/jpeg";
+
+@customElement("strata-shape-picker")
+export class StrataShapePicker extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @state() private file_: File | null = null; // that becomes a shape
+  @query("input[type=file]") private input_!: HTMLInputElement;
+  private readonly drop_ = new FileDrop(
+    this,
+    ([file]) => file && this.take(file),
+    () => this.session.can_paint,
+  );
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: grid;
+        grid-template-columns: auto 1fr auto;
+        gap: 0.625rem;
+      }
+      .caption {
+        line-height: 2.875rem;
+      }
+      strata-menu {
+        align-self: start;
+        margin-top: 5px;
+      }
+      .shapes {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 0.375rem;
+      }
+      .area {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 0.375rem;
+        max-height: 9.75rem;
+        overflow-y: auto;
+        padding: 2px;
+        border-radius: var(--radius-small);
+      }
+      .area.over {
+        outline: 2px dashed var(--accent);
+        outline-offset: 2px;
+      }
+      .shapes button,
+      .area > button {
+        width: 2.75rem;
+        min-height: 2.75rem;
+        padding: 0.375rem;
+      }
+      .shapes button[aria-checked="true"] {
+        border-color: var(--accent);
+        box-shadow: inset 0 0 0 1px var(--accent);
+      }
+      .area > button {
+        border-style: dashed;
+        border-color: var(--line-strong);
+      }
+      .shape {
+        width: 100%;
+        height: 1.875rem;
+        background: currentColor;
+        mask: center / contain no-repeat;
+      }
+      .shapes svg {
+        width: 1.875rem;
+        height: 1.875rem;
+        fill: currentColor;
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.session.shapes.want();
+  }
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const { shape } = session.painting.brush;
+    const words = texts.shapes;
+    const tool = session.shapes.find(shape);
+    const builtin = (
+      value: "disc" | "square",
+      content: TemplateResult,
+    ): RadioChoice<ToolShape> => ({
+      value,
+      title: texts.brush[value],
+      content: html`<svg viewBox="0 0 24 24" aria-hidden="true">${content}</svg><span class="visually-hidden">${texts.brush[value]}</span>`,
+    });
+    return html`<span class="caption">${texts.brush.shape}</span>
+      <div class="area ${this.drop_.over ? "over" : ""}">
+        ${radio_group<ToolShape>({
+          label: texts.brush.shape,
+          class: "shapes",
+          choices: [
+            builtin("disc", svg`<circle cx="12" cy="12" r="9" />`),
+            builtin("square", svg`<rect x="4" y="4" width="16" height="16" />`),
+            ...session.shapes.list.map(({ id, name }) => ({
+              value: id,
+              title: name,
+              content: html`<span class="shape" ${styled({ "mask-image": `url(${shape_picture(id)})` })}></span
+                ><span class="visually-hidden">${name}</span>`,
+            })),
+          ],
+          chosen: shape,
+          choose: (chosen) => session.painting.set_brush((brush) => (brush.shape = chosen)),
+        })}
+        ${
+          session.can_paint
+            ? html`<button aria-label=${words.new_shape} title=${words.new_hint} @click=${() => this.input_.click()}>${icon("plus")}</button>
+              <input type="file" accept="image/png,image/jpeg" hidden aria-label=${words.new_shape} @change=${this.on_file} />`
+            : nothing
+        }
+      </div>
+      ${
+        tool && session.can_curate
+          ? html`<strata-menu label=${texts.layers.options(tool.name)}>
+            <button class="quiet" role="menuitem" @click=${() => void this.rename(tool)}>${icon("edit")}${words.rename}</button>
+            <button class="quiet" role="menuitem" @click=${() => void this.remove_tool(tool)}>${icon("trash")}${texts.layers.delete}</button>
+          </strata-menu>`
+          : nothing
+      }
+      ${
+        this.file_
+          ? html`<strata-shape-dialog .session=${session} .file=${this.file_} @closed=${() => (this.file_ = null)}></strata-shape-dialog>`
+          : nothing
+      }`;
+  }
+
+  private on_file(): void {
+    this.file_ = this.input_.files?.[0] ?? null;
+    this.input_.value = "";
+  }
+
+  private take(file: File): void {
+    if (is_picture(file)) this.file_ = file;
+    else notices.show("problem", texts.shapes.unreadable(file.name));
+  }
+
+  private async rename(tool: Tool): Promise<void> {
+    const words = texts.shapes;
+    const name = await ask_text({
+      heading: words.rename_title(tool.name),
+      label: words.name,
+      text: tool.name,
+      yes: words.rename,
+    });
+    if (name && name !== tool.name)
+      await this.session.shapes.rename(tool, name).catch((error: unknown) => notices.error(error));
+  }
+
+  private async remove_tool(tool: Tool): Promise<void> {
+    const words = texts.shapes;
+    const question = {
+      heading: words.delete_title(tool.name),
+      lead: words.delete_lead,
+      yes: texts.delete,
+      danger: true,
+    };
+    if (await ask(question))
+      await this.session.shapes.remove(tool).catch((error: unknown) => notices.error(error));
+  }
+}

@@ -1,0 +1,95 @@
+// <strata-value-readout>: position and the layers' values under the pointer.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { label_of } from "../../domain/cells";
+import { format_fixed, format_place } from "../../core/locale";
+import { color_of, css_color } from "../../domain/palette";
+import type { Layer } from "../../core/types";
+import { describe_value } from "./brush-settings";
+import { follow_session } from "../../session/follow-session";
+import type { ModelSession } from "../../shell/model-session";
+import { styled } from "../../ui/styled";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+@customElement("strata-value-readout")
+export class StrataValueReadout extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+        pointer-events: none;
+      }
+      div.card {
+        display: grid;
+        gap: 4px;
+        padding: 0.5625rem 0.8125rem 0.625rem;
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius);
+        background: var(--hint);
+        box-shadow: var(--shadow);
+        font-size: 0.86rem;
+      }
+      .line {
+        display: flex;
+        align-items: center;
+        gap: 0.5rem;
+        min-width: 0;
+      }
+      .swatch {
+        width: 0.75rem;
+        height: 0.75rem;
+      }
+      .line b {
+        margin-left: auto;
+        padding-left: 0.875rem;
+        font-weight: 600;
+      }
+      .line b.none {
+        color: var(--ink-soft);
+        font-weight: 400;
+      }
+      .position {
+        color: var(--ink-soft);
+        font-size: 0.8rem;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const { model } = session;
+    const { picked } = session.pointer;
+    if (!picked?.hit || !picked.position || !model) return html``;
+    const { layers } = session;
+    const shown = [...layers.all]
+      .reverse()
+      .filter((layer) => layers.visible(layer) || layer === layers.selected);
+    const decimals = model.unit === "mm" ? 2 : model.unit === "cm" ? 3 : 4;
+    const coordinates = format_place(picked.position.map((each) => format_fixed(each, decimals)));
+    return html`<div class="card">
+      ${shown.map((layer) => this.line(layer))}
+      <span class="position numeric">${texts.value.position} ${coordinates} ${model.unit}</span>
+    </div>`;
+  }
+
+  private line(layer: Layer): TemplateResult {
+    const found = this.session.pointer.picked?.values?.[layer.slug];
+    const valid = found?.valid === true && found.value !== undefined;
+    const color = valid ? color_of(this.session.layers.palette(layer), found.value!) : null;
+    return html`<span class="line">
+      ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
+      <span class="ellipsis">${label_of(layer)}</span>
+      <b class=${valid ? "numeric" : "none"}>${valid ? describe_value(layer, found.value!, this.session.tables) : texts.value.nothing}</b>
+    </span>`;
+  }
+}

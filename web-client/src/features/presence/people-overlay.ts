@@ -1,0 +1,138 @@
+// <strata-people-overlay>: where the others point, over the picture. Pointers go through it. Draws
+// itself, not the page, while they move.
+
+import { css, html, LitElement, svg, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { ink_on } from "../../domain/people-here";
+import { follow_session } from "../../session/follow-session";
+import type { ModelSession } from "../../shell/model-session";
+import type { PersonCursor } from "./people-cursors";
+import { shared_styles } from "../../ui/styles";
+import { styled } from "../../ui/styled";
+import { name_of } from "./together";
+
+const kLeastRadius_px = 4; // a smaller brush is a pointer
+const kRoomForName_px = 150;
+
+@customElement("strata-people-overlay")
+export class StrataPeopleOverlay extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  private next_ = 0; // of requestAnimationFrame; 0: none
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        position: absolute;
+        inset: 0;
+        overflow: hidden;
+        pointer-events: none;
+      }
+      .person {
+        position: absolute;
+        left: 0;
+        top: 0;
+        transition: opacity 250ms;
+      }
+      .person.hidden {
+        opacity: 0;
+        transition: opacity 120ms;
+      }
+      .person.faded {
+        opacity: 0;
+        transition: opacity 1500ms;
+      }
+      svg {
+        position: absolute;
+        overflow: visible;
+        width: 18px;
+        height: 18px;
+        filter: drop-shadow(0 1px 1px var(--mark-shadow));
+      }
+      b {
+        position: absolute;
+        left: 12px;
+        top: 15px;
+        max-width: 140px;
+        padding: 2px 9px;
+        border-radius: 99px;
+        font-size: 0.78rem;
+        font-weight: 600;
+        line-height: 1.35;
+        box-shadow: 0 1px 3px var(--mark-shadow);
+      }
+      .leftwards b {
+        left: auto;
+        right: 4px;
+      }
+      @media (prefers-reduced-motion: reduce) {
+        .person {
+          transition: none !important;
+        }
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    // places in a picture; who is here is told in the page's head
+    this.setAttribute("aria-hidden", "true");
+  }
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    if (this.next_) cancelAnimationFrame(this.next_);
+    this.next_ = 0;
+  }
+
+  override willUpdate(): void {
+    this.session.cursors.on_change = () => this.requestUpdate();
+  }
+
+  override render(): TemplateResult {
+    return html`${repeat(
+      this.session.cursors.now(),
+      ({ viewer }) => viewer.session,
+      (cursor) => this.person(cursor),
+    )}`;
+  }
+
+  override updated(): void {
+    if (this.next_ || !this.session.cursors.gliding) return;
+    this.next_ = requestAnimationFrame(() => {
+      this.next_ = 0;
+      this.requestUpdate();
+    });
+  }
+
+  private person({ viewer, x, y, radius, hidden, faded }: PersonCursor): TemplateResult {
+    const { color } = viewer;
+    const leftwards = x > this.clientWidth - kRoomForName_px && x > kRoomForName_px;
+    const classes = [
+      "person",
+      leftwards ? "leftwards" : "",
+      hidden ? "hidden" : "",
+      faded ? "faded" : "",
+    ].join(" ");
+    const brush = radius !== null && radius >= kLeastRadius_px;
+    const beside = brush ? Math.min(radius, 40) * 0.7 : 0; // the name lies at the rim of the brush
+    return html`<div class=${classes} data-session=${viewer.session} ${styled({ transform: `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)` })}>
+      <svg>
+        ${
+          brush
+            ? svg`<circle r=${radius} fill=${color} fill-opacity="0.14" stroke="var(--mark-light)" stroke-width="3.6" />
+              <circle r=${radius} fill="none" stroke=${color} stroke-width="2" /><circle r="1.8" fill=${color} stroke="var(--mark-light)" stroke-width="0.8" />`
+            : svg`<path d="M0 0l5.2 14.5 2.4-6.1 6.3-2.200z" fill=${color} stroke="var(--mark-light)" stroke-width="1.3" />`
+        }
+      </svg>
+      <b class="ellipsis" ${styled({ background: color, color: ink_on(color), transform: brush ? `translate(${leftwards ? -beside : beside}px, ${beside - 8}px)` : null })}
+        >${name_of(viewer)}</b
+      >
+    </div>`;
+  }
+}

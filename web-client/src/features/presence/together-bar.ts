@@ -1,0 +1,100 @@
+// <strata-together-bar>: around the picture, in their colour, that somebody else moves the view; or
+// who looks with this person.
+
+import { css, html, LitElement, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { format_list } from "../../core/locale";
+import { called } from "../../domain/people";
+import { ink_on } from "../../domain/people-here";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import type { ModelSession } from "../../shell/model-session";
+import { shared_styles } from "../../ui/styles";
+import { styled } from "../../ui/styled";
+import { texts } from "../../texts";
+import { name_of } from "./together";
+
+@customElement("strata-together-bar")
+export class StrataTogetherBar extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        position: absolute;
+        z-index: 4;
+        inset: 0;
+        pointer-events: none;
+      }
+      .frame {
+        position: absolute;
+        inset: 0;
+        border: 4px solid;
+      }
+      button {
+        position: absolute;
+        top: 0;
+        left: 50%;
+        max-width: calc(100% - 1.5rem);
+        min-height: 2rem;
+        padding: 0 0.625rem 0 0.875rem;
+        border: 0;
+        border-radius: 0 0 var(--radius) var(--radius);
+        background: var(--calm);
+        color: var(--calm-ink);
+        font-size: 0.88rem;
+        font-weight: 600;
+        transform: translateX(-50%);
+        pointer-events: auto;
+        box-shadow: var(--shadow);
+      }
+      button svg.glyph {
+        flex: none;
+        width: 1rem;
+        height: 1rem;
+      }
+      .key {
+        font-weight: 400;
+        white-space: nowrap;
+      }
+      @media (max-width: 820px), (hover: none) {
+        .key {
+          display: none;
+        }
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { together } = this.session;
+    const words = texts.together;
+    if (together.followed) {
+      const { color } = together.followed;
+      const name = name_of(together.followed);
+      return html`<div class="frame" ${styled({ "border-color": color })}></div>
+        <div role="status">
+          <button
+            title=${words.stop_following}
+            ${styled({ background: color, color: ink_on(color) })}
+            @click=${() => together.stop_following()}
+          >
+            <span class="ellipsis">${words.following(name)}</span><span class="key"> · ${words.escape_stops}</span>${icon("close")}
+          </button>
+        </div>`;
+    }
+    if (!together.leading) return html``;
+    const { followers } = together;
+    const names = format_list(followers.map((person) => called(person)));
+    return html`<div role="status">
+      <button title=${names === "" ? words.stop_leading : `${names}\n${words.stop_leading}`} @click=${() => together.lead(false)}>
+        <span class="ellipsis">${words.leading(followers.length)}</span>${icon("close")}
+      </button>
+    </div>`;
+  }
+}

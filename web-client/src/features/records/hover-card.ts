@@ -1,0 +1,157 @@
+// <strata-hover-card>: what is known at a glance of the record that the mouse rests on. It only
+// shows: the pointer passes through it, and who does not see it has the card of a tap.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, query } from "lit/decorators.js";
+import { beside } from "../../ui/beside";
+import { first_picture, label_of, telling_columns } from "../../domain/cells";
+import { css_color, record_color } from "../../domain/palette";
+import { follow_session } from "../../session/follow-session";
+import type { ModelSession } from "../../shell/model-session";
+import { shown_value } from "./shown-value";
+import { shared_styles } from "../../ui/styles";
+import { styled } from "../../ui/styled";
+import { texts } from "../../texts";
+
+const kMostLines = 4;
+const kGap_px = 18; // the pointer's own size
+
+@customElement("strata-hover-card")
+export class StrataHoverCard extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @query("section") private section_!: HTMLElement | null;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+        position: absolute;
+        inset: 0;
+        overflow: hidden;
+        pointer-events: none;
+      }
+      section {
+        position: absolute;
+        display: grid;
+        gap: 0.4375rem;
+        width: max-content;
+        max-width: 14.75rem;
+        padding: 0.5625rem 0.75rem 0.625rem;
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius);
+        background: var(--raised);
+        box-shadow: var(--shadow);
+        font-size: 0.84rem;
+        animation: appear 120ms;
+      }
+      @keyframes appear {
+        from {
+          opacity: 0;
+        }
+      }
+      .row {
+        gap: 0.5rem;
+      }
+      .swatch {
+        width: 0.8125rem;
+        height: 0.8125rem;
+      }
+      b {
+        font: 600 0.98rem var(--serif);
+      }
+      img {
+        display: block;
+        width: 13.125rem;
+        max-width: 100%;
+        height: 6.5rem; /* also until it is here, so that the card keeps its place */
+        object-fit: cover;
+        border-radius: var(--radius-small);
+        background: var(--stage);
+      }
+      dl {
+        display: grid;
+        grid-template-columns: minmax(0, auto) minmax(0, 1.6fr);
+        gap: 2px 0.75rem;
+        margin: 0;
+      }
+      dt {
+        color: var(--ink-soft);
+      }
+      dd {
+        display: -webkit-box;
+        -webkit-box-orient: vertical;
+        -webkit-line-clamp: 2;
+        margin: 0;
+        overflow: hidden;
+        overflow-wrap: anywhere;
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.setAttribute("aria-hidden", "true");
+    addEventListener("keydown", this.on_key, { capture: true }); // whatever has the keyboard
+  }
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    removeEventListener("keydown", this.on_key, { capture: true });
+  }
+
+  private readonly on_key = ({ key }: KeyboardEvent): void => {
+    if (key === "Escape") this.session.hovered.end();
+  };
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const { layer, key } = session.hovered.shown ?? {};
+    const table = layer?.table === undefined ? null : session.tables.find(layer.table);
+    const record = table && key !== undefined ? session.tables.record(table.id, key) : null;
+    if (!layer || !table || !record) return html``;
+    const color = record_color(session.layers.palette(layer), record);
+    const picture = first_picture(table, record);
+    const told = telling_columns(table, record).slice(0, kMostLines);
+    return html`<section>
+      <div class="row">
+        ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
+        <b class="ellipsis">${session.tables.title(table, record) || texts.tables.record(record.key)}</b>
+      </div>
+      ${picture === null ? nothing : html`<img src=${session.api.attachment_url(picture, 256)} alt="" />`}
+      ${
+        told.length === 0
+          ? nothing
+          : html`<dl>
+            ${told.map(
+              (column) =>
+                html`<dt class="ellipsis">${label_of(column)}</dt>
+                  <dd>${shown_value(session, column, record.values[column.slug] ?? null)}${column.unit ? ` ${column.unit}` : nothing}</dd>`,
+            )}
+          </dl>`
+      }
+    </section>`;
+  }
+
+  /** Only here is it known how large the card is. */
+  override updated(): void {
+    const { section_: section } = this;
+    const { at } = this.session.pointer;
+    if (!section || !at) return;
+    const { scale } = this.session.view;
+    const size = { width: section.offsetWidth, height: section.offsetHeight };
+    const place = beside(
+      [at.x / scale, at.y / scale],
+      size,
+      { width: this.clientWidth, height: this.clientHeight },
+      kGap_px,
+    );
+    section.style.visibility = place ? "visible" : "hidden";
+    section.style.left = `${place?.left ?? 0}px`;
+    section.style.top = `${place?.top ?? 0}px`;
+  }
+}

@@ -1,0 +1,102 @@
+// <strata-marks-field>: the lines or points of a record in its form: those on this model one by
+// one, those on others as a number. New ones are drawn on the model: it asks for that with `draw`.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { label_of } from "../../domain/cells";
+import { describe_mark, type MarkKind } from "../../domain/marks";
+import type { Column, Mark } from "../../core/protocol.gen";
+import { icon } from "../../ui/icons";
+import type { ModelSession } from "../../shell/model-session";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+const words = texts.marks;
+
+@customElement("strata-marks-field")
+export class StrataMarksField extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  /** Of lines or of points. */
+  @property({ attribute: false }) column!: Column;
+  @property({ attribute: false }) marks: readonly Mark[] = [];
+
+  static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+      }
+      .field {
+        display: flex;
+        flex-wrap: wrap;
+        align-items: center;
+        gap: 0.5rem;
+        padding: 0.5rem;
+        border: var(--edge) solid var(--line-strong);
+        border-radius: var(--radius-small);
+      }
+      .mark {
+        display: inline-flex;
+        align-items: center;
+        gap: 0.375rem;
+        padding-left: 0.5625rem;
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius-small);
+        background: var(--raised);
+        font-size: 0.9rem;
+      }
+      .mark svg.glyph {
+        width: 1rem;
+        height: 1rem;
+      }
+      .mark button.icon {
+        width: 1.875rem;
+        min-height: 1.875rem;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { column, marks, session } = this;
+    const here = marks.filter((mark) => mark.model === session.model?.id);
+    const elsewhere = marks.length - here.length;
+    return html`<div class="field" role="group" aria-label=${label_of(column)}>
+      ${here.map((mark) => this.mark(mark))}
+      ${elsewhere > 0 ? html`<span class="hint">${words.and_elsewhere(elsewhere)}</span>` : nothing}
+      <button type="button" title=${words.draw_hint} @click=${this.on_draw}>${icon(this.kind)}${words.draw}</button>
+    </div>`;
+  }
+
+  private get kind(): MarkKind {
+    return this.column.kind === "line" ? "line" : "point";
+  }
+
+  private mark(mark: Mark): TemplateResult {
+    const name = this.session.model ? describe_mark(mark, this.kind, this.session.model) : "";
+    return html`<span class="mark numeric"
+      >${icon(this.kind)}${name}<button
+        type="button"
+        class="icon quiet"
+        aria-label=${words.remove(name)}
+        title=${words.remove(name)}
+        @click=${() => (this.marks = this.marks.filter((each) => each !== mark))}
+      >
+        ${icon("close")}
+      </button></span
+    >`;
+  }
+
+  private readonly on_draw = (): void => {
+    this.dispatchEvent(
+      new CustomEvent<Column>("draw", { detail: this.column, bubbles: true, composed: true }),
+    );
+  };
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "strata-marks-field": StrataMarksField;
+  }
+}

@@ -1,0 +1,238 @@
+// <strata-photos-dialog>: many files at once, whose names say which records they are of: first
+// which go where, then they are sent.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { ApiError } from "../../net/api";
+import { label_column, label_of } from "../../domain/cells";
+import type { AttachmentMatches, Column, MatchedName } from "../../core/protocol.gen";
+import "../../ui/dialog";
+import type { ModelSession } from "../../shell/model-session";
+import { notices } from "../../ui/notices";
+import { choices_styles, shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+const words = texts.files;
+const kAsk_ms = 250; // after the last letter of the pattern
+const kMostShown = 200;
+
+/**
+ * What the names of these files may be made of: words between lines and points, the first of which
+ * is the record's.
+ */
+export function likely_pattern(names: readonly string[], column: string): string {
+  const [first = ""] = names;
+  const dot = first.lastIndexOf(".");
+  const [stem, ending] = dot > 0 ? [first.slice(0, dot), first.slice(dot)] : [first, ""];
+  const parts = stem.split("_");
+  const others = ["view", "n"];
+  const rest = parts.slice(1).map((_, index) => `{${others[index] ?? `word${index + 1}`}}`);
+  return `${[`{${column}}`, ...rest].join("_")}${names.every((name) => name.endsWith(ending)) ? ending : ".{type}"}`;
+}
+
+@customElement("strata-photos-dialog")
+export class StrataPhotosDialog extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  /** Id. */
+  @property({ attribute: false }) table = 0;
+  @property({ attribute: false }) files: File[] = [];
+  @state() private column_ = ""; // whose values stand in the names
+  @state() private target_ = ""; // where the files go
+  @state() private pattern_ = "";
+  @state() private matches_: AttachmentMatches | null = null;
+  @state() private problem_ = "";
+  @state() private sent_ = 0;
+  @state() private busy_ = false;
+  private timer_: ReturnType<typeof setTimeout> | null = null;
+  private asked_ = 0;
+  private stopped_ = false;
+
+  static override styles = [
+    shared_styles,
+    choices_styles,
+    css`
+      .found {
+        max-height: 300px;
+        overflow: auto;
+      }
+      table {
+        width: 100%;
+        border-collapse: collapse;
+        font-size: 0.88rem;
+      }
+      th {
+        padding-top: 8px;
+        text-align: left;
+        font-size: 0.8rem;
+        color: var(--ink-soft);
+      }
+      td {
+        padding: 4px 8px 4px 0;
+        border-bottom: var(--edge) solid var(--line);
+        overflow-wrap: anywhere;
+      }
+      td.left {
+        color: var(--ink-soft);
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    const columns = this.columns;
+    const table = this.session.tables.find(this.table);
+    const title = table ? label_column(table) : null;
+    // files are not called by terms
+    this.column_ = title && title.kind !== "term" ? title.slug : "key";
+    this.target_ = (columns.find(({ kind }) => kind === "picture") ?? columns[0])?.slug ?? "";
+    this.pattern_ = likely_pattern(this.names, this.column_);
+    this.problem_ = this.target_ === "" ? words.no_column : "";
+    if (this.target_ !== "") void this.match();
+  }
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.stopped_ = true;
+    if (this.timer_) clearTimeout(this.timer_);
+  }
+
+  private get names(): string[] {
+    return this.files.map(({ name }) => name);
+  }
+  private get columns(): Column[] {
+    return (
+      this.session.tables
+        .find(this.table)
+        ?.columns.filter(({ kind }) => kind === "picture" || kind === "document") ?? []
+    );
+  }
+
+  override render(): TemplateResult {
+    const { matches_: matches, session } = this;
+    const named =
+      session.tables
+        .find(this.table)
+        ?.columns.filter(
+          ({ kind }) => kind === "text" || kind === "integer" || kind === "enumeration",
+        ) ?? [];
+    const ready = matches !== null && matches.matched.length > 0 && !this.busy_;
+    return html`<strata-dialog wide heading=${words.folder_title(this.files.length)} way_out=${texts.cancel} @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}>
+      <div class="choices" ?inert=${this.busy_}>
+        <label
+          ><span class="caption">${words.by_column}</span>
+          <select @change=${(event: Event) => this.choose_column((event.target as HTMLSelectElement).value)}>
+            <option value="key" ?selected=${this.column_ === "key"}>${texts.tables.key}</option>
+            ${named.map((column) => html`<option value=${column.slug} ?selected=${column.slug === this.column_}>${label_of(column)}</option>`)}
+          </select></label
+        >
+        <label
+          ><span class="caption">${words.into}</span>
+          <select @change=${(event: Event) => (this.target_ = (event.target as HTMLSelectElement).value)}>
+            ${this.columns.map((column) => html`<option value=${column.slug} ?selected=${column.slug === this.target_}>${label_of(column)}</option>`)}
+          </select></label
+        >
+        <label class="full"
+          ><span class="caption">${words.pattern}</span>
+          <input type="text" spellcheck="false" maxlength="200" .value=${this.pattern_} @input=${(event: Event) => this.set_pattern((event.target as HTMLInputElement).value)} />
+          <span class="hint">${words.pattern_hint}</span></label
+        >
+      </div>
+      <p class="error" role="alert" ?hidden=${!this.problem_}>${this.problem_}</p>
+      ${matches ? this.found(matches) : nothing}
+      ${this.busy_ ? html`<p class="hint" role="status">${words.sending(this.sent_ + 1, matches?.matched.length ?? 0)}</p>` : nothing}
+      <button slot="actions" class="primary" ?disabled=${!ready} @click=${() => void this.send()}>${words.send(matches?.matched.length ?? 0)}</button>
+    </strata-dialog>`;
+  }
+
+  private found({ matched, unmatched, duplicate }: AttachmentMatches): TemplateResult {
+    const rows = (
+      title: string,
+      names: readonly MatchedName[],
+      tell: (name: MatchedName) => unknown,
+    ): TemplateResult | typeof nothing =>
+      names.length === 0
+        ? nothing
+        : html`<tbody>
+            <tr>
+              <th colspan="2">${title}</th>
+            </tr>
+            ${names.slice(0, kMostShown).map((each) => html`<tr><td>${each.name}</td><td class="left">${tell(each)}</td></tr>`)}
+            ${names.length > kMostShown ? html`<tr><td colspan="2" class="left">${words.more(names.length - kMostShown)}</td></tr>` : nothing}
+          </tbody>`;
+    const record = ({ key = 0 }: MatchedName): string =>
+      this.session.tables.label(this.table, key) ?? texts.tables.record(key);
+    return html`<div class="found">
+      <table>
+        ${rows(words.matched(matched.length), matched, record)} ${rows(words.duplicates(duplicate.length), duplicate, ({ reason = "twice" }) => words.reasons[reason])}
+        ${rows(words.unmatched(unmatched.length), unmatched, ({ reason = "pattern" }) => words.reasons[reason])}
+      </table>
+    </div>`;
+  }
+
+  private choose_column(slug: string): void {
+    this.pattern_ = this.pattern_.replace(`{${this.column_}}`, `{${slug}}`);
+    this.column_ = slug;
+    void this.match();
+  }
+  private set_pattern(pattern: string): void {
+    this.pattern_ = pattern;
+    if (this.timer_) clearTimeout(this.timer_);
+    this.timer_ = setTimeout(() => void this.match(), kAsk_ms);
+  }
+
+  /** The newest question wins. */
+  private async match(): Promise<void> {
+    const asked = ++this.asked_;
+    const { pattern_: pattern, column_: column, names } = this;
+    try {
+      const matches = await this.session.api.match_attachments(this.table, {
+        pattern,
+        column,
+        names,
+      });
+      if (asked !== this.asked_) return;
+      this.matches_ = matches;
+      this.problem_ = "";
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      if (asked !== this.asked_) return;
+      this.matches_ = null;
+      this.problem_ = error.message;
+    }
+  }
+
+  /**
+   * One after the other: what was sent stays if one is refused, and a second try finds it there.
+   */
+  private async send(): Promise<void> {
+    const { matches_: matches, target_: target } = this;
+    if (!matches || this.busy_) return;
+    this.busy_ = true;
+    this.sent_ = 0;
+    this.problem_ = "";
+    try {
+      for (const { name, key } of matches.matched) {
+        if (this.stopped_) break;
+        const file = this.files.find((each) => each.name === name);
+        if (!file || key === undefined) continue;
+        await this.session.api.attach(this.table, key, target, file);
+        this.sent_ += 1;
+      }
+      notices.show("success", words.sent(this.sent_));
+      this.dispatchEvent(new CustomEvent("closed"));
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      const { message } = error;
+      await this.match();
+      this.problem_ = message;
+    } finally {
+      this.busy_ = false;
+      this.session.tables.view?.rows.refresh();
+    }
+  }
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "strata-photos-dialog": StrataPhotosDialog;
+  }
+}

@@ -1,0 +1,19 @@
+// A press sets a point on the surface there.
+
+import type { PointerSample } from "../../ui/input";
+import type { Tool } from "../../tools/tool";
+
+export class PointTool implements Tool {
+  readonly name = "point";
+
+  constructor(private readonly set_at_: (sample: PointerSample) => void) {}
+
+  activate(): void {}
+  deactivate(): void {}
+  down(sample: PointerSample): void {
+    this.set_at_(sample);
+  }
+  move(): void {}
+  up(): void {}
+  cancel(): void {}
+}

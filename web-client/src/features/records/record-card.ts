@@ -1,0 +1,137 @@
+// <strata-record-card>: the record that was taken from the surface: what it is called, what is
+// known of it, and its area.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { first_picture, label_of, telling_columns } from "../../domain/cells";
+import { css_color, record_color } from "../../domain/palette";
+import type { Table, TableRecord } from "../../core/protocol.gen";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import type { ModelSession } from "../../shell/model-session";
+import { measures_of } from "./record-measures";
+import { shown_value } from "./shown-value";
+import { shared_styles } from "../../ui/styles";
+import { styled } from "../../ui/styled";
+import type { TablePanelRequest } from "../tables/table-panel";
+import { texts } from "../../texts";
+
+const kMostLines = 6;
+
+@customElement("strata-record-card")
+export class StrataRecordCard extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+        width: min(18.75rem, 100%);
+        pointer-events: auto;
+      }
+      section {
+        display: grid;
+        gap: 0.5rem;
+        padding: 0.5rem 0.5rem 0.625rem 0.8125rem;
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius);
+        background: var(--raised);
+        box-shadow: var(--shadow);
+        font-size: 0.88rem;
+      }
+      .row b {
+        font: 600 1.02rem var(--serif);
+      }
+      .row button.icon {
+        width: 1.75rem;
+        min-height: 1.75rem;
+      }
+      .picture img {
+        display: block;
+        width: 100%;
+        max-height: min(11.25rem, 14dvh);
+        object-fit: cover;
+        border-radius: var(--radius-small);
+      }
+      dl {
+        display: grid;
+        grid-template-columns: auto minmax(0, 1fr);
+        gap: 3px 0.875rem;
+        margin: 0;
+        max-height: 8.125rem;
+        overflow: auto;
+      }
+      dt {
+        color: var(--ink-soft);
+      }
+      dd {
+        margin: 0;
+        overflow-wrap: anywhere;
+      }
+      .row button {
+        min-height: 1.875rem;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const words = texts.tables;
+    const { card } = session.tables;
+    const { table: id } = card?.layer ?? {};
+    const table = id === undefined ? null : session.tables.find(id);
+    if (!card || !table || !card.record) return html``;
+    const { layer, key, record } = card;
+    const color = record_color(session.layers.palette(layer), record);
+    const request = (detail: TablePanelRequest): boolean =>
+      this.dispatchEvent(new CustomEvent("request", { detail }));
+    return html`<section aria-label=${words.card}>
+      <div class="row">
+        ${color ? html`<span class="swatch" ${styled({ background: css_color(color) })}></span>` : nothing}
+        <b class="grow ellipsis">${session.tables.label(table.id, key) ?? words.record(key)}</b>
+        <button class="icon quiet" aria-label=${words.card_close} title=${words.card_close} @click=${() => session.tables.close_card()}>${icon("close")}</button>
+      </div>
+      ${this.picture(table, record)} ${this.lines(table, record)}
+      <div class="row">
+        ${session.can_paint ? html`<button @click=${() => request({ dialog: "record", layer, key })}>${words.edit}</button>` : nothing}
+        <button @click=${() => session.tables.show_row(layer, key)}>${words.show_row}</button>
+      </div>
+    </section>`;
+  }
+
+  private picture(table: Table, record: TableRecord): TemplateResult | typeof nothing {
+    const { api } = this.session;
+    const id = first_picture(table, record);
+    if (id === null) return nothing;
+    return html`<a class="picture" href=${api.attachment_url(id)} target="_blank" rel="noopener">
+      <img src=${api.attachment_url(id, 512)} alt=${texts.files.file(id)} />
+    </a>`;
+  }
+
+  /** The first columns that say something; what the record is called is its heading. */
+  private lines(table: Table, record: TableRecord): TemplateResult {
+    const words = texts.tables;
+    return html`<dl>
+      <dt>${words.key}</dt>
+      <dd class="numeric">${record.key}</dd>
+      ${telling_columns(table, record)
+        .slice(0, kMostLines)
+        .map(
+          (column) =>
+            html`<dt>${label_of(column)}</dt>
+            <dd>${shown_value(this.session, column, record.values[column.slug] ?? null)}${column.unit ? ` ${column.unit}` : nothing}</dd>`,
+        )}
+      ${measures_of(table).map(
+        ({ label, text }) =>
+          html`<dt>${label}</dt>
+            <dd class="numeric">${text(record) || "–"}</dd>`,
+      )}
+    </dl>`;
+  }
+}

@@ -1,0 +1,321 @@
+// <strata-record-chooser>: one or several records of a table, found by what they are called. Terms
+// stand as in their list, each below the one above it.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { live } from "lit/directives/live.js";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import { arrow_step } from "../../shell/keyboard";
+import type { ModelSession } from "../../shell/model-session";
+import { shared_styles } from "../../ui/styles";
+import { styled } from "../../ui/styled";
+import { terms_with } from "../tables/term-rows";
+import type { TermTree } from "../tables/term-tree";
+import { texts } from "../../texts";
+
+/** One that may be chosen. */
+interface Option {
+  key: number;
+  label: string;
+  depth: number; // in a tree
+  match: boolean; // false: it is shown for what is below it
+}
+
+const kIndent_px = 16;
+
+@customElement("strata-record-chooser")
+export class StrataRecordChooser extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  /** Id of the table. */
+  @property({ attribute: false }) table = 0;
+  @property({ attribute: false }) chosen: readonly number[] = [];
+  @property({ type: Boolean }) multiple = false;
+  @property() label = "";
+  @property({ type: Boolean }) invalid = false;
+  /** Not to be chosen. */
+  @property({ attribute: false }) without: number | null = null;
+  @state() private text_ = "";
+  @state() private open_ = false;
+  @state() private at_ = -1; // in the list
+  @query("input") private input_!: HTMLInputElement;
+  @query(".list") private list_!: HTMLElement;
+
+  static override shadowRootOptions = { ...LitElement.shadowRootOptions, delegatesFocus: true };
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+        min-width: 0;
+      }
+      .field {
+        display: flex;
+        flex-wrap: wrap;
+        align-items: center;
+        gap: 4px;
+        min-height: 38px;
+        padding: 3px 4px;
+        border: var(--edge) solid var(--line-strong);
+        border-radius: var(--radius-small);
+        background: var(--raised);
+      }
+      .field:focus-within {
+        outline: var(--focus);
+      }
+      .field.invalid {
+        border-color: var(--danger);
+      }
+      :host(.in-cell) .field {
+        min-height: 28px;
+        padding: 1px 3px;
+      }
+      input[type="text"] {
+        flex: 1;
+        width: 70px;
+        min-width: 70px;
+        min-height: 24px;
+        padding: 0 5px;
+        border: 0;
+        outline: 0;
+        background: none;
+      }
+      .chip {
+        display: inline-flex;
+        align-items: center;
+        max-width: 100%;
+        min-width: 0;
+        padding-left: 8px;
+        border-radius: 99px;
+        background: var(--accent-soft);
+        font-size: 0.86rem;
+      }
+      .chip .ellipsis {
+        min-width: 0;
+      }
+      .chip button {
+        display: grid;
+        place-items: center;
+        flex: none;
+        width: 24px;
+        min-height: 24px;
+        padding: 0;
+        border: 0;
+        background: none;
+      }
+      .chip svg.glyph {
+        width: 13px;
+        height: 13px;
+      }
+      .list {
+        position: fixed;
+        inset: auto;
+        margin: 0;
+        padding: 4px;
+        max-height: 260px;
+        overflow: auto;
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius-small);
+        background: var(--raised);
+        color: var(--ink);
+        box-shadow: var(--shadow);
+      }
+      .option {
+        display: flex;
+        align-items: center;
+        gap: 8px;
+        min-height: 30px;
+        padding: 2px 8px;
+        border-radius: 4px;
+        cursor: pointer;
+        font-size: 0.92rem;
+      }
+      .option.at {
+        background: var(--accent-soft);
+      }
+      .option .key {
+        margin-left: auto;
+        color: var(--ink-soft);
+        font-size: 0.82rem;
+      }
+      .option.above-found {
+        color: var(--ink-soft);
+      }
+      .option svg.glyph {
+        width: 15px;
+        height: 15px;
+        color: var(--accent);
+      }
+      .list .hint {
+        padding: 4px 8px;
+      }
+    `,
+  ];
+
+  /** Null: the table is no list of terms, or its terms are too many to be here. */
+  private get terms(): TermTree | null {
+    const terms = this.session.tables.terms(this.table);
+    terms?.want();
+    return terms?.loaded && terms.terms.length === terms.total ? terms : null;
+  }
+
+  private get found(): Option[] {
+    const terms = this.terms;
+    const found = terms
+      ? terms_with(terms.terms, this.text_).map(({ key, name, depth, match }) => ({
+          key,
+          label: name,
+          depth,
+          match,
+        }))
+      : (this.session.tables.names(this.table)?.search(this.text_) ?? []).map((named) => ({
+          ...named,
+          depth: 0,
+          match: true,
+        }));
+    return found.filter(({ key }) => key !== this.without);
+  }
+
+  /** Records may come after what was typed: then Enter takes the first that fits. */
+  override willUpdate(): void {
+    if (this.open_ && this.text_ !== "" && this.at_ < 0)
+      this.at_ = this.found.findIndex(({ match }) => match);
+  }
+
+  override render(): TemplateResult {
+    const words = texts.tables;
+    const found = this.open_ ? this.found : [];
+    const names = this.session.tables.names(this.table);
+    const tree = this.terms !== null;
+    return html`<div class="field ${this.invalid ? "invalid" : ""}" @click=${this.on_field}>
+        ${this.chosen.map(
+          (key) =>
+            html`<span class="chip"
+              ><span class="ellipsis">${this.session.tables.label(this.table, key) ?? words.record(key)}</span>
+              <button type="button" tabindex="-1" aria-label=${words.take_out(this.name_of(key))} @click=${() => this.toggle(key)}>${icon("close")}</button></span
+            >`,
+        )}
+        <input
+          type="text"
+          role="combobox"
+          aria-label=${this.label}
+          aria-expanded=${this.open_}
+          aria-controls="list"
+          aria-autocomplete="list"
+          aria-activedescendant=${this.at_ >= 0 && found[this.at_] ? `option-${this.at_}` : nothing}
+          autocomplete="off"
+          placeholder=${this.chosen.length > 0 ? "" : this.session.tables.terms(this.table) ? texts.terms.search : words.search_records}
+          .value=${live(this.text_)}
+          @input=${this.on_input}
+          @blur=${this.hide}
+          @keydown=${this.on_key}
+        />
+      </div>
+      <div class="list" id="list" popover="manual" role="listbox" aria-label=${this.label} aria-multiselectable=${this.multiple} @pointerdown=${keep_focus}>
+        ${found.map(
+          ({ key, label, depth, match }, index) =>
+            html`<div
+              class="option ${index === this.at_ ? "at" : ""} ${match ? "" : "above-found"}"
+              id="option-${index}"
+              role="option"
+              aria-selected=${this.chosen.includes(key)}
+              ${styled({ "padding-left": depth > 0 ? `${8 + depth * kIndent_px}px` : null })}
+              @click=${() => this.take(key)}
+            >
+              <span class="ellipsis">${label || words.record(key)}</span>
+              ${this.chosen.includes(key) ? icon("check") : nothing}${tree ? nothing : html`<span class="key numeric">${key}</span>`}
+            </div>`,
+        )}
+        ${found.length === 0 ? html`<p class="hint">${names && !names.loading ? words.none_found : texts.loading}</p>` : nothing}
+      </div>`;
+  }
+
+  private name_of(key: number): string {
+    return this.session.tables.label(this.table, key) ?? texts.tables.record(key);
+  }
+
+  private on_input(): void {
+    this.text_ = this.input_.value;
+    this.at_ = this.text_ === "" ? -1 : this.found.findIndex(({ match }) => match);
+    this.show();
+  }
+
+  /** The list opens where somebody asks for it, and not because the form begins here. */
+  private on_field(event: Event): void {
+    const on_chip = event.composedPath().some((each) => each instanceof HTMLButtonElement);
+    this.input_.focus();
+    if (!on_chip) this.show();
+  }
+
+  /** Somebody begins to choose. */
+  open(): void {
+    this.show();
+  }
+
+  private readonly show = (): void => {
+    this.open_ = true;
+    if (!this.list_.matches(":popover-open")) this.list_.showPopover();
+    const anchor = this.getBoundingClientRect();
+    const { style } = this.list_;
+    style.width = `${Math.max(220, anchor.width)}px`;
+    style.left = `${Math.max(8, Math.min(anchor.left, innerWidth - Math.max(220, anchor.width) - 8))}px`;
+    const below = innerHeight - anchor.bottom > 280 || anchor.top < 280;
+    style.top = below ? `${anchor.bottom + 3}px` : "auto";
+    style.bottom = below ? "auto" : `${innerHeight - anchor.top + 3}px`;
+  };
+
+  private readonly hide = (): void => {
+    this.open_ = false;
+    this.at_ = -1;
+    if (this.list_.matches(":popover-open")) this.list_.hidePopover();
+  };
+
+  /** Keys that it has no use for go on: Enter with nothing found takes the whole field. */
+  private on_key(event: KeyboardEvent): void {
+    const { found } = this;
+    if (event.key === "ArrowDown" || event.key === "ArrowUp") {
+      this.show();
+      this.at_ =
+        this.at_ < 0
+          ? event.key === "ArrowDown"
+            ? 0
+            : found.length - 1
+          : (arrow_step(event.key, this.at_, found.length) ?? -1);
+      void this.updateComplete.then(() =>
+        this.list_.querySelector(".at")?.scrollIntoView({ block: "nearest" }),
+      );
+    } else if (event.key === "Enter" && this.open_ && found[this.at_]) {
+      this.take(found[this.at_]!.key);
+    } else if (event.key === "Backspace" && this.text_ === "" && this.chosen.length > 0) {
+      this.toggle(this.chosen[this.chosen.length - 1]!);
+    } else {
+      return;
+    }
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  private take(key: number): void {
+    this.text_ = "";
+    this.at_ = -1;
+    this.toggle(key);
+  }
+
+  private toggle(key: number): void {
+    const had = this.chosen.includes(key);
+    const others = this.multiple ? this.chosen.filter((each) => each !== key) : [];
+    this.chosen = had ? others : [...others, key];
+    this.dispatchEvent(new CustomEvent("chosen", { detail: this.chosen }));
+    if (!this.multiple) this.hide();
+    else void this.updateComplete.then(() => this.open_ && this.show()); // the field may have grown
+  }
+}
+
+/** A press on the list leaves the focus in the field. */
+const keep_focus = (event: Event): void => event.preventDefault();

@@ -1,0 +1,230 @@
+// <strata-review-panel>: what of the model's layers waits for review, and for curators what becomes
+// of it.
+
+import { css, html, nothing, type TemplateResult } from "lit";
+import { customElement, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { label_of } from "../../domain/cells";
+import { format_count } from "../../core/locale";
+import { format_area } from "../../domain/measure";
+import { called } from "../../domain/people";
+import type { Review, WaitingStroke } from "../../core/protocol.gen";
+import type { Layer } from "../../core/types";
+import { FoldingPanel, folding_styles } from "../../ui/folding-panel";
+import { icon } from "../../ui/icons";
+import { panel_line_styles } from "../../ui/panel-styles";
+import { person_mark, person_mark_styles } from "../../ui/person-mark";
+import type { Waiting } from "./reviews";
+import { texts } from "../../texts";
+import { told_time } from "../../domain/times";
+
+const words = texts.review;
+const kMostReason = 1000;
+
+/** Which strokes are being rejected, until a reason is given. */
+interface Rejecting {
+  layer: number;
+  what: Omit<Review, "decision" | "reason">;
+}
+
+const same = (a: Rejecting | null, layer: Layer, what: Rejecting["what"]): boolean =>
+  a !== null && a.layer === layer.id && JSON.stringify(a.what) === JSON.stringify(what);
+
+@customElement("strata-review-panel")
+export class StrataReviewPanel extends FoldingPanel {
+  protected readonly heading = words.title;
+  @state() private rejecting_: Rejecting | null = null;
+  @state() private busy_ = false;
+  @state() private reason_ = "";
+
+  constructor() {
+    super("review");
+  }
+
+  static override styles = [
+    folding_styles,
+    panel_line_styles,
+    person_mark_styles,
+    css`
+      h3 {
+        flex: 1;
+        min-width: 0;
+        margin: 0;
+        overflow-wrap: anywhere;
+        font-size: 0.88rem;
+      }
+      .layer {
+        display: flex;
+        flex-wrap: wrap;
+        align-items: center;
+        gap: 0.375rem;
+        margin-top: 0.375rem;
+      }
+      li {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr) auto;
+        align-items: center;
+      }
+      .decide {
+        display: flex;
+      }
+      .people {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 2px 0.875rem;
+      }
+      form {
+        grid-column: 1 / -1;
+        display: grid;
+        gap: 0.5rem;
+        padding: 4px 0.5rem 0.625rem;
+      }
+      form .row {
+        justify-content: end;
+      }
+      .what {
+        overflow-wrap: anywhere;
+      }
+      .more-of-it {
+        grid-column: 2 / 4;
+      }
+    `,
+  ];
+
+  protected override beside_heading(): unknown {
+    const { count } = this.session.reviews;
+    return count > 0
+      ? html`<span class="number numeric" role="img" aria-label=${words.waiting(count)}>${format_count(count)}</span>`
+      : nothing;
+  }
+
+  protected content(): TemplateResult {
+    const { reviews, can_curate } = this.session;
+    return html`${
+      reviews.failed
+        ? html`<p class="error" role="alert">${words.failed}</p>
+          <button @click=${() => void reviews.load_all()}>${texts.try_again}</button>`
+        : nothing
+    }
+    ${reviews.count === 0 && !reviews.failed ? html`<p class="hint">${can_curate ? words.none : words.none_of_you}</p>` : nothing}
+    ${reviews.waiting.map((waiting) => this.layer(waiting))}`;
+  }
+
+  private layer({ layer, queue }: Waiting): TemplateResult {
+    const { can_curate } = this.session;
+    const hidden = queue.total - queue.strokes.length;
+    const all: Rejecting["what"] = { all: true };
+    return html`<div class="layer">
+        <h3>${label_of(layer)}</h3>
+        ${
+          can_curate
+            ? html`<button class="quiet" ?disabled=${this.busy_} @click=${() => void this.decide(layer, { decision: "accept", ...all })}>${words.accept_all}</button>
+              <button class="quiet" ?disabled=${this.busy_} @click=${() => this.ask(layer, all)}>${words.reject_all}</button>`
+            : nothing
+        }
+      </div>
+      ${same(this.rejecting_, layer, all) ? this.reason_form(layer, all) : nothing}
+      ${
+        can_curate && queue.people.length > 1
+          ? html`<div class="people">
+            ${queue.people.map(
+              (person) =>
+                html`<button class="link" ?disabled=${this.busy_} @click=${() => void this.decide(layer, { decision: "accept", user: person.user })}>
+                  ${words.accept_person(called(person), person.strokes)}
+                </button>`,
+            )}
+          </div>`
+          : nothing
+      }
+      <ul aria-label=${label_of(layer)}>
+        ${repeat(
+          queue.strokes,
+          ({ sequence }) => sequence,
+          (stroke) => this.stroke(layer, stroke),
+        )}
+      </ul>
+      ${hidden > 0 ? html`<p class="hint">${words.more(hidden)}</p>` : nothing}`;
+  }
+
+  private stroke(layer: Layer, stroke: WaitingStroke): TemplateResult {
+    const { reviews, can_curate } = this.session;
+    const what: Rejecting["what"] = { edits: [stroke.sequence] };
+    const named = words.stroke(words.ops[stroke.op], called(stroke));
+    return html`<li>
+      <button class="quiet line" title=${words.look} data-waiting=${stroke.sequence} @click=${() => reviews.go_to(layer, stroke)}>
+        ${person_mark(stroke)}
+        <span class="what"><b>${called(stroke)}</b> ${words.ops[stroke.op]}</span>
+        <span></span>
+        <span class="more-of-it hint">${[told_time(stroke.time), format_area(stroke.area_m2)].join(" · ")}</span>
+      </button>
+      ${
+        can_curate
+          ? html`<span class="decide">
+            <button
+              class="icon quiet"
+              ?disabled=${this.busy_}
+              aria-label="${words.accept}: ${named}"
+              title=${words.accept}
+              @click=${() => void this.decide(layer, { decision: "accept", ...what })}
+            >
+              ${icon("check")}
+            </button>
+            <button class="icon quiet" ?disabled=${this.busy_} aria-label="${words.reject}: ${named}" title=${words.reject} @click=${() => this.ask(layer, what)}>
+              ${icon("close")}
+            </button>
+          </span>`
+          : nothing
+      }
+      ${same(this.rejecting_, layer, what) ? this.reason_form(layer, what) : nothing}
+    </li>`;
+  }
+
+  private reason_form(layer: Layer, what: Rejecting["what"]): TemplateResult {
+    const send = (event: Event): void => {
+      event.preventDefault();
+      const reason = this.reason_.trim();
+      void this.decide(layer, { decision: "reject", ...what, ...(reason ? { reason } : {}) });
+    };
+    return html`<form @submit=${send} @keydown=${this.on_key}>
+      <label
+        >${words.reason}
+        <textarea
+          rows="2"
+          maxlength=${kMostReason}
+          .value=${this.reason_}
+          @input=${(event: Event) => (this.reason_ = (event.target as HTMLTextAreaElement).value)}
+        ></textarea>
+      </label>
+      <div class="row">
+        <button type="button" class="quiet" @click=${this.give_up}>${texts.cancel}</button>
+        <button type="submit" ?disabled=${this.busy_}>${words.reject}</button>
+      </div>
+    </form>`;
+  }
+
+  private async ask(layer: Layer, what: Rejecting["what"]): Promise<void> {
+    this.rejecting_ = { layer: layer.id, what };
+    this.reason_ = "";
+    await this.updateComplete;
+    this.renderRoot.querySelector("textarea")?.focus();
+  }
+
+  private readonly give_up = (): void => {
+    this.rejecting_ = null;
+  };
+
+  private readonly on_key = (event: KeyboardEvent): void => {
+    if (event.key !== "Escape") return;
+    event.stopPropagation();
+    this.give_up();
+  };
+
+  private async decide(layer: Layer, decision: Review): Promise<void> {
+    this.busy_ = true;
+    const done = await this.session.reviews.decide(layer, decision);
+    const { decision: _, reason: __, ...what } = decision;
+    if (done && decision.decision === "reject" && same(this.rejecting_, layer, what))
+      this.give_up();
+    this.busy_ = false;
+  }
+}

@@ -1,0 +1,137 @@
+// A tree of terms as rows from top to bottom, and how the keys of the keyboard go through it.
+
+import type { ListedTerm } from "../../core/protocol.gen";
+
+export interface TermRow {
+  term: ListedTerm;
+  /** Terms of this tree are below it. */
+  parent: boolean;
+  folded: boolean;
+  /** Its place among those of the same parent, from 1, and how many these are. */
+  place: number;
+  of: number;
+}
+
+const kMostUnfolded = 60; // terms of a tree that is shown whole at first
+
+/**
+ * Keys of the terms that are folded when a tree is shown first: of a long one all but those above
+ * `chosen`.
+ */
+export function folded_at_first(terms: readonly ListedTerm[], chosen: number): Set<number> {
+  const folded = new Set<number>();
+  if (terms.length <= kMostUnfolded) return folded;
+  terms.forEach((term, index) => {
+    if (has_below(terms, index)) folded.add(term.key);
+  });
+  for (const above of path_to(terms, chosen)) folded.delete(above.key);
+  return folded;
+}
+
+/** The terms above one, the topmost first. */
+export function path_to(terms: readonly ListedTerm[], key: number): ListedTerm[] {
+  const path: ListedTerm[] = [];
+  let index = terms.findIndex((term) => term.key === key);
+  for (let depth = terms[index]?.depth ?? 0; index >= 0 && depth > 0; --index) {
+    const term = terms[index]!;
+    if (term.depth < depth) {
+      path.unshift(term);
+      depth = term.depth;
+    }
+  }
+  return path;
+}
+
+const plain = (text: string): string => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
+
+/**
+ * Those that have all of the words in their names, whatever the case and the accents, with those
+ * above them, which do not `match`.
+ */
+export function terms_with(terms: readonly ListedTerm[], words: string): ListedTerm[] {
+  const wanted = plain(words)
+    .split(/\s+/)
+    .filter((word) => word !== "");
+  const matches = terms.map(({ name }) => wanted.every((word) => plain(name).includes(word)));
+  const shown = new Set<number>();
+  let depth = 0; // of what was shown below: who is above it is less deep
+  for (let index = terms.length - 1; index >= 0; --index) {
+    const term = terms[index]!;
+    if (matches[index] || term.depth < depth) {
+      shown.add(index);
+      depth = term.depth;
+    } else {
+      depth = Math.min(depth, term.depth);
+    }
+  }
+  return terms.flatMap((term, index) =>
+    shown.has(index) ? { ...term, match: matches[index]! } : [],
+  );
+}
+
+/** `terms`: each before those below it. */
+export function rows_of(terms: readonly ListedTerm[], folded: ReadonlySet<number>): TermRow[] {
+  const rows: TermRow[] = [];
+  let hidden_below = Infinity; // depth of the folded term that hides what comes
+  terms.forEach((term, index) => {
+    if (term.depth > hidden_below) return;
+    const parent = has_below(terms, index);
+    const row = { term, parent, folded: parent && folded.has(term.key), place: 0, of: 0 };
+    hidden_below = row.folded ? term.depth : Infinity;
+    rows.push(row);
+  });
+  number_siblings(rows);
+  return rows;
+}
+
+const has_below = (terms: readonly ListedTerm[], index: number): boolean =>
+  (terms[index + 1]?.depth ?? 0) > terms[index]!.depth;
+
+/** Rows of one parent stand at one depth, with nothing less deep between them. */
+function number_siblings(rows: readonly TermRow[]): void {
+  const open: TermRow[][] = []; // by depth: the siblings so far
+  const close = (depth: number): void => {
+    for (const siblings of open.splice(depth)) for (const row of siblings) row.of = siblings.length;
+  };
+  for (const row of rows) {
+    const { depth } = row.term;
+    close(depth + 1);
+    const siblings = (open[depth] ??= []);
+    siblings.push(row);
+    row.place = siblings.length;
+  }
+  close(0);
+}
+
+/**
+ * What a key does at a row (-1: at none): goes to another one, folds its term or unfolds it. Null:
+ * nothing, it is for others. `page`: rows in sight.
+ */
+export function tree_step(
+  key: string,
+  rows: readonly TermRow[],
+  at: number,
+  page: number,
+): { at: number } | { fold: boolean } | null {
+  const row = rows[at];
+  const by = { ArrowDown: 1, ArrowUp: -1, PageDown: page, PageUp: -page }[key];
+  if (by !== undefined) {
+    if (rows.length === 0) return null;
+    const from = row ? at : by > 0 ? -1 : rows.length;
+    return { at: Math.min(rows.length - 1, Math.max(0, from + by)) };
+  }
+  switch (key) {
+    case "ArrowRight":
+      if (!row?.parent) return null;
+      return row.folded ? { fold: false } : { at: at + 1 };
+    case "ArrowLeft": {
+      if (!row) return null;
+      if (row.parent && !row.folded) return { fold: true };
+      let above = at - 1;
+      while (above >= 0 && rows[above]!.term.depth >= row.term.depth) --above;
+      return above < 0 ? null : { at: above };
+    }
+    default:
+      return null;
+  }
+}

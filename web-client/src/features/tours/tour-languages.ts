@@ -1,0 +1,105 @@
+// <strata-tour-languages>: the languages of a tour, of which the first is that of who chooses none.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { kCommonLanguages, language_in_words } from "../../core/languages";
+import { compare_words } from "../../core/locale";
+import { kMostLanguages } from "../../domain/tours";
+import { add_from, add_from_styles } from "../../ui/add-from";
+import { icon } from "../../ui/icons";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+const words = texts.tours;
+const offered = kCommonLanguages
+  .map((tag) => ({ value: tag, name: language_in_words(tag) }))
+  .sort((a, b) => compare_words(a.name, b.name));
+
+@customElement("strata-tour-languages")
+export class StrataTourLanguages extends LitElement {
+  @property({ attribute: false }) languages: readonly string[] = [];
+
+  static override styles = [
+    shared_styles,
+    add_from_styles,
+    css`
+      :host {
+        display: grid;
+        gap: 0.375rem;
+      }
+      ul {
+        display: flex;
+        flex-wrap: wrap;
+        gap: 0.375rem;
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      li {
+        display: inline-flex;
+        align-items: center;
+        gap: 4px;
+        padding-left: 0.75rem;
+        border-radius: 99px;
+        background: var(--accent-soft);
+        font-size: 0.9rem;
+      }
+      li:only-child {
+        padding: 0.375rem 0.75rem;
+      }
+      li small {
+        color: var(--ink-soft);
+      }
+      li button.icon {
+        width: 1.875rem;
+        min-height: 1.875rem;
+        border-radius: 50%;
+      }
+      .add select {
+        flex: 0 1 15rem;
+      }
+      @media (pointer: coarse) {
+        li button.icon {
+          width: 2.5rem;
+          min-height: 2.5rem;
+        }
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { languages } = this;
+    const others = offered.filter(({ value }) => !languages.includes(value));
+    return html`<span class="caption" id="caption">${words.languages}</span>
+      <ul aria-labelledby="caption">
+        ${languages.map((tag, index) => this.chip(tag, index))}
+      </ul>
+      ${
+        languages.length < kMostLanguages
+          ? add_from(words.language_add, others, (tag) => this.put([...languages, tag]))
+          : nothing
+      }`;
+  }
+
+  private chip(tag: string, index: number): TemplateResult {
+    const name = language_in_words(tag);
+    if (this.languages.length === 1) return html`<li>${name}</li>`;
+    return html`<li>
+      ${name}
+      ${
+        index === 0
+          ? html`<small>${words.first_language}</small>`
+          : html`<button type="button" class="icon quiet" aria-label=${words.make_first(name)} title=${words.make_first(name)} @click=${() => this.put([tag, ...this.languages.filter((each) => each !== tag)])}>
+            ${icon("up")}
+          </button>`
+      }
+      <button type="button" class="icon quiet" aria-label=${words.language_remove(name)} title=${words.language_remove(name)} @click=${() => this.dispatchEvent(new CustomEvent<string>("remove", { detail: tag }))}>
+        ${icon("close")}
+      </button>
+    </li>`;
+  }
+
+  private put(languages: readonly string[]): void {
+    this.dispatchEvent(new CustomEvent<readonly string[]>("chosen", { detail: languages }));
+  }
+}

@@ -1,0 +1,105 @@
+// <strata-tour-list>: the tours of the model, for those who make them; part of the panel of the
+// view, below the views that tours are made of.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import type { TourEntry } from "../../core/protocol.gen";
+import { ask } from "../../ui/dialog";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import "../../ui/menu";
+import type { ModelSession } from "../../shell/model-session";
+import { notices } from "../../ui/notices";
+import { list_head_styles, list_row_styles } from "../../ui/panel-styles";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+
+/** The tour's editor (without `tour`, of a new one), or its links for kiosks. */
+export type TourRequest =
+  { dialog: "tour"; tour: TourEntry | null } | { dialog: "kiosks"; tour: TourEntry };
+
+const words = texts.tours;
+
+@customElement("strata-tour-list")
+export class StrataTourList extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    list_head_styles,
+    list_row_styles,
+    css`
+      button.open {
+        gap: 1px;
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    void this.session.tours.load();
+  }
+
+  override render(): TemplateResult {
+    return html`<div class="row">
+        <h3>${words.title}</h3>
+        <button class="quiet" @click=${() => this.request({ dialog: "tour", tour: null })}>${icon("plus")}${words.new}</button>
+      </div>
+      ${this.list()}`;
+  }
+
+  private list(): TemplateResult {
+    const { tours } = this.session;
+    if (tours.failed) {
+      return html`<p class="error" role="alert">${words.failed}</p>
+        <div><button @click=${() => void tours.load()}>${texts.try_again}</button></div>`;
+    }
+    if (!tours.loaded) return html`<p class="hint">${texts.loading}</p>`;
+    if (tours.all.length === 0) return html`<p class="hint">${words.none}</p>`;
+    return html`<ul>
+      ${repeat(
+        tours.all,
+        ({ id }) => id,
+        (tour) => this.row(tour),
+      )}
+    </ul>`;
+  }
+
+  private row(tour: TourEntry): TemplateResult {
+    return html`<li>
+      <button class="quiet open" title=${tour.text || nothing} @click=${() => this.request({ dialog: "tour", tour })}>
+        <b>${tour.name}</b>
+        <span class="hint">${words.about(tour.stop_count, tour.languages.join(", "))}</span>
+      </button>
+      <strata-menu label=${texts.layers.options(tour.name)}>
+        <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "tour", tour })}>${icon("edit")}${words.edit}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.request({ dialog: "kiosks", tour })}>${icon("link")}${texts.kiosks.of_tour}</button>
+        <hr />
+        <button class="quiet" role="menuitem" @click=${() => void this.delete_tour(tour)}>${icon("trash")}${texts.layers.delete}</button>
+      </strata-menu>
+    </li>`;
+  }
+
+  private request(detail: TourRequest): void {
+    this.dispatchEvent(new CustomEvent<TourRequest>("request", { detail }));
+  }
+
+  private async delete_tour(tour: TourEntry): Promise<void> {
+    if (
+      !(await ask({
+        heading: words.delete_title(tour.name),
+        lead: words.delete_lead,
+        yes: texts.delete,
+        danger: true,
+      }))
+    )
+      return;
+    await this.session.tours.remove(tour).catch((error: unknown) => notices.error(error));
+  }
+}

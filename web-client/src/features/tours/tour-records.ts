@@ -1,0 +1,174 @@
+// <strata-tour-records>: the records that a stop of a tour shows: of which tables, which of them,
+// with which columns, and what these are called there.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { ApiError } from "../../net/api";
+import { label_of } from "../../domain/cells";
+import { language_in_words } from "../../core/languages";
+import type { Table, TourRecords } from "../../core/protocol.gen";
+import { is_about, kMostKeys, kMostRecordTables } from "../../domain/tours";
+import { add_from, add_from_styles } from "../../ui/add-from";
+import { icon } from "../../ui/icons";
+import type { ModelSession } from "../../shell/model-session";
+import { notices } from "../../ui/notices";
+import "../../ui/ordered-choice";
+import "../records/record-chooser";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+import { visibility_badge } from "../../ui/visibility";
+
+const words = texts.tours;
+
+@customElement("strata-tour-records")
+export class StrataTourRecords extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) records: readonly TourRecords[] = [];
+  /** Those whose names of columns are written just now. */
+  @property({ attribute: false }) languages: readonly string[] = [];
+  /** What was refused, as `records[0].keys[2]`. */
+  @property() wrong = "";
+  @property() problem = "";
+  @state() private tables_: readonly Table[] = [];
+
+  static override styles = [
+    shared_styles,
+    add_from_styles,
+    css`
+      :host {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        gap: 8px;
+      }
+      section {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        gap: 8px;
+        padding: 8px 12px 12px;
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius);
+      }
+      section.wrong {
+        border-color: var(--danger);
+      }
+      section > .row b {
+        flex: 1;
+        min-width: 0;
+        overflow-wrap: anywhere;
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.session.tables
+      .all()
+      .then((tables) => (this.tables_ = tables))
+      .catch((error: unknown) => {
+        if (!(error instanceof ApiError)) throw error;
+        notices.error(error);
+      });
+  }
+
+  override render(): TemplateResult {
+    const { records, tables_ } = this;
+    const others = tables_.filter(({ slug }) => !records.some(({ table }) => table === slug));
+    return html`${repeat(
+      records,
+      ({ table }) => table,
+      (each, index) => this.of_table(each, index),
+    )}
+      ${
+        others.length > 0 && records.length < kMostRecordTables
+          ? add_from(
+              words.table_add,
+              others.map((table) => ({ value: table.slug, name: label_of(table) })),
+              (table) => this.put([...records, { table, keys: [], columns: [] }]),
+            )
+          : nothing
+      }
+      ${tables_.length === 0 && records.length === 0 ? html`<p class="hint">${words.no_tables}</p>` : nothing}`;
+  }
+
+  private of_table(each: TourRecords, index: number): TemplateResult {
+    const table = this.tables_.find(({ slug }) => slug === each.table);
+    const name = table ? label_of(table) : each.table;
+    const wrong = this.wrong !== "" && is_about(this.wrong, `records[${index}]`);
+    const wrong_column = /\.columns\[(\d+)\]/.exec(wrong ? this.wrong : "")?.[1];
+    return html`<section class=${wrong ? "wrong" : ""} aria-label=${name}>
+      <div class="row">
+        <b>${name}</b>
+        <button type="button" class="icon quiet" aria-label=${words.table_remove(name)} title=${words.table_remove(name)} @click=${() => this.put(this.records.filter((other) => other !== each))}>
+          ${icon("close")}
+        </button>
+      </div>
+      ${wrong ? html`<p class="error" role="alert">${this.problem}</p>` : nothing}
+      ${
+        table
+          ? html`<strata-record-chooser
+              .session=${this.session}
+              .table=${table.id}
+              .chosen=${each.keys}
+              multiple
+              .invalid=${wrong && this.wrong.includes(".keys")}
+              label=${words.keys_of(name)}
+              @chosen=${(event: CustomEvent<number[]>) => this.change(index, { keys: event.detail.slice(0, kMostKeys) })}
+            ></strata-record-chooser>
+            ${each.keys.length === 0 ? html`<p class="hint">${words.keys_none}</p>` : nothing}
+            <span class="caption">${words.columns}</span>
+            <strata-ordered-choice
+              label=${words.columns_of(name)}
+              add_label=${words.column_add}
+              .things=${table.columns.map((column) => ({ value: column.slug, name: label_of(column), badge: visibility_badge(column.visibility) }))}
+              .chosen=${each.columns.map(({ column }) => column)}
+              .wrong=${wrong_column === undefined ? [] : [each.columns[Number(wrong_column)]?.column ?? ""]}
+              .more=${(slug: string) => this.labels(index, table, slug)}
+              @chosen=${(event: CustomEvent<string[]>) => this.choose_columns(index, event.detail)}
+            ></strata-ordered-choice>`
+          : nothing
+      }
+    </section>`;
+  }
+
+  /** What the column is called on the card, in the languages that are written just now. */
+  private labels(index: number, table: Table, slug: string): TemplateResult {
+    const column = table.columns.find((each) => each.slug === slug);
+    const labels = this.records[index]?.columns.find((each) => each.column === slug)?.labels ?? {};
+    const name = column ? label_of(column) : slug;
+    return html`${this.languages.map(
+      (language) =>
+        html`<input
+          type="text"
+          maxlength="200"
+          lang=${language}
+          aria-label=${words.column_label(name, language_in_words(language))}
+          placeholder=${words.column_label_hint(language_in_words(language), column ? label_of(column, [language]) : slug)}
+          .value=${labels[language] ?? ""}
+          @input=${(event: Event) => this.label(index, slug, language, (event.target as HTMLInputElement).value)}
+        />`,
+    )}`;
+  }
+
+  private label(index: number, slug: string, language: string, text: string): void {
+    const columns = this.records[index]!.columns.map((each) =>
+      each.column === slug ? { ...each, labels: { ...each.labels, [language]: text } } : each,
+    );
+    this.change(index, { columns });
+  }
+
+  private choose_columns(index: number, slugs: readonly string[]): void {
+    const { columns } = this.records[index]!;
+    this.change(index, {
+      columns: slugs.map((column) => columns.find((each) => each.column === column) ?? { column }),
+    });
+  }
+
+  private change(index: number, change: Partial<TourRecords>): void {
+    this.put(this.records.map((each, at) => (at === index ? { ...each, ...change } : each)));
+  }
+
+  private put(records: readonly TourRecords[]): void {
+    this.dispatchEvent(new CustomEvent<readonly TourRecords[]>("changed", { detail: records }));
+  }
+}

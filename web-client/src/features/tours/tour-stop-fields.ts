@@ -1,0 +1,360 @@
+// <strata-tour-stop-fields>: one stop of a tour: its view, what is said of it in each language, how
+// long and how one comes there, what there is to see.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { label_of } from "../../domain/cells";
+import { language_in_words } from "../../core/languages";
+import {
+  is_about,
+  kMostLayers,
+  kSeconds,
+  language_of_field,
+  untranslated,
+  type StopDraft,
+} from "../../domain/tours";
+import type { TourTransition } from "../../core/protocol.gen";
+import type { Layer } from "../../core/types";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import type { ModelSession } from "../../shell/model-session";
+import { notices } from "../../ui/notices";
+import { number_input } from "../../ui/number-input";
+import "../../ui/ordered-choice";
+import { radio_group } from "../../ui/radio-group";
+import { number_field_styles, shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+import "./tour-records";
+import { visibility_badge } from "../../ui/visibility";
+
+const words = texts.tours;
+const kTransitions: readonly TourTransition[] = ["move", "cut"];
+
+@customElement("strata-tour-stop-fields")
+export class StrataTourStopFields extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) stop!: StopDraft;
+  @property({ attribute: false }) languages: readonly string[] = [];
+  /** The one that is written beside the first. */
+  @property() language = "";
+  /** What was refused, as `title.fr`; nothing: nothing here. */
+  @property() wrong = "";
+  @property() problem = "";
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    number_field_styles,
+    css`
+      :host {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        align-content: start;
+        gap: 0.875rem;
+      }
+      .part {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        gap: 0.375rem;
+      }
+      .view {
+        display: flex;
+        gap: 0.5rem;
+      }
+      .view select {
+        flex: 1;
+        min-width: 0;
+      }
+      .words {
+        display: grid;
+        grid-template-columns: repeat(auto-fit, minmax(min(100%, 13.125rem), 1fr));
+        gap: 0.75rem;
+      }
+      .language {
+        display: grid;
+        align-content: start;
+        gap: 0.5rem;
+        min-width: 0;
+      }
+      .segments {
+        justify-self: start;
+      }
+      .segments button {
+        gap: 0.375rem;
+      }
+      .dot {
+        width: 0.5rem;
+        height: 0.5rem;
+        border-radius: 50%;
+        background: var(--warn);
+      }
+      textarea {
+        min-height: 6.5rem;
+      }
+      textarea[aria-invalid="true"],
+      select[aria-invalid="true"] {
+        border-color: var(--danger);
+      }
+      .times {
+        display: grid;
+        grid-template-columns: repeat(auto-fit, minmax(9.375rem, 1fr));
+        align-items: end;
+        gap: 0.75rem;
+      }
+      .times .segments {
+        display: flex;
+        justify-self: stretch;
+      }
+      .lacks {
+        color: var(--warn);
+      }
+      .layer-names {
+        display: grid;
+        grid-template-columns: repeat(auto-fit, minmax(min(12rem, 100%), 1fr));
+        gap: 0.5rem;
+      }
+    `,
+  ];
+
+  /** To what was refused. */
+  async focus_wrong(): Promise<void> {
+    await this.updateComplete;
+    const find = (selector: string): HTMLElement | null =>
+      this.renderRoot.querySelector<HTMLElement>(selector);
+    const field = find('[aria-invalid="true"]') ?? find("#refusal") ?? find("strata-tour-records");
+    field?.scrollIntoView({ block: "center" }); // with what is said of it, below
+    field?.focus({ preventScroll: true });
+  }
+
+  private is_wrong(field: string): boolean {
+    return this.wrong !== "" && is_about(this.wrong, field);
+  }
+  private refusal(...fields: string[]): TemplateResult | typeof nothing {
+    return fields.some((field) => this.is_wrong(field))
+      ? html`<p class="error" role="alert" id="refusal">${this.problem}</p>`
+      : nothing;
+  }
+  private invalid(field: string): "true" | "false" {
+    return this.is_wrong(field) ? "true" : "false";
+  }
+
+  override render(): TemplateResult {
+    const { stop, session } = this;
+    return html`${this.view()} ${this.words()} ${this.times()}
+      <div class="part">
+        <span class="caption">${words.swipe}</span>
+        <p class="hint">${words.swipe_hint}</p>
+        <strata-ordered-choice
+          label=${words.swipe}
+          add_label=${words.layer_add}
+          most=${kMostLayers}
+          .things=${[...session.layers.all].reverse().map((layer) => ({ value: layer.slug, name: label_of(layer), badge: visibility_badge(layer.visibility) }))}
+          .chosen=${stop.layers}
+          .wrong=${this.is_wrong("layers") ? stop.layers.filter((_, index) => this.wrong === `layers[${index}]`) : []}
+          @chosen=${(event: CustomEvent<string[]>) => this.change({ layers: event.detail })}
+        ></strata-ordered-choice>
+        ${this.refusal("layers")} ${this.layer_names()}
+      </div>
+      <div class="part">
+        <span class="caption">${words.records}</span>
+        <p class="hint">${words.records_hint}</p>
+        <strata-tour-records
+          .session=${session}
+          .records=${stop.records}
+          .languages=${this.written}
+          wrong=${this.wrong.startsWith("records") ? this.wrong : ""}
+          problem=${this.problem}
+          @changed=${(event: CustomEvent<StopDraft["records"]>) => this.change({ records: event.detail })}
+        ></strata-tour-records>
+        ${/^records\[/.test(this.wrong) ? nothing : this.refusal("records")}
+      </div>`;
+  }
+
+  /**
+   * What visitors read on the buttons of the layers. It is the layers' own, and kept with them at
+   * once.
+   */
+  private layer_names(): TemplateResult | typeof nothing {
+    const { session, stop } = this;
+    const layers = stop.layers.flatMap(
+      (slug) => session.layers.all.find((layer) => layer.slug === slug) ?? [],
+    );
+    if (layers.length === 0 || this.languages.length < 2) return nothing;
+    return html`<p class="hint">${words.layer_names}</p>
+      <div class="layer-names">
+        ${layers.map((layer) =>
+          this.written.map(
+            (language) =>
+              html`<label class="field">
+                <span>${words.layer_name(layer.name, language_in_words(language))}</span>
+                <input
+                  type="text"
+                  maxlength="200"
+                  lang=${language}
+                  placeholder=${label_of(layer, [language])}
+                  .value=${layer.labels[language] ?? ""}
+                  @change=${(event: Event) => void this.name_layer(layer, language, (event.target as HTMLInputElement).value)}
+                />
+              </label>`,
+          ),
+        )}
+      </div>`;
+  }
+
+  private async name_layer(layer: Layer, language: string, typed: string): Promise<void> {
+    const { [language]: _, ...others } = layer.labels;
+    const name = typed.trim();
+    try {
+      await this.session.layers.change(layer, {
+        labels: name === "" ? others : { ...others, [language]: name },
+      });
+    } catch (error) {
+      notices.error(error);
+    }
+  }
+
+  private view(): TemplateResult {
+    const { stop } = this;
+    const { all, loaded } = this.session.views;
+    const known = all.some(({ slug }) => slug === stop.view);
+    const gone = loaded && !known;
+    return html`<div class="part">
+      <span class="caption" id="view">${words.view}</span>
+      <div class="view">
+        <select aria-labelledby="view" aria-invalid=${gone ? "true" : this.invalid("view")} @change=${(event: Event) => this.change({ view: (event.target as HTMLSelectElement).value })}>
+          ${known ? nothing : html`<option value="" selected disabled>${gone ? words.view_choose : texts.loading}</option>`}
+          ${repeat(
+            all,
+            ({ id }) => id,
+            ({ slug, name }) =>
+              html`<option value=${slug} .selected=${slug === stop.view}>${name}</option>`,
+          )}
+        </select>
+        <button type="button" ?disabled=${!known} @click=${() => this.dispatchEvent(new CustomEvent("try"))}>${icon("eye")}${words.try_stop}</button>
+      </div>
+      ${gone ? html`<p class="error" role="alert">${words.view_gone}</p>` : this.refusal("view")}
+    </div>`;
+  }
+
+  // ── what is said of it
+  // ────────────────────────────────────────────────────────────────────────────────────────────
+
+  /** The first language, and the one that is written beside it. */
+  private get written(): string[] {
+    const [first = ""] = this.languages;
+    const other =
+      this.languages.includes(this.language) && this.language !== first
+        ? this.language
+        : this.languages[1];
+    return other === undefined ? [first] : [first, other];
+  }
+
+  private words(): TemplateResult {
+    const [first, ...others] = this.languages;
+    const { written, stop } = this;
+    const lacks = untranslated(stop, this.languages);
+    const mark = (language: string): unknown =>
+      lacks.includes(language)
+        ? html`<span class="dot" role="img" aria-label=${words.lacks} title=${words.lacks}></span>`
+        : nothing;
+    return html`<div class="part">
+      ${
+        others.length > 1
+          ? radio_group<string>({
+              label: words.translation,
+              class: "segments",
+              choices: others.map((language) => ({
+                value: language,
+                content: html`${language_in_words(language)}${mark(language)}`,
+              })),
+              chosen: written[1] ?? null,
+              choose: (language) =>
+                this.dispatchEvent(new CustomEvent<string>("language", { detail: language })),
+            })
+          : nothing
+      }
+      <div class="words">${repeat(
+        written,
+        (language) => language,
+        (language) => this.in_language(language, language === first),
+      )}</div>
+      ${this.refusal("title", "text")}
+    </div>`;
+  }
+
+  private in_language(language: string, is_first: boolean): TemplateResult {
+    const { stop } = this;
+    const name = language_in_words(language);
+    const alone = this.languages.length === 1;
+    const lacks = !is_first && untranslated(stop, this.languages).includes(language);
+    const refused =
+      language_of_field(this.wrong) === language ||
+      (is_first && (this.wrong === "title" || this.wrong === "text"));
+    return html`<div class="language" role="group" aria-label=${name}>
+      <label class="field">
+        <span>${alone ? words.stop_title : words.stop_title_in(name)}</span>
+        <input
+          type="text"
+          maxlength="200"
+          lang=${language}
+          aria-invalid=${refused && this.is_wrong("title") ? "true" : "false"}
+          .value=${stop.title[language] ?? ""}
+          @input=${(event: Event) => this.change({ title: { ...stop.title, [language]: (event.target as HTMLInputElement).value } })}
+        />
+      </label>
+      <label class="field">
+        <span>${alone ? words.stop_text : words.stop_text_in(name)}</span>
+        <textarea
+          maxlength="5000"
+          lang=${language}
+          aria-invalid=${refused && this.is_wrong("text") ? "true" : "false"}
+          .value=${stop.text[language] ?? ""}
+          @input=${(event: Event) => this.change({ text: { ...stop.text, [language]: (event.target as HTMLTextAreaElement).value } })}
+        ></textarea>
+      </label>
+      ${lacks ? html`<p class="hint lacks">${words.lacks}</p>` : nothing}
+    </div>`;
+  }
+
+  // ── how long, and how one comes there
+  // ─────────────────────────────────────────────────────────────────────────────
+
+  private times(): TemplateResult {
+    const { stop } = this;
+    const seconds = (field: "attract_s" | "transition_s", caption: string): TemplateResult => {
+      const [min, max] = kSeconds[field === "attract_s" ? "attract" : "transition"];
+      return html`<label class="field">
+        <span>${caption}</span>
+        <span class="number">${number_input({ value: stop[field], min, max, wrong: this.is_wrong(field), typed: (text) => this.change({ [field]: text }) })}<span>s</span></span>
+      </label>`;
+    };
+    return html`<div class="part">
+      <div class="times">
+        ${seconds("attract_s", words.attract)}
+        <div class="part">
+          <span class="caption" id="transition">${words.transition}</span>
+          ${radio_group<TourTransition>({
+            label: { id: "transition" },
+            class: "segments",
+            choices: kTransitions.map((value) => ({ value, content: words.transitions[value] })),
+            chosen: stop.transition,
+            choose: (transition) => this.change({ transition }),
+          })}
+        </div>
+        ${stop.transition === "cut" ? nothing : seconds("transition_s", words.transition_takes)}
+      </div>
+      ${this.refusal("attract_s", "transition", "transition_s")}
+    </div>`;
+  }
+
+  private change(change: Partial<StopDraft>): void {
+    this.dispatchEvent(
+      new CustomEvent<StopDraft>("changed", { detail: { ...this.stop, ...change } }),
+    );
+  }
+}

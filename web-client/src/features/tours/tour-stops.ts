@@ -1,0 +1,267 @@
+// <strata-tour-stops>: the stops of a tour in their order, one of which is looked at; adds, moves
+// and removes them.
+
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { language_in_words } from "../../core/languages";
+import { format_list } from "../../core/locale";
+import { kMostStops, moved, new_stop, untranslated, type StopDraft } from "../../domain/tours";
+import type { View } from "../../core/protocol.gen";
+import { DragOrder } from "../../ui/drag-order";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import "../../ui/menu";
+import type { ModelSession } from "../../shell/model-session";
+import { drag_styles, shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+import "../../ui/thumbnail";
+
+const words = texts.tours;
+
+export interface StopsChange {
+  stops: readonly StopDraft[];
+  /** Id of the one that is looked at now. */
+  chosen: number | null;
+}
+
+@customElement("strata-tour-stops")
+export class StrataTourStops extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) stops: readonly StopDraft[] = [];
+  @property({ attribute: false }) languages: readonly string[] = [];
+  @property({ attribute: false }) chosen: number | null = null;
+  /** Index of the one that was refused. */
+  @property({ attribute: false }) wrong: number | null = null;
+  @property() problem = "";
+  @state() private removed_: { stop: StopDraft; index: number }[] = []; // the newest last
+  @query("select") private select_!: HTMLSelectElement | null;
+  private readonly drag_ = new DragOrder<number>(
+    this,
+    () => this.stops.map(({ id }) => id),
+    (id, to) =>
+      this.move(
+        this.stops.findIndex((stop) => stop.id === id),
+        to,
+      ),
+  );
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    drag_styles,
+    css`
+      :host {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr);
+        align-content: start;
+        gap: 0.5rem;
+      }
+      ol {
+        display: grid;
+        gap: 0.375rem;
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      li {
+        display: grid;
+        grid-template-columns: auto minmax(0, 1fr) auto;
+        align-items: center;
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius);
+        background: var(--raised);
+      }
+      li.chosen {
+        border-color: var(--accent);
+        box-shadow: inset 3px 0 0 var(--accent);
+      }
+      li.wrong {
+        border-color: var(--danger);
+      }
+      button.stop {
+        display: grid;
+        grid-template-columns: 3.25rem minmax(0, 1fr);
+        justify-content: stretch;
+        gap: 1px 0.625rem;
+        min-height: 3.25rem;
+        padding: 0.375rem 4px;
+        text-align: start;
+        white-space: normal;
+      }
+      strata-thumbnail,
+      .no-view {
+        grid-row: span 3;
+        width: 3.25rem;
+        border-radius: 4px;
+      }
+      .no-view {
+        display: grid;
+        place-items: center;
+        height: 2.4375rem;
+        color: var(--danger);
+      }
+      b {
+        font-weight: 600;
+        font-size: 0.92rem;
+        overflow-wrap: anywhere;
+        unicode-bidi: plaintext;
+      }
+      .lacks {
+        font-size: 0.78rem;
+        color: var(--warn);
+      }
+      .gone {
+        font-size: 0.78rem;
+        color: var(--danger);
+      }
+      .removed {
+        display: flex;
+        flex-wrap: wrap;
+        align-items: baseline;
+        gap: 2px 0.75rem;
+        padding: 0.5rem 0.75rem;
+        border-radius: var(--radius-small);
+        background: var(--calm-soft);
+        font-size: 0.88rem;
+        overflow-wrap: anywhere;
+      }
+      .add {
+        display: grid;
+        gap: 0.375rem;
+      }
+    `,
+  ];
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    // words in a language that is gone would come back with them
+    if (changed.has("languages") && changed.get("languages") !== undefined) this.removed_ = [];
+  }
+
+  override render(): TemplateResult {
+    const { stops } = this;
+    const removed = this.removed_.at(-1);
+    return html`<span class="caption" id="caption">${words.stops}</span>
+      ${
+        stops.length === 0
+          ? html`<p class="hint" ?hidden=${this.lacks_views}>${words.none_stops}</p>`
+          : html`<ol aria-labelledby="caption" @dragover=${this.drag_.over_list} @drop=${this.drag_.drop}>
+            ${repeat(
+              stops,
+              ({ id }) => id,
+              (stop, index) => this.row(stop, index),
+            )}
+          </ol>`
+      }
+      ${
+        removed
+          ? html`<p class="removed" role="status">${words.removed(this.title_of(removed.stop))} <button type="button" class="link" @click=${this.put_back}>${words.undo}</button></p>`
+          : nothing
+      }
+      ${this.problem ? html`<p class="error" role="alert">${this.problem}</p>` : nothing}
+      ${stops.length < kMostStops ? this.adding() : nothing}`;
+  }
+
+  private title_of({ title }: StopDraft): string {
+    return title[this.languages[0] ?? ""]?.trim() || texts.unnamed;
+  }
+
+  private get lacks_views(): boolean {
+    const { all, loaded } = this.session.views;
+    return loaded && all.length === 0;
+  }
+
+  private view_of({ view }: StopDraft): View | null {
+    return this.session.views.all.find(({ slug }) => slug === view) ?? null;
+  }
+
+  private row(stop: StopDraft, index: number): TemplateResult {
+    const { stops, languages, session } = this;
+    const title = this.title_of(stop);
+    const view = this.view_of(stop);
+    const lacks = untranslated(stop, languages).map(language_in_words);
+    const chosen = stop.id === this.chosen;
+    return html`<li
+      class="${chosen ? "chosen" : ""} ${this.wrong === index ? "wrong" : ""} ${this.drag_.classes(stop.id, index)}"
+      @dragover=${(event: DragEvent) => this.drag_.over_row(event, index)}
+    >
+      ${
+        stops.length > 1
+          ? html`<span class="grip" draggable="true" title=${texts.layers.drag(title)} @dragstart=${(event: DragEvent) => this.drag_.start(event, stop.id, title)} @dragend=${this.drag_.end}>${icon("grip")}</span>`
+          : html`<span></span>`
+      }
+      <button type="button" class="quiet stop" aria-current=${chosen} @click=${() => this.put(stops, stop.id)}>
+        ${
+          view && session.model
+            ? html`<strata-thumbnail .api=${session.api} .model=${session.model} .view=${view}></strata-thumbnail>`
+            : html`<span class="no-view">${icon("warning")}</span>`
+        }
+        <b>${index + 1}. ${title}</b>
+        ${view || !session.views.loaded ? nothing : html`<span class="gone">${words.view_gone_short}</span>`}
+        ${lacks.length > 0 ? html`<span class="lacks">${words.missing(format_list(lacks))}</span>` : nothing}
+      </button>
+      <strata-menu label=${texts.layers.options(title)}>
+        <button type="button" class="quiet" role="menuitem" ?disabled=${index === 0} @click=${() => this.move(index, index - 1)}>${icon("up")}${texts.layers.up}</button>
+        <button type="button" class="quiet" role="menuitem" ?disabled=${index === stops.length - 1} @click=${() => this.move(index, index + 1)}>${icon("down")}${texts.layers.down}</button>
+        <hr />
+        <button type="button" class="quiet" role="menuitem" @click=${() => this.remove_stop(index)}>${icon("trash")}${words.remove}</button>
+      </strata-menu>
+    </li>`;
+  }
+
+  private adding(): TemplateResult {
+    const { all } = this.session.views;
+    if (this.lacks_views) return html`<p class="hint">${words.no_views}</p>`;
+    const used = new Set(this.stops.map(({ view }) => view));
+    const next = all.find(({ slug }) => !used.has(slug)) ?? all[0];
+    return html`<div class="add">
+      <select aria-label=${words.add_view}>
+        ${repeat(
+          all,
+          ({ id }) => id,
+          (view) =>
+            html`<option value=${view.slug} ?selected=${view === next}>${view.name}</option>`,
+        )}
+      </select>
+      <button type="button" @click=${() => void this.add()}>${icon("plus")}${words.add}</button>
+    </div>`;
+  }
+
+  private async add(): Promise<void> {
+    const view = this.session.views.all.find(({ slug }) => slug === this.select_?.value);
+    if (!view) return;
+    const stop = new_stop(view, this.languages[0] ?? "");
+    this.put([...this.stops, stop], stop.id);
+    await this.updateComplete;
+    const next = [...(this.select_?.options ?? [])].find(({ defaultSelected }) => defaultSelected);
+    if (next) next.selected = true; // also where somebody chose one by hand
+  }
+
+  private move(from: number, to: number): void {
+    this.put(moved(this.stops, from, to), this.chosen);
+  }
+
+  private remove_stop(index: number): void {
+    const stop = this.stops[index]!;
+    const rest = this.stops.filter((each) => each !== stop);
+    this.removed_ = [...this.removed_, { stop, index }];
+    this.put(rest, stop.id === this.chosen ? null : this.chosen);
+  }
+
+  private put_back(): void {
+    const last = this.removed_.at(-1);
+    if (!last) return;
+    this.removed_ = this.removed_.slice(0, -1);
+    const stops = [...this.stops];
+    stops.splice(last.index, 0, last.stop);
+    this.put(stops, last.stop.id);
+  }
+
+  private put(stops: readonly StopDraft[], chosen: number | null): void {
+    this.dispatchEvent(new CustomEvent<StopsChange>("changed", { detail: { stops, chosen } }));
+  }
+}

@@ -1,0 +1,61 @@
+// <strata-view-dialog>: keeps what this person sees under a name, or with `view` names and
+// describes one anew.
+
+import { html, LitElement, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { ApiError } from "../../net/api";
+import type { View } from "../../core/protocol.gen";
+import type { ViewContent } from "../../domain/views";
+import type { ModelSession } from "../../shell/model-session";
+import "../../ui/naming-dialog";
+import type { Called } from "../../ui/naming-dialog";
+import { notices } from "../../ui/notices";
+import { texts } from "../../texts";
+
+const words = texts.kept_views;
+
+@customElement("strata-view-dialog")
+export class StrataViewDialog extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) view: View | null = null;
+  private base_: View | null = null; // the view as this person knows it
+  private content_: ViewContent | null = null; // of a new one: what was seen when this was opened
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    if (this.view) this.base_ = this.view;
+    else this.content_ = this.session.views.content();
+  }
+
+  override render(): TemplateResult {
+    const { view } = this;
+    return html`<strata-naming-dialog
+      aside
+      heading=${view ? words.describe_title(view.name) : words.keep_title}
+      lead=${view ? "" : words.keep_lead}
+      yes=${view ? texts.save : words.keep_yes}
+      .words=${words}
+      .called=${view}
+      .save=${this.save}
+      @closed=${() => this.dispatchEvent(new CustomEvent("closed"))}
+    ></strata-naming-dialog>`;
+  }
+
+  private readonly save = async (called: Called, key: string): Promise<string> => {
+    const { views } = this.session;
+    try {
+      if (this.base_) await views.describe(this.base_, called);
+      else if (this.content_) await views.keep(called, this.content_, key);
+    } catch (error) {
+      const newest =
+        error instanceof ApiError && error.status === 412 && this.base_
+          ? views.find(this.base_.id)
+          : null;
+      if (!newest) throw error;
+      this.base_ = newest;
+      return words.changed(newest.name);
+    }
+    if (!this.view) notices.show("success", words.kept(called.name));
+    return "";
+  };
+}

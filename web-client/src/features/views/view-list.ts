@@ -1,0 +1,188 @@
+// <strata-view-list>: the named views of the model, each a button that leads there; part of the
+// panel of the view.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import type { View } from "../../core/protocol.gen";
+import { copy_text } from "../../ui/copy-field";
+import { ask } from "../../ui/dialog";
+import { follow_session } from "../../session/follow-session";
+import { icon } from "../../ui/icons";
+import "../../ui/menu";
+import type { ModelSession } from "../../shell/model-session";
+import { notices } from "../../ui/notices";
+import { list_head_styles, list_row_styles } from "../../ui/panel-styles";
+import { shared_styles } from "../../ui/styles";
+import { texts } from "../../texts";
+import "../../ui/thumbnail";
+
+/**
+ * The dialog that names a view; without `view` what is seen is kept as a new one. Or the one that
+ * draws it to scale; without `view` what is seen.
+ */
+export interface ViewRequest {
+  dialog: "view" | "figure";
+  view: View | null;
+}
+
+const words = texts.kept_views;
+const kAtOnce = 50;
+
+@customElement("strata-view-list")
+export class StrataViewList extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @state() private most_ = kAtOnce;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    list_head_styles,
+    list_row_styles,
+    css`
+      button.go {
+        grid-template-columns: 4rem minmax(0, 1fr);
+        align-items: start;
+        gap: 0.625rem;
+      }
+      ul {
+        margin: 0;
+      }
+      li {
+        border-radius: var(--radius-small);
+      }
+      li:has(> .go[aria-current="true"]) {
+        background: var(--accent-soft);
+      }
+      /* also below the pointer: words on both tints are hard to read */
+      li button.go[aria-current="true"]:not(:disabled) {
+        background: none;
+      }
+      strata-thumbnail {
+        border-radius: 4px;
+      }
+      .words {
+        display: grid;
+        gap: 1px;
+      }
+      button.go .hint {
+        display: -webkit-box;
+        -webkit-box-orient: vertical;
+        -webkit-line-clamp: 2;
+        overflow: hidden;
+        overflow-wrap: anywhere;
+        unicode-bidi: plaintext;
+      }
+      button.go[aria-current="true"] .hint {
+        -webkit-line-clamp: 12;
+        white-space: pre-line;
+      }
+      .back {
+        position: sticky;
+        bottom: 0;
+        padding: 2px 0;
+        background: var(--surface);
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const { views } = session;
+    return html`<div class="row">
+        <h3>${words.title}</h3>
+        ${session.can_paint ? html`<button class="quiet" @click=${() => this.request(null)}>${icon("plus")}${words.keep}</button>` : nothing}
+      </div>
+      ${views.failed ? this.failure() : this.list()}
+      ${views.leads_back ? html`<div class="back"><button class="link" @click=${() => views.go_back()}>${words.back}</button></div>` : nothing}`;
+  }
+
+  private failure(): TemplateResult {
+    return html`<p class="error" role="alert">${words.failed}</p>
+      <div><button @click=${() => void this.session.views.load()}>${texts.try_again}</button></div>`;
+  }
+
+  private list(): TemplateResult {
+    const { views, can_paint } = this.session;
+    const { all, current } = views;
+    if (!views.loaded) return html`<p class="hint">${texts.loading}</p>`;
+    if (all.length === 0)
+      return html`<p class="hint">${can_paint ? words.none : words.none_viewer}</p>`;
+    return html`<ul>
+        ${repeat(
+          all.slice(0, this.most_),
+          ({ id }) => id,
+          (view) => this.row(view, view === current),
+        )}
+      </ul>
+      ${all.length > this.most_ ? html`<button @click=${() => (this.most_ += kAtOnce)}>${words.more(all.length - this.most_)}</button>` : nothing}`;
+  }
+
+  private row(view: View, is_current: boolean): TemplateResult {
+    const { api, model, views, can_paint } = this.session;
+    const may_change = can_paint && views.may_change(view);
+    return html`<li>
+      <button class="quiet go" data-view=${view.id} aria-current=${is_current} title=${view.text || nothing} @click=${() => views.go_to(view)}>
+        ${model ? html`<strata-thumbnail .api=${api} .model=${model} .view=${view}></strata-thumbnail>` : nothing}
+        <span class="words">
+          <b>${view.name}</b>
+          ${view.text ? html`<span class="hint">${view.text}</span>` : nothing}
+        </span>
+      </button>
+      <strata-menu label=${texts.layers.options(view.name)}>
+        <button class="quiet" role="menuitem" @click=${() => void this.copy_link(view)}>${icon("link")}${words.copy_link}</button>
+        <button class="quiet" role="menuitem" @click=${() => this.request(view, "figure")}>${icon("measure")}${texts.figures.of_view}</button>
+        ${
+          may_change
+            ? html`<button class="quiet" role="menuitem" @click=${() => this.request(view)}>${icon("edit")}${words.describe}</button>
+              <button class="quiet" role="menuitem" @click=${() => this.change(views.replace(view))}>${icon("eye")}${words.replace}</button>
+              <hr />
+              <button class="quiet" role="menuitem" @click=${() => void this.delete_view(view)}>${icon("trash")}${texts.layers.delete}</button>`
+            : nothing
+        }
+      </strata-menu>
+    </li>`;
+  }
+
+  private request(view: View | null, dialog: ViewRequest["dialog"] = "view"): void {
+    this.dispatchEvent(new CustomEvent<ViewRequest>("request", { detail: { dialog, view } }));
+  }
+
+  private async copy_link(view: View): Promise<void> {
+    const link = this.session.views.link_to(view);
+    if (await copy_text(link, () => select_hidden(link)))
+      notices.show("success", words.copied, link);
+    else notices.show("info", words.copy_by_hand, link);
+  }
+
+  private async delete_view(view: View): Promise<void> {
+    const question = {
+      heading: words.delete_title(view.name),
+      lead: words.delete_lead,
+      yes: texts.delete,
+      danger: true,
+    };
+    if (await ask(question)) this.change(this.session.views.remove(view));
+  }
+
+  private change(work: Promise<void>): void {
+    work.catch((error: unknown) => notices.error(error));
+  }
+}
+
+/**
+ * Selects a text that stands nowhere in the page, and leaves the keyboard where it is. Returns what
+ * lets go of it.
+ */
+function select_hidden(text: string): () => void {
+  const span = document.createElement("span");
+  span.textContent = text;
+  Object.assign(span.style, { position: "fixed", clipPath: "inset(50%)" });
+  document.body.append(span);
+  getSelection()?.selectAllChildren(span);
+  return () => span.remove();
+}

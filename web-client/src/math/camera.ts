@@ -1,0 +1,393 @@
+// The viewer's camera: a turntable around the model's up axis. All in world coordinates and double;
+// the server subtracts the model's origin. Pixels are of the window (width × height), origin top
+// left, y down.
+
+import type { Plane } from "../core/protocol.gen";
+import { add, cross, dot, length, scale, subtract, transform, type Vec3 } from "./vector";
+
+export type UpAxis = "x" | "y" | "z" | "-x" | "-y" | "-z";
+export type StandardView = "front" | "back" | "left" | "right" | "top" | "bottom";
+
+export interface Bounds {
+  min: Vec3;
+  max: Vec3;
+}
+
+/** The camera as the protocol sends it: column-major, OpenGL clip space. */
+export interface CameraMessage {
+  view: number[];
+  projection: number[];
+  width: number;
+  height: number;
+  section?: Plane[];
+}
+
+const kFieldOfView = (35 * Math.PI) / 180; // vertical
+export const kHalfFieldTangent = Math.tan(kFieldOfView / 2);
+const kMinZoom = 1e-4; // smallest and largest distance, relative to the model's radius
+const kMaxZoom = 40;
+const kFitMargin = 1.04;
+
+interface Frame {
+  right: Vec3;
+  into: Vec3;
+  up: Vec3;
+}
+
+// Right-handed frames of the front view: `right` of the picture, `into` the picture, `up`. That of
+// an axis' opposite is turned about `right` by half a turn, as the server has it
+// (server/core/up.h).
+export const kFrames: Record<UpAxis, Frame> = {
+  z: { right: [1, 0, 0], into: [0, 1, 0], up: [0, 0, 1] },
+  y: { right: [1, 0, 0], into: [0, 0, -1], up: [0, 1, 0] },
+  x: { right: [0, 1, 0], into: [0, 0, 1], up: [1, 0, 0] },
+  "-z": { right: [1, 0, 0], into: [0, -1, 0], up: [0, 0, -1] },
+  "-y": { right: [1, 0, 0], into: [0, 0, 1], up: [0, -1, 0] },
+  "-x": { right: [0, 1, 0], into: [0, 0, -1], up: [-1, 0, 0] },
+};
+export const kUpAxes: readonly UpAxis[] = ["x", "y", "z", "-x", "-y", "-z"];
+
+/** "z", "−y". */
+export const axis_name = (up: UpAxis): string => up.replace("-", "−");
+/** "+Z", "−Y". */
+export const up_name = (up: UpAxis): string =>
+  (up.startsWith("-") ? `−${up.slice(1)}` : `+${up}`).toUpperCase();
+
+export const centre = (bounds: Bounds): Vec3 => scale(add(bounds.min, bounds.max), 0.5);
+export const bounding_radius = (bounds: Bounds): number =>
+  Math.max(length(subtract(bounds.max, bounds.min)) / 2, 1e-9);
+
+export class OrbitCamera {
+  target: Vec3 = [0, 0, 0];
+  distance = 1;
+  azimuth = 0; // radians around up; 0 looks at the front
+  elevation = 0; // radians above the horizon, −π/2…π/2
+  perspective = true;
+  /**
+   * Tangent of half the vertical field of view; another than the usual one while this camera sees
+   * what somebody else sees, or what was kept in another window.
+   */
+  half_field = kHalfFieldTangent;
+  width = 1; // window pixels
+  height = 1;
+  /** What the planes cut away is not there for this camera. */
+  section: Plane[] = [];
+
+  private bounds_: Bounds = { min: [-1, -1, -1], max: [1, 1, 1] };
+  private up_: UpAxis = "z";
+
+  get up(): UpAxis {
+    return this.up_;
+  }
+  get bounds(): Bounds {
+    return this.bounds_;
+  }
+
+  set_model(bounds: Bounds, up: UpAxis): void {
+    this.bounds_ = bounds;
+    this.up_ = up;
+  }
+
+  resize(width: number, height: number): void {
+    this.width = Math.max(1, Math.round(width));
+    this.height = Math.max(1, Math.round(height));
+  }
+
+  /** Whole model in the picture, seen from where the camera stands. */
+  fit(): void {
+    const { min, max } = this.bounds_;
+    const { right, up, back } = this.axes();
+    const half_width = (this.half_field * this.width) / this.height;
+    this.target = centre(this.bounds_);
+    let distance = 0;
+    for (let corner = 0; corner < 8; ++corner) {
+      const at: Vec3 = [
+        corner & 1 ? max[0] : min[0],
+        corner & 2 ? max[1] : min[1],
+        corner & 4 ? max[2] : min[2],
+      ];
+      const offset = subtract(at, this.target);
+      const towards = this.perspective ? dot(offset, back) : 0;
+      const across = Math.abs(dot(offset, right)) / half_width;
+      const along = Math.abs(dot(offset, up)) / this.half_field;
+      distance = Math.max(distance, towards + Math.max(across, along));
+    }
+    this.distance = Math.max(distance * kFitMargin, bounding_radius(this.bounds_) * kMinZoom);
+  }
+
+  /**
+   * A box that is a part of the model, seen from where its surface faces; where that is not said,
+   * from its own side of the model, of which the model's middle has none.
+   */
+  look_at(box: Bounds, normal?: Vec3): void {
+    const middle = centre(box);
+    const outwards = normal ?? subtract(middle, centre(this.bounds_));
+    const { back } = this.axes();
+    const has_side =
+      normal !== undefined || length(outwards) > 0.15 * bounding_radius(this.bounds_);
+    // What faces away is turned to; what is seen already is left as it is.
+    if (has_side && dot(outwards, back) < 0.3 * length(outwards)) this.face(outwards);
+    this.target = middle;
+    const least = bounding_radius(this.bounds_) * 0.08; // some of what is around a small thing
+    const radius = Math.max(bounding_radius(box), least);
+    const half_width = (this.half_field * this.width) / this.height;
+    this.distance = (radius * 1.25) / Math.sin(Math.atan(Math.min(this.half_field, half_width)));
+  }
+
+  /** Turns so that `outwards` points to the viewer. */
+  private face(outwards: Vec3): void {
+    const frame = kFrames[this.up_];
+    const [x, y, z] = [
+      dot(outwards, frame.right),
+      dot(outwards, frame.into),
+      dot(outwards, frame.up),
+    ];
+    const level = Math.hypot(x, y);
+    if (level > 1e-3 * Math.abs(z)) this.azimuth = Math.atan2(x, -y);
+    this.elevation = Math.min(1.2, Math.max(-1.2, Math.atan2(z, level)));
+  }
+
+  /** A little from the right and above: shows that the thing is solid. */
+  first_view(): void {
+    this.azimuth = 0.4;
+    this.elevation = 0.18;
+    this.fit();
+  }
+
+  standard_view(view: StandardView): void {
+    const quarter = Math.PI / 2;
+    const angles: Record<StandardView, [number, number]> = {
+      front: [0, 0],
+      right: [quarter, 0],
+      back: [Math.PI, 0],
+      left: [-quarter, 0],
+      top: [0, quarter],
+      bottom: [0, -quarter],
+    };
+    [this.azimuth, this.elevation] = angles[view];
+    this.fit();
+  }
+
+  /** Unit vectors of the window in the world: right, up, and backwards to the viewer. */
+  axes(): { right: Vec3; up: Vec3; back: Vec3 } {
+    const frame = kFrames[this.up_];
+    const [sa, ca] = [Math.sin(this.azimuth), Math.cos(this.azimuth)];
+    const [se, ce] = [Math.sin(this.elevation), Math.cos(this.elevation)];
+    const right = add(scale(frame.right, ca), scale(frame.into, sa));
+    const level = subtract(scale(frame.right, sa), scale(frame.into, ca));
+    const back = add(scale(level, ce), scale(frame.up, se));
+    return { right, up: cross(back, right), back };
+  }
+
+  eye(): Vec3 {
+    return add(this.target, scale(this.axes().back, this.distance));
+  }
+
+  /** World lengths of one window pixel at a depth before the eye. */
+  unit_per_pixel(depth = this.distance): number {
+    return (2 * this.half_field * (this.perspective ? depth : this.distance)) / this.height;
+  }
+
+  /** World length of a window pixel at a place, for the camera as it is now. */
+  pixel_size(): (place: Vec3) => number {
+    const [eye, { back }, unit] = [this.eye(), this.axes(), this.unit_per_pixel(1)];
+    const { perspective } = this;
+    return (place) => (perspective ? unit * dot(subtract(eye, place), back) : unit);
+  }
+
+  /** The usual field again; what is as far away as the target stays as large. */
+  reset_field(): void {
+    this.distance *= this.half_field / kHalfFieldTangent;
+    this.half_field = kHalfFieldTangent;
+  }
+
+  /**
+   * From now on it turns around what is in the middle of the window at a depth. The picture stays.
+   */
+  turn_around(depth: number): void {
+    this.target = subtract(this.eye(), scale(this.axes().back, depth));
+    if (this.perspective) this.distance = depth;
+  }
+
+  depth_of(point: Vec3): number {
+    return dot(subtract(this.eye(), point), this.axes().back);
+  }
+
+  orbit(azimuth_delta: number, elevation_delta: number): void {
+    this.azimuth = wrap(this.azimuth + azimuth_delta);
+    this.elevation = Math.min(
+      Math.PI / 2,
+      Math.max(-Math.PI / 2, this.elevation + elevation_delta),
+    );
+  }
+
+  /** Drag of one pixel turns the model by the same share of the window in both directions. */
+  orbit_pixels(dx: number, dy: number): void {
+    const turn = Math.PI / Math.min(this.width, this.height);
+    this.orbit(-dx * turn, dy * turn);
+  }
+
+  pan_pixels(dx: number, dy: number): void {
+    const { right, up } = this.axes();
+    const unit = this.unit_per_pixel();
+    this.target = add(this.target, add(scale(right, -dx * unit), scale(up, dy * unit)));
+  }
+
+  /** factor < 1 comes nearer. What is under the window pixel (x, y) stays there. */
+  zoom_at(factor: number, x: number, y: number): void {
+    const radius = bounding_radius(this.bounds_);
+    const distance = Math.min(
+      kMaxZoom * radius,
+      Math.max(kMinZoom * radius, this.distance * factor),
+    );
+    const kept = distance / this.distance;
+    const anchor = this.point_on_focus_plane(x, y);
+    this.target = add(anchor, scale(subtract(this.target, anchor), kept));
+    this.distance = distance;
+  }
+
+  point_on_focus_plane(x: number, y: number): Vec3 {
+    const { right, up } = this.axes();
+    const unit = this.unit_per_pixel();
+    return add(
+      this.target,
+      add(scale(right, (x - this.width / 2) * unit), scale(up, (this.height / 2 - y) * unit)),
+    );
+  }
+
+  view_matrix(): number[] {
+    const { right, up, back } = this.axes();
+    const eye = this.eye();
+    return [
+      right[0],
+      up[0],
+      back[0],
+      0,
+      right[1],
+      up[1],
+      back[1],
+      0,
+      right[2],
+      up[2],
+      back[2],
+      0,
+      -dot(right, eye),
+      -dot(up, eye),
+      -dot(back, eye),
+      1,
+    ];
+  }
+
+  projection_matrix(): number[] {
+    const { near, far } = this.depth_range();
+    const aspect = this.width / this.height;
+    if (this.perspective) {
+      const f = 1 / this.half_field;
+      return [
+        f / aspect,
+        0,
+        0,
+        0,
+        0,
+        f,
+        0,
+        0,
+        0,
+        0,
+        (far + near) / (near - far),
+        -1,
+        0,
+        0,
+        (2 * far * near) / (near - far),
+        0,
+      ];
+    }
+    const half_height = this.half_field * this.distance;
+    return [
+      1 / (half_height * aspect),
+      0,
+      0,
+      0,
+      0,
+      1 / half_height,
+      0,
+      0,
+      0,
+      0,
+      -2 / (far - near),
+      0,
+      0,
+      0,
+      -(far + near) / (far - near),
+      1,
+    ];
+  }
+
+  message(): CameraMessage {
+    return {
+      view: this.view_matrix(),
+      projection: this.projection_matrix(),
+      width: this.width,
+      height: this.height,
+      ...(this.section.length > 0 ? { section: this.section } : {}),
+    };
+  }
+
+  /** Window position of a world point, or null behind the eye. */
+  project(point: Vec3): { x: number; y: number; depth: number } | null {
+    const seen = transform(this.view_matrix(), [point[0], point[1], point[2], 1]);
+    const clip = transform(this.projection_matrix(), seen);
+    if (clip[3] <= 0) return null;
+    return {
+      x: (clip[0] / clip[3] / 2 + 0.5) * this.width,
+      y: (0.5 - clip[1] / clip[3] / 2) * this.height,
+      depth: -seen[2],
+    };
+  }
+
+  /** The same, or null outside the window, too. */
+  project_inside(point: Vec3): { x: number; y: number; depth: number } | null {
+    const at = this.project(point);
+    return at && at.x >= 0 && at.y >= 0 && at.x <= this.width && at.y <= this.height ? at : null;
+  }
+
+  /** Whether the section's planes cut the world point away. */
+  cuts_away(point: Vec3): boolean {
+    return this.section.some(([a, b, c, d]) => dot([a, b, c], point) + d < 0);
+  }
+
+  private depth_range(): { near: number; far: number } {
+    const radius = bounding_radius(this.bounds_) * 1.02;
+    const middle = this.depth_of(centre(this.bounds_));
+    const far = Math.max(middle + radius, radius * 1e-3);
+    if (!this.perspective)
+      return { near: middle - radius, far: Math.max(far, middle - radius + 1e-9) };
+    return { near: Math.max(middle - radius, far * 2e-4), far };
+  }
+}
+
+/** Where a camera stands; `between` two of them, at a share of the way. */
+export type Place = Pick<
+  OrbitCamera,
+  "target" | "distance" | "azimuth" | "elevation" | "perspective" | "half_field"
+>;
+export const place_of = (camera: OrbitCamera): Place => {
+  const { target, distance, azimuth, elevation, perspective, half_field } = camera;
+  return { target, distance, azimuth, elevation, perspective, half_field };
+};
+export function between(from: Place, to: Place, share: number): Place {
+  const mix = (a: number, b: number): number => a + (b - a) * share;
+  return {
+    target: add(scale(from.target, 1 - share), scale(to.target, share)),
+    distance: Math.exp(mix(Math.log(from.distance), Math.log(to.distance))),
+    azimuth: wrap(from.azimuth + wrap(to.azimuth - from.azimuth) * share),
+    elevation: mix(from.elevation, to.elevation),
+    perspective: to.perspective,
+    half_field: mix(from.half_field, to.half_field),
+  };
+}
+
+function wrap(angle: number): number {
+  const turn = 2 * Math.PI;
+  return ((((angle + Math.PI) % turn) + turn) % turn) - Math.PI;
+}

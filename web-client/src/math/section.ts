@@ -1,0 +1,112 @@
+// Planes that cut a model open, from what a person chooses: a cut across one axis, or a box.
+// Positions are shares of the model's bounds, so that they mean the same for a coin and for a
+// quarry. Planes that are neither come with a named view, and stay as they are.
+
+import type { Bounds } from "./camera";
+import type { Plane } from "../core/protocol.gen";
+
+export type Axis = "x" | "y" | "z";
+export type SectionMode = "off" | Axis | "box" | "planes";
+
+export interface SectionChoice {
+  mode: SectionMode;
+  position: number; // of a cut, 0…1
+  flipped: boolean; // the other side is kept
+  box: { min: [number, number, number]; max: [number, number, number] }; // 0…1
+  planes: Plane[]; // as they are, of the mode that is called so
+}
+
+export const kAxes: readonly Axis[] = ["x", "y", "z"];
+/** So much of the model stays in a box at least. */
+export const kThinnestBox = 0.01;
+const kRounded = 1e-9; // a share that went through the world
+
+export const no_section = (): SectionChoice => ({
+  mode: "off",
+  position: 0.5,
+  flipped: false,
+  box: { min: [0, 0, 0], max: [1, 1, 1] },
+  planes: [],
+});
+
+/** A position in the world on an axis. */
+export function world_position(bounds: Bounds, axis: number, share: number): number {
+  return bounds.min[axis]! + (bounds.max[axis]! - bounds.min[axis]!) * share;
+}
+
+/** [a, b, c, d] keeps what has a x + b y + c z + d ≥ 0. */
+export function section_planes(choice: SectionChoice, bounds: Bounds): Plane[] {
+  const plane = (axis: number, share: number, keeps_above: boolean): Plane => {
+    const sign = keeps_above ? 1 : -1;
+    const result: Plane = [0, 0, 0, -sign * world_position(bounds, axis, share)];
+    result[axis] = sign;
+    return result;
+  };
+  if (choice.mode === "off") return [];
+  if (choice.mode === "planes") return choice.planes;
+  if (choice.mode !== "box")
+    return [plane(kAxes.indexOf(choice.mode), choice.position, choice.flipped)];
+  const planes: Plane[] = [];
+  for (const axis of [0, 1, 2]) {
+    if (choice.box.min[axis]! > 0) planes.push(plane(axis, choice.box.min[axis]!, true));
+    if (choice.box.max[axis]! < 1) planes.push(plane(axis, choice.box.max[axis]!, false));
+  }
+  return planes;
+}
+
+/**
+ * The choice that makes these planes: a cut or a box where they are one within the bounds, else the
+ * planes themselves.
+ */
+export function section_choice(planes: readonly Plane[], bounds: Bounds): SectionChoice {
+  if (planes.length === 0) return no_section();
+  const kept: SectionChoice = { ...no_section(), mode: "planes", planes: [...planes] };
+  const sides = planes.map((plane) => side_of(plane, bounds));
+  const [first] = sides;
+  if (sides.length === 1 && first)
+    return {
+      ...no_section(),
+      mode: kAxes[first.axis]!,
+      position: first.share,
+      flipped: first.keeps_above,
+    };
+  const { box } = no_section();
+  const taken = new Set<string>();
+  for (const side of sides) {
+    const key = `${side?.axis} ${side?.keeps_above}`;
+    if (!side || taken.has(key)) return kept;
+    taken.add(key);
+    box[side.keeps_above ? "min" : "max"][side.axis] = side.share;
+  }
+  const is_inside_out = [0, 1, 2].some((axis) => box.min[axis]! >= box.max[axis]!);
+  return is_inside_out ? kept : { ...no_section(), mode: "box", box };
+}
+
+/** Of a plane across an axis that goes through the bounds; null: it is another. */
+function side_of(
+  [a, b, c, d]: Plane,
+  { min, max }: Bounds,
+): { axis: number; share: number; keeps_above: boolean } | null {
+  const normal = [a, b, c];
+  const axis = normal.findIndex((part) => part !== 0);
+  if (axis < 0 || normal.filter((part) => part !== 0).length > 1) return null;
+  const share = (-d / normal[axis]! - min[axis]!) / (max[axis]! - min[axis]!);
+  // nor of a flat model, where it is no number
+  if (!(share >= -kRounded && share <= 1 + kRounded)) return null;
+  return { axis, share: Math.min(1, Math.max(0, share)), keeps_above: normal[axis]! > 0 };
+}
+
+/** A side of the box moved to a share, never past the opposite side. */
+export function with_box_side(
+  choice: SectionChoice,
+  side: "min" | "max",
+  axis: number,
+  share: number,
+): SectionChoice {
+  const box: SectionChoice["box"] = { min: [...choice.box.min], max: [...choice.box.max] };
+  box[side][axis] =
+    side === "min"
+      ? Math.max(0, Math.min(share, box.max[axis]! - kThinnestBox))
+      : Math.min(1, Math.max(share, box.min[axis]! + kThinnestBox));
+  return { ...choice, box };
+}

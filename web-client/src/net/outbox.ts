@@ -1,0 +1,164 @@
+// Everything this page asked the server to change and that is not known to be durable yet, in the
+// order it was asked. Ids never change, so sending a message again paints nothing twice.
+
+import { new_id } from "./api";
+import type {
+  EditRequest,
+  Redo,
+  StrokeBegin,
+  StrokeEnd,
+  StrokeExtend,
+  Undo,
+} from "../core/protocol.gen";
+
+export type ChangeMessage = StrokeBegin | StrokeExtend | StrokeEnd | EditRequest | Undo | Redo;
+export type SingleChange = EditRequest | Undo | Redo;
+
+interface StrokeEntry {
+  kind: "stroke";
+  begin: StrokeBegin;
+  parts: StrokeExtend[]; // unsaved ones, ascending n
+  end: StrokeEnd | null;
+}
+interface SingleEntry {
+  kind: "single";
+  message: SingleChange;
+}
+type Entry = StrokeEntry | SingleEntry;
+
+export class Outbox {
+  private entries_: Entry[] = [];
+
+  /** `dropped` hears the ids of what waits no longer. */
+  constructor(private readonly dropped_: (ids: string[]) => void = () => {}) {}
+
+  /** Changes that are not durable. */
+  get waiting(): number {
+    return this.entries_.reduce(
+      (sum, entry) => sum + (entry.kind === "stroke" ? entry.parts.length : 1),
+      0,
+    );
+  }
+
+  add(message: ChangeMessage): void {
+    switch (message.op) {
+      case "stroke.begin":
+        this.entries_.push({ kind: "stroke", begin: message, parts: [], end: null });
+        break;
+      case "stroke.extend":
+        this.stroke(message.stroke)?.parts.push(message);
+        break;
+      case "stroke.end": {
+        const entry = this.stroke(message.stroke);
+        if (entry) this.shrink(() => (entry.end = message), [message]);
+        break;
+      }
+      default:
+        this.entries_.push({ kind: "single", message });
+    }
+  }
+
+  /**
+   * What an earlier page left goes before what this one asked for. Strokes that it was drawing end.
+   * Returns how many changes are new here.
+   */
+  adopt(messages: readonly ChangeMessage[]): number {
+    const before = this.waiting;
+    const left = messages.filter((message) => !this.has(message.id));
+    const own = this.entries_;
+    this.entries_ = [];
+    for (const message of left) this.add(message);
+    for (const entry of [...this.entries_])
+      if (entry.kind === "stroke" && !entry.end)
+        this.add({ op: "stroke.end", id: new_id(), stroke: entry.begin.stroke });
+    this.entries_.push(...own);
+    return this.waiting - before;
+  }
+
+  has_stroke(stroke: string): boolean {
+    return this.stroke(stroke) !== undefined;
+  }
+
+  /** Whether the id is of a message that waits here. */
+  has(id: string): boolean {
+    return this.entries_.some((entry) =>
+      entry.kind === "single"
+        ? entry.message.id === id
+        : entry.begin.id === id ||
+          entry.end?.id === id ||
+          entry.parts.some((part) => part.id === id),
+    );
+  }
+
+  saved(answer: {
+    id?: string | undefined;
+    stroke?: string | undefined;
+    n?: number | undefined;
+  }): void {
+    this.shrink(() => {
+      if (answer.stroke !== undefined && answer.n !== undefined) {
+        const entry = this.stroke(answer.stroke);
+        if (entry) entry.parts = entry.parts.filter((part) => part.n !== answer.n);
+      } else if (answer.id !== undefined) {
+        this.entries_ = this.entries_.filter(
+          (entry) => entry.kind !== "single" || entry.message.id !== answer.id,
+        );
+      }
+    });
+  }
+
+  /** Whether the message is a stroke's batch, and one before it waits, too. */
+  follows_waiting_batch(id: string): boolean {
+    return this.entries_.some(
+      (entry) => entry.kind === "stroke" && entry.parts.findIndex((part) => part.id === id) > 0,
+    );
+  }
+
+  /** The server keeps all batches of the stroke up to n. */
+  saved_through(stroke: string, n: number): void {
+    const entry = this.stroke(stroke);
+    if (entry) this.shrink(() => (entry.parts = entry.parts.filter((part) => part.n > n)));
+  }
+
+  /** The server will never take this message. Returns the ids that are given up with it. */
+  give_up(id: string): string[] {
+    return this.shrink(() => {
+      for (const entry of this.entries_)
+        if (entry.kind === "stroke") entry.parts = entry.parts.filter((part) => part.id !== id);
+      this.entries_ = this.entries_.filter(
+        (entry) => (entry.kind === "single" ? entry.message.id : entry.begin.id) !== id,
+      );
+    });
+  }
+
+  /** What to send again, in order. */
+  messages(): ChangeMessage[] {
+    return this.entries_.flatMap((entry): ChangeMessage[] =>
+      entry.kind === "single"
+        ? [entry.message]
+        : [entry.begin, ...entry.parts, ...(entry.end ? [entry.end] : [])],
+    );
+  }
+
+  private stroke(stroke: string): StrokeEntry | undefined {
+    return this.entries_.find(
+      (entry): entry is StrokeEntry => entry.kind === "stroke" && entry.begin.stroke === stroke,
+    );
+  }
+
+  /**
+   * Strokes that ended and of which every batch is saved go, too. Returns the ids of what went;
+   * `besides`: came meanwhile.
+   */
+  private shrink(change: () => void, besides: readonly ChangeMessage[] = []): string[] {
+    const before = [...this.messages(), ...besides];
+    change();
+    this.entries_ = this.entries_.filter(
+      (entry) => entry.kind === "single" || entry.end === null || entry.parts.length > 0,
+    );
+    const left = new Set(this.messages());
+    const gone = before.filter((message) => !left.has(message)).map((message) => message.id);
+    if (gone.length > 0) this.dropped_(gone);
+    return gone;
+  }
+}

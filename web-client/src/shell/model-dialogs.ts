@@ -1,0 +1,23 @@
+// The dialogs of a model's page, which is shown without them: they come in a piece of their own
+// (`page-parts.ts`).
+
+import "../features/layers/color-dialog";
+import "../features/tables/column-dialog";
+import "../features/tables/csv-dialog";
+import "../features/records/delete-record-dialog";
+import "../features/figures/figure-dialog";
+import "../features/account/kiosks-dialog";
+import "../features/layers/layer-dialog";
+import "../features/layers/map-dialog";
+import "../features/layers/orthophoto-dialog";
+import "../features/records/photos-dialog";
+import "../features/records/record-dialog";
+import "../features/import/scale-dialog";
+import "./sheets";
+import "../features/layers/statistics-dialog";
+import "../features/layers/template-dialog";
+import "../features/tables/terms-dialog";
+import "../features/tours/tour-dialog";
+import "../features/layers/transfer-dialog";
+import "../features/views/view-dialog";
+import "../features/layers/where-dialog";

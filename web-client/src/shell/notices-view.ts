@@ -1,0 +1,127 @@
+// <strata-notices>: messages at the foot of the page.
+
+import { css, html, LitElement, type TemplateResult } from "lit";
+import { customElement, state } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { icon } from "../ui/icons";
+import { notices, type Notice, type NoticeLink } from "../ui/notices";
+import { follow } from "../ui/routes";
+import { shared_styles } from "../ui/styles";
+import { texts } from "../texts";
+
+@customElement("strata-notices")
+export class StrataNotices extends LitElement {
+  @state() private shown_: readonly Notice[] = [];
+  private unsubscribe_: (() => void) | null = null;
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        position: fixed;
+        z-index: 50;
+        left: 4.75rem; /* beside the tools and above the scale bar */
+        bottom: calc(4.75rem + var(--beneath, 0px)); /* what the page has below the picture */
+        display: grid;
+        gap: 0.5rem;
+        width: min(27.5rem, calc(100vw - 5.5rem));
+        pointer-events: none;
+      }
+      @media (max-width: 820px) {
+        :host {
+          left: 0.75rem;
+          bottom: calc(4.25rem + var(--beneath, 0px) + env(safe-area-inset-bottom));
+          width: calc(100vw - 1.5rem);
+        }
+      }
+      .notice {
+        display: flex;
+        align-items: flex-start;
+        gap: 0.625rem;
+        padding: 0.6875rem 0.5rem 0.6875rem 0.875rem;
+        border: var(--edge) solid var(--line);
+        border-left: 4px solid var(--calm);
+        border-radius: var(--radius);
+        background: var(--raised);
+        box-shadow: var(--shadow);
+        pointer-events: auto;
+        animation: rise 160ms ease-out;
+      }
+      .notice.problem {
+        border-left-color: var(--danger);
+      }
+      .notice.info {
+        border-left-color: var(--line-strong);
+      }
+      .words {
+        flex: 1;
+        min-width: 0;
+        padding-top: 2px;
+        overflow-wrap: anywhere;
+      }
+      .words strong {
+        font-weight: 600;
+      }
+      .words p {
+        color: var(--ink-soft);
+        font-size: 0.9rem;
+      }
+      button.icon {
+        width: 1.75rem;
+        min-height: 1.75rem;
+      }
+      button svg.glyph {
+        width: 1rem;
+        height: 1rem;
+      }
+      @keyframes rise {
+        from {
+          opacity: 0;
+          transform: translateY(0.5rem);
+        }
+      }
+    `,
+  ];
+
+  override connectedCallback(): void {
+    super.connectedCallback();
+    this.unsubscribe_ = notices.subscribe((shown) => (this.shown_ = shown));
+  }
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.unsubscribe_?.();
+  }
+
+  override render(): TemplateResult {
+    return html`${repeat(
+      this.shown_,
+      (notice) => notice.id,
+      (
+        notice,
+      ) => html`<div class="notice ${notice.kind}" role=${notice.kind === "problem" ? "alert" : "status"}>
+        <div class="words">
+          <strong>${notice.title}</strong>
+          ${notice.detail ? html`<p>${notice.detail}</p>` : ""}
+          ${notice.link ? link_of(notice, notice.link) : ""}
+        </div>
+        <button
+          class="icon quiet"
+          aria-label=${texts.close}
+          @click=${() => notices.dismiss(notice.id)}
+        >
+          ${icon("close")}
+        </button>
+      </div>`,
+    )}`;
+  }
+}
+
+function link_of({ id }: Notice, link: NoticeLink): TemplateResult {
+  if ("href" in link)
+    return html`<a class="text" href=${link.href} @click=${follow}>${link.label}</a>`;
+  const act = (): void => {
+    notices.dismiss(id);
+    link.act();
+  };
+  return html`<button class="link" @click=${act}>${link.label}</button>`;
+}

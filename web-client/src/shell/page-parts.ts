@@ -1,0 +1,66 @@
+// Pieces of the page that are loaded when they are first shown, or once nothing else is to be done.
+// Their elements are rendered when they are here and not before: an element that is defined later
+// is connected before it has what was set on it.
+
+import { notices } from "../ui/notices";
+import { texts } from "../texts";
+
+const kParts = {
+  home: () => import("../features/home/home-page"),
+  model: () => import("./model-page"),
+  model_dialogs: () => import("./model-dialogs"),
+  join: () => import("../features/account/join-page"),
+  sign_in: () => import("../features/account/sign-in"),
+  account: () => import("../features/account/account-dialog"),
+  people: () => import("../features/account/people-dialog"),
+  kiosks: () => import("../features/account/kiosks-dialog"),
+  preferences: () => import("../features/account/preferences-fields"),
+};
+export type PagePart = keyof typeof kParts;
+
+const here = new Set<PagePart>();
+const loading = new Map<PagePart, Promise<void>>();
+
+function load(part: PagePart): Promise<void> {
+  const under_way = loading.get(part);
+  if (under_way) return under_way;
+  const loaded = kParts[part]()
+    .then(() => void here.add(part))
+    .finally(() => loading.delete(part));
+  loading.set(part, loaded);
+  return loaded;
+}
+
+/**
+ * Whether it may be rendered. Where not, it is loaded, and `host` is rendered again when it is
+ * here. Files of a build go with it: a page that was opened before an update of the server may miss
+ * a piece, and is loaded anew by its person.
+ */
+export function has_part(part: PagePart, host: { requestUpdate(): void }): boolean {
+  if (here.has(part)) return true;
+  load(part).then(
+    () => host.requestUpdate(),
+    () => {
+      const link = { label: texts.connection.reload, act: () => location.reload() };
+      notices.show(
+        "problem",
+        texts.connection.part_missing,
+        texts.connection.part_missing_hint,
+        link,
+      );
+    },
+  );
+  return false;
+}
+
+/**
+ * Loads it while the person looks at something else. Nothing is said when it fails: it is asked for
+ * again when it is needed.
+ */
+export function load_part_later(part: PagePart): void {
+  const begin = (): void => {
+    if (!here.has(part)) load(part).catch(() => {});
+  };
+  if ("requestIdleCallback" in window) requestIdleCallback(begin, { timeout: 5000 });
+  else setTimeout(begin, 500); // Safari
+}

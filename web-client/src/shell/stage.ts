@@ -1,0 +1,322 @@
+// <strata-stage>: the streamed picture, the pointer's gestures, and what is drawn over it: brush
+// footprint, other people's pointers, scale bar.
+
+import { css, html, LitElement, nothing, svg, type TemplateResult } from "lit";
+import { customElement, property, query } from "lit/decorators.js";
+import { FrameCanvas } from "../net/frame-canvas";
+import type { FrameMessage } from "../net/frame-header";
+import { StageInput } from "../ui/input";
+import { metres_per, scale_bar } from "../domain/measure";
+import { color_of, css_color } from "../domain/palette";
+import { follow_session } from "../session/follow-session";
+import type { ModelSession } from "./model-session";
+import { measure_overlay } from "../features/measuring/measure-overlay";
+import { notices } from "../ui/notices";
+import { on_theme, stage_background } from "../ui/preferences";
+import { outline_overlay } from "../features/painting/outline-overlay";
+import "../features/presence/people-overlay";
+import { styled } from "../ui/styled";
+import { shared_styles } from "../ui/styles";
+import { texts } from "../texts";
+import { shape_picture } from "../features/painting/tool-shapes";
+
+const kMostWindowPixels = 1920 * 1200;
+const kMostScale = 2; // window pixels per CSS pixel
+const kScaleBar_px = 150;
+
+@customElement("strata-stage")
+export class StrataStage extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+  @query("canvas") private canvas_!: HTMLCanvasElement;
+  @query(".surface") private surface_!: HTMLElement;
+
+  private input_: StageInput | null = null;
+  private frames_: FrameCanvas | null = null;
+  private observer_: ResizeObserver | null = null;
+  private end_theme_: (() => void) | null = null;
+
+  constructor() {
+    super();
+    follow_session(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+        position: relative;
+        overflow: hidden;
+        background: var(--stage);
+        user-select: none;
+        -webkit-user-select: none;
+      }
+      .surface {
+        position: absolute;
+        inset: 0;
+        touch-action: none;
+        outline-offset: -3px;
+      }
+      .surface.paint {
+        cursor: none;
+      }
+      .surface.locked {
+        cursor: not-allowed;
+      }
+      .surface.orbit {
+        cursor: grab;
+      }
+      .surface.orbit:active {
+        cursor: grabbing;
+      }
+      .surface.pan {
+        cursor: move;
+      }
+      .surface.aim {
+        cursor: crosshair;
+      }
+      canvas,
+      svg.over {
+        position: absolute;
+        inset: 0;
+        width: 100%;
+        height: 100%;
+        pointer-events: none;
+      }
+      canvas {
+        object-fit: contain; /* while a picture of the new size is on its way after the stage was resized */
+      }
+      svg.over {
+        overflow: visible;
+      }
+      .shape-cursor {
+        position: absolute;
+        pointer-events: none;
+        opacity: 0.62;
+        filter: drop-shadow(0 0 1px var(--mark-light)) drop-shadow(0 0 1px var(--mark-dark));
+      }
+      .shape-cursor i {
+        display: block;
+        width: 100%;
+        height: 100%;
+        mask: center / 100% 100% no-repeat;
+      }
+      .length {
+        position: absolute;
+        display: flex;
+        pointer-events: none;
+      }
+      .length b {
+        padding: 3px 9px;
+        border-radius: 99px;
+        background: var(--mark-ground);
+        color: var(--mark-light);
+        font-size: 0.82rem;
+        font-weight: 600;
+        white-space: nowrap;
+      }
+      .waiting {
+        position: absolute;
+        inset: 0;
+        display: grid;
+        place-items: center;
+        color: var(--on-stage);
+        pointer-events: none;
+      }
+      .scale {
+        position: absolute;
+        left: 18px;
+        bottom: 16px;
+        color: var(--on-stage);
+        font-size: 0.8rem;
+        font-weight: 600;
+        pointer-events: none;
+        padding: 3px 8px 5px;
+        border-radius: 5px;
+        background: var(--on-stage-ground);
+      }
+      .scale small {
+        display: block;
+        font-weight: 400;
+      }
+      .scale i {
+        display: block;
+        height: 6px;
+        border: 2px solid var(--on-stage);
+        border-top: 0;
+      }
+      @media (max-width: 820px) {
+        .scale {
+          top: 12px;
+          bottom: auto;
+          left: 12px;
+        }
+        .scale.lowered {
+          top: 44px; /* beneath the label of <strata-together-bar> */
+        }
+      }
+    `,
+  ];
+
+  override firstUpdated(): void {
+    this.frames_ = new FrameCanvas(this.canvas_, {
+      drawn: (part) => this.on_drawn(part),
+      failed: (reason) => notices.show("problem", texts.problems.picture, reason),
+    });
+    this.session.on_frame = (part) => this.frames_?.push(part);
+    this.session.on_reset_frames = () => this.frames_?.reset();
+    this.input_ = new StageInput(
+      this.surface_,
+      this.session.gestures,
+      () => this.session.view.scale,
+    );
+    this.observer_ = new ResizeObserver(() => this.measure());
+    this.observer_.observe(this);
+    this.measure();
+    const show_background = (): void => this.session.set_background(stage_background());
+    this.end_theme_ = on_theme(show_background);
+    show_background();
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    this.observer_?.disconnect();
+    this.input_?.detach();
+    this.end_theme_?.();
+  }
+
+  set orbit_held(held: boolean) {
+    if (this.input_) this.input_.orbit_held = held;
+  }
+
+  /** What the canvas shows is told in its data attributes, for tests and tools. */
+  private on_drawn(part: FrameMessage): void {
+    this.session.frame_drawn(part);
+    const { dataset } = this.canvas_;
+    dataset["frames"] = String(this.session.view.frames_drawn);
+    dataset["cameraSeq"] = String(part.header.camera_seq);
+    dataset["sceneSequence"] = String(part.header.scene_sequence);
+    dataset["still"] = String(part.header.still);
+  }
+
+  private measure(): void {
+    const { clientWidth: width, clientHeight: height } = this;
+    if (width < 2 || height < 2) return;
+    const most = Math.sqrt(kMostWindowPixels / (width * height));
+    this.session.view.set_viewport(
+      width,
+      height,
+      Math.min(window.devicePixelRatio || 1, kMostScale, most),
+    );
+  }
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const tool = session.tools.active;
+    const locked = session.locked_target !== null;
+    const paints = !locked && (tool === "brush" || tool === "eraser");
+    const aims =
+      tool === "polygon" ||
+      tool === "lasso" ||
+      tool === "bucket" ||
+      tool === "pick" ||
+      tool === "line" ||
+      tool === "point" ||
+      tool === "comment" ||
+      tool === "measure" ||
+      tool === "face";
+    return html`<div
+        class="surface ${locked ? "locked" : paints ? "paint" : aims ? "aim" : tool}"
+        tabindex="0"
+        role="application"
+        aria-label=${texts.model.stage}
+      >
+        <canvas width="2" height="2"></canvas>
+        ${paints ? this.brush_cursor() : nothing}
+        ${session.tools.outline ? outline_overlay(session, session.tools.outline) : nothing}
+        ${tool === "measure" ? measure_overlay(session) : nothing}
+      </div>
+      <strata-people-overlay .session=${session}></strata-people-overlay>
+      ${this.scale_bar()}
+      ${
+        session.view.frames_drawn === 0
+          ? html`<div class="waiting" role="status">${texts.model.waiting_for_picture}</div>`
+          : nothing
+      }`;
+  }
+
+  /** The footprint in the picture: what the stroke covers, to the pixel. */
+  private brush_cursor(): TemplateResult {
+    const { session } = this;
+    const { at } = session.pointer;
+    const { scale } = session.view;
+    if (!at) return html``;
+    const [x, y] = [at.x / scale, at.y / scale];
+    const radius = session.painting.radius_window_px() / scale;
+    const layer = session.layers.selected;
+    const erases = session.tools.active === "eraser";
+    const color =
+      layer && !erases ? color_of(layer.palette, session.painting.brush.value_of(layer)) : null;
+    const fill = color ? css_color(color) : "none";
+    const { shape } = session.painting.brush;
+    const square = shape === "square";
+    if (typeof shape === "number" && radius >= 4)
+      return this.shape_cursor(shape, x, y, radius, erases ? null : color);
+    const outline = (
+      width: number,
+      stroke: string,
+      dashes: string,
+      filled: boolean,
+    ): TemplateResult =>
+      square
+        ? svg`<rect x=${x - radius} y=${y - radius} width=${2 * radius} height=${2 * radius} fill=${filled ? fill : "none"}
+            fill-opacity="0.32" stroke=${stroke} stroke-width=${width} stroke-dasharray=${dashes} />`
+        : svg`<circle cx=${x} cy=${y} r=${radius} fill=${filled ? fill : "none"}
+            fill-opacity="0.32" stroke=${stroke} stroke-width=${width} stroke-dasharray=${dashes} />`;
+    const dashes = erases ? "5 4" : "none";
+    return html`<svg class="over" aria-hidden="true">
+      ${outline(3, "var(--mark-rim)", "none", true)} ${outline(1.5, "var(--mark-light)", dashes, false)}
+      ${
+        radius < 4
+          ? svg`<path d="M${x - 10} ${y}h6M${x + 4} ${y}h6M${x} ${y - 10}v6M${x} ${y + 4}v6" stroke="var(--mark-dark)" stroke-width="1.5" />`
+          : svg`<circle cx=${x} cy=${y} r="1.2" fill="var(--mark-light)" />`
+      }
+    </svg>`;
+  }
+
+  /** The same for a shape of a picture: a tint with a dark rim, in the layer's colour or clear. */
+  private shape_cursor(
+    tool: number,
+    x: number,
+    y: number,
+    radius: number,
+    color: string | null,
+  ): TemplateResult {
+    const square = {
+      left: `${x - radius}px`,
+      top: `${y - radius}px`,
+      width: `${2 * radius}px`,
+      height: `${2 * radius}px`,
+    };
+    const tint = {
+      "mask-image": `url(${shape_picture(tool)})`,
+      background: color ? css_color(color) : "var(--mark-light)",
+    };
+    return html`<div class="shape-cursor" aria-hidden="true" ${styled(square)}><i ${styled(tint)}></i></div>`;
+  }
+
+  private scale_bar(): TemplateResult {
+    const { session } = this;
+    if (!session.model || session.view.frames_drawn === 0) return html``;
+    const depth = session.pointer.picked?.hit
+      ? session.pointer.surface_depth()
+      : session.view.camera.distance;
+    const metres_per_px =
+      session.view.camera.unit_per_pixel(depth) *
+      session.view.scale *
+      metres_per(session.shown_unit);
+    const bar = scale_bar(metres_per_px, kScaleBar_px);
+    const lowered = session.together.followed || session.together.leading;
+    return html`<div class="scale numeric ${lowered ? "lowered" : ""}"><i ${styled({ width: `${bar.px.toFixed(1)}px` })}></i>${bar.label}${session.model.scale_verified ? nothing : html`<small>${texts.home.scale_open}</small>`}</div>`;
+  }
+}

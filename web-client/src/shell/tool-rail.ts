@@ -1,0 +1,243 @@
+// <strata-tool-rail>: tools, views, undo and redo.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import type { StandardView } from "../math/camera";
+import { kChangingTools, type ToolName } from "../tools/tool";
+import { follow_session } from "../session/follow-session";
+import { icon } from "../ui/icons";
+import "../ui/menu";
+import type { ModelSession } from "./model-session";
+import { ScrollFade } from "../ui/scroll-fade";
+import { shared_styles } from "../ui/styles";
+import { texts } from "../texts";
+import type { StepName } from "../features/onboarding/onboarding-steps";
+
+const kTools: [Exclude<ToolName, "face">, string][] = [
+  ["orbit", "V"],
+  ["pan", "H"],
+  ["brush", "B"],
+  ["eraser", "E"],
+  ["polygon", "A"],
+  ["lasso", "L"],
+  ["bucket", "G"],
+  ["line", "D"],
+  ["point", "S"],
+  ["pick", "I"],
+  ["measure", "M"],
+  ["comment", "C"],
+];
+/** What a step of the tour speaks of. */
+const kOfTour: Partial<Record<ToolName, StepName>> = { brush: "brush", pick: "values" };
+const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
+
+@customElement("strata-tool-rail")
+export class StrataToolRail extends LitElement {
+  @property({ attribute: false }) session!: ModelSession;
+
+  constructor() {
+    super();
+    follow_session(this);
+    new ScrollFade(this);
+  }
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: flex;
+        flex-direction: column;
+        align-items: center;
+        gap: 4px;
+        padding: 0.625rem 0.5rem;
+        background: var(--surface);
+        border-right: var(--edge) solid var(--line);
+      }
+      button.icon {
+        width: 2.625rem;
+        min-height: 2.625rem;
+      }
+      button[aria-pressed="true"] {
+        background: var(--accent);
+        border-color: var(--accent);
+        color: var(--accent-ink);
+      }
+      button[aria-pressed="true"]:hover:not(:disabled) {
+        background: var(--accent);
+      }
+      .turns {
+        display: contents;
+      }
+      hr:not(strata-menu > hr) {
+        width: 1.75rem;
+        margin: 5px 0;
+        border: 0;
+        border-top: var(--edge) solid var(--line);
+      }
+      kbd {
+        margin-left: auto;
+        padding-left: 1.125rem;
+        color: var(--ink-soft);
+        font: 0.8rem var(--mono);
+      }
+      @media (max-width: 820px) {
+        :host {
+          flex-direction: row;
+          justify-content: safe center;
+          overflow-x: auto;
+          gap: 2px;
+          padding: 0.375rem;
+          border-right: 0;
+          border-top: var(--edge) solid var(--line);
+          --fade: 2.125rem;
+          --from: 0px;
+          --to: 0px;
+          --turns: 0px; /* room of what does not scroll */
+          scroll-padding-inline: var(--fade) calc(var(--fade) + var(--turns)); /* a button that the keyboard comes to is seen whole */
+        }
+        :host([paints]) {
+          --turns: calc(2 * 2.75rem + 1.125rem);
+        }
+        /* What was painted can be taken back at any time: these stay while the tools scroll beneath them. */
+        .turns {
+          position: sticky;
+          z-index: 1;
+          right: 0;
+          order: 1;
+          display: flex;
+          flex: none;
+          align-items: center;
+          justify-content: end;
+          box-sizing: border-box;
+          width: var(--turns);
+          margin-right: -0.375rem;
+          padding-right: 0.375rem;
+          background: var(--surface);
+        }
+        .turns hr:last-child {
+          display: none;
+        }
+        :host([more-before]) {
+          --from: var(--fade);
+        }
+        :host([more-after]) {
+          --to: var(--fade);
+        }
+        :host([more-before]),
+        :host([more-after]) {
+          mask-image: linear-gradient(to right, transparent, black var(--from), black calc(100% - var(--turns) - var(--to)), transparent calc(100% - var(--turns))),
+            linear-gradient(to right, transparent calc(100% - var(--turns)), black calc(100% - var(--turns)));
+        }
+        hr:not(strata-menu > hr) {
+          width: 0;
+          height: 1.625rem;
+          margin: 0 3px;
+          border-left: var(--edge) solid var(--line);
+          border-top: 0;
+        }
+        button.icon,
+        strata-menu {
+          flex: 1 1 0;
+          width: auto;
+          min-width: 2.125rem;
+          max-width: 3.25rem;
+        }
+        strata-menu {
+          text-align: center;
+        }
+      }
+    `,
+  ];
+
+  override willUpdate(): void {
+    this.toggleAttribute("paints", this.session.can_paint);
+  }
+
+  override render(): TemplateResult {
+    const { session } = this;
+    const words = texts.model;
+    const shown = kTools.filter(([name]) => this.shows(name));
+    return html`${shown.map(
+      ([name, key]) =>
+        html`<button
+            class="icon quiet"
+            data-tour=${kOfTour[name] ?? nothing}
+            aria-pressed=${session.tools.active === name}
+            aria-label=${texts.tools[name]}
+            title="${texts.tools[name]} (${key})"
+            @click=${() => session.choose_tool(name)}
+          >
+            ${icon(name)}
+          </button>`,
+    )}
+      ${
+        session.can_paint
+          ? html`<div class="turns">
+            <hr />
+            <button
+              class="icon quiet"
+              data-tour="undo"
+              aria-label=${words.undo}
+              title="${words.undo} (Ctrl Z)"
+              ?disabled=${!session.layers.selected}
+              @click=${() => session.undo()}
+            >
+              ${icon("undo")}
+            </button>
+            <button
+              class="icon quiet"
+              aria-label=${words.redo}
+              title="${words.redo} (Ctrl Shift Z)"
+              ?disabled=${!session.layers.selected}
+              @click=${() => session.redo()}
+            >
+              ${icon("redo")}
+            </button>
+            <hr />
+          </div>`
+          : html`<hr />`
+      }
+      <button
+        class="icon quiet"
+        aria-label=${texts.views.fit}
+        title="${texts.views.fit} (Home)"
+        @click=${() => session.view.fit()}
+      >
+        ${icon("fit")}
+      </button>
+      <strata-menu label=${words.view} glyph="cube" side="right">
+        ${kViews.map(
+          (view, index) =>
+            html`<button class="quiet" role="menuitem" @click=${() => session.view.standard_view(view)}>
+              ${texts.views[view]}<kbd>${index + 1}</kbd>
+            </button>`,
+        )}
+        <hr />
+        ${this.projection(true, texts.views.perspective, "P")} ${this.projection(false, texts.views.orthographic, "O")}
+      </strata-menu>`;
+  }
+
+  /** Lines and points have their tools where the layer's table has columns of them. */
+  private shows(name: ToolName): boolean {
+    const { session } = this;
+    if (kChangingTools.includes(name) && !session.can_paint) return false;
+    return (
+      (name !== "line" && name !== "point") ||
+      session.tools.active === name ||
+      session.marks.column(name) !== null
+    );
+  }
+
+  private projection(perspective: boolean, label: string, key: string): TemplateResult {
+    const { session } = this;
+    const chosen = session.view.camera.perspective === perspective;
+    return html`<button
+      class="quiet"
+      role="menuitemradio"
+      aria-checked=${chosen}
+      @click=${() => session.view.set_perspective(perspective)}
+    >
+      ${label}${chosen ? icon("check") : nothing}<kbd>${key}</kbd>
+    </button>`;
+  }
+}

@@ -1,0 +1,60 @@
+// Every word the page shows, in the language of this person. What the server says (problems, steps
+// of work) is English, whatever the page's language.
+//
+// English is the measure: `Texts` is made from it, so a translation that lacks a text, has one too
+// many or takes other arguments does not compile.
+
+import { set_locale, type PageLanguage } from "../core/locale";
+import { say_own_problems_in } from "../core/problems";
+
+/**
+ * The shape of the texts without their words. Lists keep their length: each line of the help is
+ * there in each language.
+ */
+type Shape<T> = T extends string
+  ? string
+  : T extends number
+    ? number
+    : T extends (...args: infer Arguments) => unknown
+      ? (...args: Arguments) => string
+      : { readonly [Key in keyof T]: Shape<T[Key]> };
+
+export type Texts = Shape<typeof import("./en").texts>;
+
+/**
+ * How many arguments each text takes. TypeScript lets a function leave out arguments; a translation
+ * that does has lost something.
+ */
+type Arity<T> = T extends (...args: infer Arguments) => unknown
+  ? Arguments["length"]
+  : T extends string | number
+    ? 0
+    : { readonly [Key in keyof T]: Arity<T[Key]> };
+
+type Translation<Module extends { texts: Texts }> =
+  Arity<Module["texts"]> extends Arity<Texts> ? () => Promise<Module> : never;
+
+const load_de: Translation<typeof import("./de")> = () => import("./de");
+const load_es: Translation<typeof import("./es")> = () => import("./es");
+const loads: Record<PageLanguage, () => Promise<{ texts: Texts }>> = {
+  en: () => import("./en"),
+  de: load_de,
+  es: load_es,
+};
+
+/** Set by load_texts(), which comes before the import of everything that shows words. */
+export let texts: Texts;
+
+/**
+ * Loads the words of that language, and of no other. `chosen`: by the person, not by the languages
+ * of their browser.
+ */
+export async function load_texts(
+  language: PageLanguage,
+  chosen: boolean,
+  browser: readonly string[],
+): Promise<void> {
+  set_locale(language, chosen, browser);
+  texts = (await loads[language]()).texts;
+  say_own_problems_in(texts.calls);
+}

@@ -1,0 +1,422 @@
+// <strata-dialog>: a modal sheet with a heading, content and a row of buttons: the way out of it,
+// then what it does (slot "actions").
+
+import { css, html, LitElement, nothing, ReactiveElement, type TemplateResult } from "lit";
+import { customElement, property, query, state } from "lit/decorators.js";
+import { icon } from "./icons";
+import { has_fingers } from "./pointers";
+import { shared_styles } from "./styles";
+import { texts } from "../texts";
+
+const open_dialogs = new Set<HTMLDialogElement>();
+
+/**
+ * Keys that reach the page while a dialog is open, because nothing in it has the focus, are not for
+ * the page.
+ */
+export const modal_is_open = (): boolean => open_dialogs.size > 0;
+
+const docked_dialogs = new Set<HTMLDialogElement>();
+
+/** A dialog stands beside the picture: the page goes on, but nothing else asks for attention. */
+export const docked_is_open = (): boolean => docked_dialogs.size > 0;
+
+@customElement("strata-dialog")
+export class StrataDialog extends LitElement {
+  @property() heading = "";
+  /** What the button says that leaves it as it is; empty: only the cross does. */
+  @property() way_out = "";
+  @property({ type: Boolean, reflect: true }) wide = false;
+  /** For tables. */
+  @property({ type: Boolean, reflect: true }) broad = false;
+  /** For an editor of many parts. */
+  @property({ type: Boolean, reflect: true }) vast = false;
+  /** Holds words to read and hardly a control: it is scrolled by keys as well. */
+  @property({ type: Boolean }) prose = false;
+  /** Has so much to read that it stands in two columns on walls. */
+  @property({ type: Boolean, reflect: true }) long = false;
+  /** Leaves the picture behind it visible: for questions about what is seen. */
+  @property({ type: Boolean, reflect: true }) aside = false;
+  /**
+   * Stands beside the picture, which is neither dimmed nor out of reach: for questions that one
+   * answers by looking at the model.
+   */
+  @property({ type: Boolean, reflect: true }) docked = false;
+  /**
+   * Asked before a person closes it by Escape, its cross or beside it; null: it closes. close()
+   * does not ask.
+   */
+  @property({ attribute: false }) may_close: (() => Promise<boolean>) | null = null;
+  @state() private acts_ = false; // has buttons of its own
+  private asking_ = false;
+  private closes_ = false; // what closes it was asked, or need not ask
+  private used_ = false; // by keys or the pointer
+
+  @query("dialog") private dialog_!: HTMLDialogElement;
+  @query(".content") private content_!: HTMLElement;
+  @query(".way-out") private way_out_!: HTMLButtonElement | null;
+
+  static override styles = [
+    shared_styles,
+    css`
+      dialog {
+        width: min(28.75rem, calc(100vw - 1.5rem));
+        max-width: none;
+        max-height: calc(100dvh - 1.5rem);
+        padding: 0;
+        border: var(--edge) solid var(--line);
+        border-radius: 0.875rem;
+        background: var(--surface);
+        color: var(--ink);
+        box-shadow: var(--shadow);
+        outline: none; /* it has the keyboard where nothing in it takes any */
+      }
+      dialog[open] {
+        display: flex;
+        flex-direction: column;
+      }
+      :host([wide]) dialog {
+        width: min(40rem, calc(100vw - 1.5rem));
+      }
+      :host([broad]) dialog {
+        width: min(51.25rem, calc(100vw - 1.5rem));
+      }
+      :host([vast]) dialog {
+        width: min(66.25rem, calc(100vw - 1.5rem));
+      }
+      @media (min-width: 2560px) {
+        :host([long]) dialog {
+          width: 84rem;
+        }
+      }
+      dialog::backdrop {
+        background: var(--veil);
+      }
+      :host([aside]) dialog {
+        margin: 4.125rem 0.875rem auto auto;
+      }
+      :host([aside]) dialog::backdrop {
+        background: var(--thin-veil);
+      }
+      :host([docked]) dialog {
+        position: fixed;
+        inset: 4.125rem 0.875rem auto auto;
+        max-height: calc(100dvh - 5rem);
+        margin: 0;
+        z-index: 30;
+      }
+      .head {
+        display: flex;
+        align-items: flex-start;
+        gap: 0.75rem;
+        padding: 1.25rem 0.875rem 0 1.5rem;
+      }
+      h2 {
+        flex: 1;
+        padding-top: 3px;
+        font-size: 1.3rem;
+        text-wrap: balance;
+        overflow-wrap: anywhere;
+      }
+      .content {
+        display: grid;
+        gap: 1rem;
+        padding: 0.875rem 1.5rem 1.25rem;
+        overflow: auto;
+        outline-offset: -2px;
+      }
+      .content.begun:focus-visible {
+        outline: none; /* it was opened a moment ago: what has the keyboard is the whole of it */
+      }
+      footer {
+        display: flex;
+        flex-wrap: wrap;
+        justify-content: flex-end;
+        gap: 0.625rem;
+        padding: 0.875rem 1.5rem 1.125rem;
+        border-top: var(--edge) solid var(--line);
+      }
+      footer.empty {
+        display: none;
+      }
+      @media (max-width: 560px) {
+        footer {
+          gap: 6px;
+          padding: 0.75rem 0.875rem 0.875rem;
+        }
+        .way-out,
+        ::slotted(button[slot="actions"]) {
+          padding: 0 0.5rem !important;
+        }
+        dialog {
+          width: 100vw;
+          margin: auto 0 0;
+          border-radius: 1rem 1rem 0 0;
+        }
+        :host([wide]) dialog,
+        :host([broad]) dialog,
+        :host([vast]) dialog {
+          width: 100vw;
+        }
+        :host([aside]) dialog {
+          margin: auto 0 0;
+        }
+        :host([docked]) dialog {
+          inset: auto 0 0 0;
+          max-height: 62dvh; /* what it asks about is seen above it */
+        }
+      }
+    `,
+  ];
+
+  override firstUpdated(): void {
+    if (this.docked) {
+      this.dialog_.show();
+      docked_dialogs.add(this.dialog_);
+    } else {
+      this.dialog_.showModal();
+      open_dialogs.add(this.dialog_);
+    }
+    void this.begin();
+  }
+
+  /**
+   * Where the keyboard begins: what asks for it, or else the first control, or the way out; never
+   * the cross, which is the browser's choice.
+   */
+  private async begin(): Promise<void> {
+    const asks = this.querySelector<HTMLElement>("[autofocus]");
+    if (asks) return asks.focus();
+    const first = (this.prose ? this.content_ : await first_stop(this.content_)) ?? this.way_out_;
+    if (this.used_ || !this.dialog_.open) return;
+    if (first === this.content_) this.content_.classList.add("begun");
+    (first && !opens_keyboard(first) ? first : this.dialog_).focus();
+  }
+
+  /** What it had to ask the server for has come. */
+  private on_content(): void {
+    if (!this.used_ && this.dialog_.open) void this.begin();
+  }
+
+  override disconnectedCallback(): void {
+    super.disconnectedCallback();
+    open_dialogs.delete(this.dialog_);
+    docked_dialogs.delete(this.dialog_);
+  }
+
+  /** Closes and tells: the owner removes the element on "closed". */
+  close(): void {
+    this.closes_ = true;
+    this.dialog_.close();
+  }
+
+  /** As a person closes it. */
+  async leave(): Promise<void> {
+    if (this.asking_) return;
+    this.asking_ = true;
+    try {
+      if (!this.may_close || (await this.may_close())) this.close();
+    } finally {
+      this.asking_ = false;
+    }
+  }
+
+  override render(): TemplateResult {
+    const used = (): void => void (this.used_ = true);
+    const on_key = (event: KeyboardEvent): void => {
+      used();
+      // of others the browser takes care
+      if (!this.docked || event.key !== "Escape" || event.defaultPrevented) return;
+      event.preventDefault();
+      event.stopPropagation();
+      void this.leave();
+    };
+    return html`<dialog
+      aria-labelledby="heading"
+      tabindex="-1"
+      autofocus
+      @cancel=${this.on_cancel}
+      @close=${this.on_close}
+      @click=${this.on_click}
+      @keydown=${on_key}
+      @pointerdown=${used}
+      @input=${used}
+    >
+      <div class="head">
+        <h2 id="heading">${this.heading}</h2>
+        <button class="icon quiet" aria-label=${texts.close} title=${texts.close} @click=${() => void this.leave()}>
+          ${icon("close")}
+        </button>
+      </div>
+      <div
+        class="content"
+        tabindex=${this.prose ? 0 : nothing}
+        role=${this.prose ? "region" : nothing}
+        aria-labelledby=${this.prose ? "heading" : nothing}
+        @blur=${() => this.content_.classList.remove("begun")}
+      >
+        <slot @slotchange=${this.on_content}></slot>
+      </div>
+      <footer class=${this.way_out || this.acts_ ? "" : "empty"}>
+        <slot name="told"></slot>
+        ${this.way_out ? html`<button class="way-out" @click=${() => void this.leave()}>${this.way_out}</button>` : nothing}
+        <slot name="actions" @slotchange=${this.on_actions}></slot>
+      </footer>
+    </dialog>`;
+  }
+
+  private on_actions(event: Event): void {
+    this.acts_ = (event.target as HTMLSlotElement).assignedElements().length > 0;
+  }
+
+  private on_cancel(event: Event): void {
+    // a file field, too, tells that nothing was chosen
+    if (!this.may_close || event.target !== this.dialog_) return;
+    event.preventDefault();
+    void this.leave();
+  }
+
+  private on_close(): void {
+    if (this.may_close && !this.closes_) {
+      this.dialog_.showModal(); // browsers close it at a second Escape whatever the page says
+      void this.leave();
+      return;
+    }
+    open_dialogs.delete(this.dialog_);
+    docked_dialogs.delete(this.dialog_);
+    this.dispatchEvent(new CustomEvent("closed"));
+  }
+
+  private on_click(event: MouseEvent): void {
+    if (event.target === this.dialog_ && !this.docked) void this.leave(); // the backdrop
+  }
+}
+
+const kStops = "a[href], button, input, select, textarea, summary, [tabindex]";
+
+/**
+ * The first control that the Tab key reaches in it, within elements of their own and slots, too.
+ */
+async function first_stop(root: Element): Promise<HTMLElement | null> {
+  const is_stop =
+    root instanceof HTMLElement &&
+    root.matches(kStops) &&
+    root.tabIndex >= 0 &&
+    !root.matches(":disabled") &&
+    root.checkVisibility();
+  if (is_stop) return root;
+  if (root instanceof ReactiveElement) await root.updateComplete;
+  for (const each of root instanceof HTMLSlotElement
+    ? root.assignedElements()
+    : (root.shadowRoot ?? root).children) {
+    const found = await first_stop(each);
+    if (found) return found;
+  }
+  return null;
+}
+
+/** On touch screens fields bring up a keyboard that covers half of the dialog. */
+const opens_keyboard = (element: HTMLElement): boolean =>
+  has_fingers() && element.matches("input[type=text], input[type=password], textarea");
+
+/** A question with two answers; asked by ask(). */
+@customElement("strata-question")
+class StrataQuestion extends LitElement {
+  @property() heading = "";
+  @property() lead = "";
+  @property() yes = "";
+  @property({ type: Boolean }) danger = false;
+  answer: (yes: boolean) => void = () => {};
+
+  static override styles = shared_styles;
+
+  @query("strata-dialog") private dialog_!: StrataDialog;
+  private answered_ = false;
+
+  override render(): TemplateResult {
+    return html`<strata-dialog heading=${this.heading} way_out=${texts.cancel} @closed=${() => this.finish()}>
+      <p>${this.lead}</p>
+      <button
+        slot="actions"
+        class=${this.danger ? "danger" : "primary"}
+        @click=${() => {
+          this.answered_ = true;
+          this.dialog_.close();
+        }}
+      >
+        ${this.yes}
+      </button>
+    </strata-dialog>`;
+  }
+
+  private finish(): void {
+    this.answer(this.answered_);
+    this.remove();
+  }
+}
+
+export function ask(question: {
+  heading: string;
+  lead: string;
+  yes: string;
+  danger?: boolean;
+}): Promise<boolean> {
+  return new Promise((resolve) => {
+    const element = new StrataQuestion();
+    Object.assign(element, { danger: false, ...question, answer: resolve });
+    document.body.append(element);
+  });
+}
+
+/** A question for one line of text; asked by ask_text(). */
+@customElement("strata-text-question")
+class StrataTextQuestion extends LitElement {
+  @property() heading = "";
+  @property() label = "";
+  @property() text = "";
+  @property() yes = "";
+  answer: (text: string | null) => void = () => {};
+
+  static override styles = shared_styles;
+
+  @query("strata-dialog") private dialog_!: StrataDialog;
+  @query("input") private input_!: HTMLInputElement;
+  private answered_: string | null = null;
+
+  override render(): TemplateResult {
+    return html`<strata-dialog heading=${this.heading} way_out=${texts.cancel} @closed=${() => this.finish()}>
+      <form id="question" @submit=${this.on_submit}>
+        <label class="field">
+          <span>${this.label}</span>
+          <input type="text" required maxlength="200" .value=${this.text} autofocus />
+        </label>
+      </form>
+      <button slot="actions" class="primary" form="question">${this.yes}</button>
+    </strata-dialog>`;
+  }
+
+  private on_submit(event: Event): void {
+    event.preventDefault();
+    this.answered_ = this.input_.value.trim() || null;
+    this.dialog_.close();
+  }
+
+  private finish(): void {
+    this.answer(this.answered_);
+    this.remove();
+  }
+}
+
+/** The text; null: none was given. */
+export function ask_text(question: {
+  heading: string;
+  label: string;
+  text: string;
+  yes: string;
+}): Promise<string | null> {
+  return new Promise((resolve) => {
+    const element = new StrataTextQuestion();
+    Object.assign(element, { ...question, answer: resolve });
+    document.body.append(element);
+  });
+}

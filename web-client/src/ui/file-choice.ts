@@ -1,0 +1,99 @@
+// <strata-file-choice>: where a dialog takes files: a button, or they are dropped beside it. Tells
+// them by "files".
+
+import { css, html, LitElement, type TemplateResult } from "lit";
+import { customElement, property, query } from "lit/decorators.js";
+import { format_list } from "../core/locale";
+import { FileDrop } from "./drop";
+import { icon } from "./icons";
+import { shared_styles } from "./styles";
+import { texts } from "../texts";
+
+const words = texts.file_choice;
+
+@customElement("strata-file-choice")
+export class StrataFileChoice extends LitElement {
+  /** What is asked for, in words. */
+  @property() label = "";
+  /** Endings, as an input takes them. */
+  @property() accept = "";
+  /** Files that belong together; otherwise the first one counts. */
+  @property({ type: Boolean }) multiple = false;
+  @property({ type: Boolean }) disabled = false;
+  /** That were taken so far. */
+  @property({ attribute: false }) names: readonly string[] = [];
+  @query("input") private input_!: HTMLInputElement;
+  private readonly drop_ = new FileDrop(this, (files) => this.take(files));
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host {
+        display: block;
+      }
+      div {
+        display: flex;
+        align-items: center;
+        gap: 0.75rem;
+        padding: 0.75rem;
+        border: var(--edge) dashed var(--line-strong);
+        border-radius: var(--radius-small);
+      }
+      div.over {
+        border-color: var(--accent);
+        background: var(--accent-soft);
+      }
+      input {
+        display: none;
+      }
+      button {
+        flex: none;
+      }
+      span {
+        min-width: 0;
+        overflow-wrap: anywhere;
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { label, names, multiple, disabled } = this;
+    const choose = multiple ? words.choose_several : words.choose;
+    const drop = multiple ? words.drop_several : words.drop;
+    return html`<div
+      role="group"
+      aria-label=${label}
+      class=${this.drop_.over ? "over" : ""}
+    >
+      <button type="button" ?disabled=${disabled} @click=${() => this.input_.click()}>${icon("upload")}${choose}</button>
+      <input
+        type="file"
+        tabindex="-1"
+        aria-label=${label}
+        accept=${this.accept}
+        ?multiple=${multiple}
+        ?disabled=${disabled}
+        @change=${this.on_chosen}
+      />
+      <span class=${names.length > 0 ? "" : "hint"} role="status">${names.length > 0 ? format_list(names) : drop}</span>
+    </div>`;
+  }
+
+  private take(files: readonly File[]): void {
+    if (this.disabled) return;
+    const taken = this.multiple ? [...files] : files.slice(0, 1);
+    if (taken.length > 0) this.dispatchEvent(new CustomEvent<File[]>("files", { detail: taken }));
+  }
+
+  private readonly on_chosen = (): void => {
+    const files = [...(this.input_.files ?? [])];
+    this.input_.value = ""; // so that the same one, mended, can be chosen again
+    this.take(files);
+  };
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "strata-file-choice": StrataFileChoice;
+  }
+}

@@ -1,0 +1,176 @@
+// <strata-labels-field>: what a thing is called in other languages, a row for each.
+
+import { css, html, LitElement, nothing, type PropertyValues, type TemplateResult } from "lit";
+import { customElement, property, state } from "lit/decorators.js";
+import {
+  descriptions_of,
+  kCommonLanguages,
+  labels_of,
+  name_of_language,
+  rows_of,
+  well_written_tag,
+  type LabelRow,
+} from "../core/languages";
+import { compare_words } from "../core/locale";
+import type { Labels } from "../core/protocol.gen";
+import { icon } from "./icons";
+import { shared_styles } from "./styles";
+import { texts } from "../texts";
+
+const words = texts.labels;
+const offered = kCommonLanguages
+  .map((tag) => ({ tag, name: name_of_language(tag) }))
+  .sort((a, b) => compare_words(a.name, b.name));
+
+@customElement("strata-labels-field")
+export class StrataLabelsField extends LitElement {
+  /** As they were; what is written since is kept by the field. */
+  @property({ attribute: false }) labels: Labels = {};
+  /** Of things that have a description in each language, too. */
+  @property({ attribute: false }) descriptions: Labels | null = null;
+  @state() private rows_: LabelRow[] = [];
+  @state() private problem_ = "";
+  @state() private wrong_: number[] = []; // rows that the problem is about
+
+  static override styles = [
+    shared_styles,
+    css`
+      :host,
+      .rows {
+        display: grid;
+        gap: 0.375rem;
+      }
+      .rows > div {
+        display: grid;
+        grid-template-columns: 6.5rem minmax(0, 1fr) auto;
+        gap: 0.375rem;
+      }
+      textarea {
+        grid-column: 2;
+        min-height: 2.75rem;
+      }
+      button.add {
+        justify-self: start;
+        min-height: 2rem;
+      }
+      .caption {
+        margin-bottom: -1px;
+      }
+    `,
+  ];
+
+  override willUpdate(changed: PropertyValues<this>): void {
+    if (changed.has("labels") || changed.has("descriptions"))
+      this.rows_ = rows_of(this.labels, this.descriptions ?? {});
+  }
+
+  override render(): TemplateResult {
+    return html`<span class="caption" id="caption">${words.title}</span>
+      <div class="rows" role="group" aria-labelledby="caption" ?hidden=${this.rows_.length === 0}>${this.rows_.map((row, index) => this.row(row, index))}</div>
+      ${this.problem_ ? html`<span class="error" id="problem" role="alert">${this.problem_}</span>` : nothing}
+      <button type="button" class="add" @click=${() => void this.add()}>${icon("plus")}${words.add}</button>
+      <datalist id="languages">${offered.map(({ tag, name }) => html`<option value=${tag} label=${name}></option>`)}</datalist>`;
+  }
+
+  private row({ language, label, description = "" }: LabelRow, index: number): TemplateResult {
+    const name = name_of_language(language);
+    const wrong = this.wrong_.includes(index);
+    return html`<div>
+      <input
+        type="text"
+        class="language"
+        list="languages"
+        maxlength="35"
+        spellcheck="false"
+        autocapitalize="off"
+        aria-label=${words.language(index + 1)}
+        aria-invalid=${wrong ? "true" : "false"}
+        aria-describedby=${wrong ? "problem" : nothing}
+        placeholder=${words.language_example}
+        title=${name}
+        .value=${language}
+        @input=${(event: Event) => this.change(index, { language: (event.target as HTMLInputElement).value })}
+        @change=${() => this.change(index, { language: well_written_tag(this.rows_[index]!.language.trim()) ?? this.rows_[index]!.language.trim() })}
+      />
+      <input
+        type="text"
+        maxlength="200"
+        lang=${name ? language : nothing}
+        aria-label=${words.label(name || language || words.language(index + 1))}
+        placeholder=${name}
+        .value=${label}
+        @input=${(event: Event) => this.change(index, { label: (event.target as HTMLInputElement).value })}
+      />
+      <button type="button" class="icon quiet" aria-label=${words.remove(name || language)} title=${words.remove(name || language)} @click=${() => this.remove_row(index)}>
+        ${icon("close")}
+      </button>
+      ${
+        this.descriptions === null
+          ? nothing
+          : html`<textarea
+            rows="2"
+            maxlength="10000"
+            lang=${name ? language : nothing}
+            aria-label=${words.description(name || language || words.language(index + 1))}
+            placeholder=${words.description(name || language || words.language(index + 1))}
+            .value=${description}
+            @input=${(event: Event) => this.change(index, { description: (event.target as HTMLTextAreaElement).value })}
+          ></textarea>`
+      }
+    </div>`;
+  }
+
+  /** Of what read() takes. */
+  get written_descriptions(): Labels {
+    return descriptions_of(this.rows_);
+  }
+
+  /** Null: something is wrong with a row, and said there. */
+  read(): Labels | null {
+    this.tell("", []);
+    const read = labels_of(this.rows_);
+    if ("labels" in read) return read.labels;
+    this.tell(words[read.wrong], [read.row]);
+    return null;
+  }
+
+  /**
+   * What the server says against them. It takes no tag that is none, so the rows with such ones are
+   * meant.
+   */
+  refuse(problem: string): void {
+    this.tell(
+      problem,
+      this.rows_.flatMap(({ language, label }, index) =>
+        label.trim() !== "" && !well_written_tag(language.trim()) ? index : [],
+      ),
+    );
+  }
+
+  private tell(problem: string, rows: number[]): void {
+    this.problem_ = problem;
+    this.wrong_ = rows;
+    const [first] = rows;
+    if (first !== undefined) this.language_input(first)?.focus();
+  }
+
+  private language_input(row: number): HTMLInputElement | null {
+    return this.renderRoot.querySelectorAll<HTMLInputElement>("input.language")[row] ?? null;
+  }
+
+  private change(index: number, change: Partial<LabelRow>): void {
+    if (this.wrong_.includes(index)) this.tell("", []);
+    this.rows_ = this.rows_.map((row, at) => (at === index ? { ...row, ...change } : row));
+  }
+
+  private remove_row(index: number): void {
+    this.tell("", []);
+    this.rows_ = this.rows_.filter((_, at) => at !== index);
+  }
+
+  private async add(): Promise<void> {
+    this.rows_ = [...this.rows_, { language: "", label: "" }];
+    await this.updateComplete;
+    this.language_input(this.rows_.length - 1)?.focus();
+  }
+}

@@ -1,0 +1,153 @@
+// <strata-ordered-choice>: some of several things, in an order of one's own. What more there is to
+// say of each is given by its owner.
+
+import { css, html, LitElement, nothing, type TemplateResult } from "lit";
+import { customElement, property } from "lit/decorators.js";
+import { repeat } from "lit/directives/repeat.js";
+import { moved } from "../domain/tours";
+import { add_from, add_from_styles } from "./add-from";
+import { icon, type IconName } from "./icons";
+import { shared_styles } from "./styles";
+import { texts } from "../texts";
+
+export interface OrderedThing {
+  value: string;
+  name: string;
+  badge?: unknown;
+}
+
+const words = texts.ordered_choice;
+
+@customElement("strata-ordered-choice")
+export class StrataOrderedChoice extends LitElement {
+  @property() label = "";
+  /** On the button. */
+  @property() add_label = "";
+  @property({ attribute: false }) things: readonly OrderedThing[] = [];
+  @property({ attribute: false }) chosen: readonly string[] = [];
+  @property({ type: Number }) most = Infinity;
+  /** Values of which something is wrong. */
+  @property({ attribute: false }) wrong: readonly string[] = [];
+  /** Below the name of each that is chosen. */
+  @property({ attribute: false }) more: ((value: string) => unknown) | null = null;
+
+  static override styles = [
+    shared_styles,
+    add_from_styles,
+    css`
+      :host {
+        display: grid;
+        gap: 0.375rem;
+        min-width: 0;
+      }
+      ol {
+        display: grid;
+        gap: 4px;
+        margin: 0;
+        padding: 0;
+        list-style: none;
+      }
+      li {
+        display: grid;
+        grid-template-columns: minmax(0, 1fr) auto;
+        align-items: center;
+        gap: 2px 0.5rem;
+        padding: 2px 2px 2px 0.625rem;
+        border: var(--edge) solid var(--line);
+        border-radius: var(--radius-small);
+        background: var(--raised);
+      }
+      li.wrong {
+        border-color: var(--danger);
+      }
+      .name {
+        display: flex;
+        align-items: center;
+        gap: 0.5rem;
+        min-width: 0;
+        font-size: 0.93rem;
+        overflow-wrap: anywhere;
+      }
+      .buttons {
+        display: flex;
+      }
+      .buttons button.icon {
+        width: 2rem;
+        min-height: 2rem;
+      }
+      .seen-by {
+        display: grid;
+        color: var(--ink-soft);
+      }
+      .more {
+        grid-column: 1 / -1;
+        display: grid;
+        grid-template-columns: repeat(auto-fit, minmax(min(100%, 9.375rem), 1fr));
+        gap: 0.375rem;
+        padding: 0 0.5rem 0.5rem 0;
+      }
+      .more input[type="text"] {
+        min-height: 2.125rem;
+        font-size: 0.88rem;
+      }
+      @media (pointer: coarse) {
+        .buttons button.icon {
+          width: 2.5rem;
+          min-height: 2.75rem;
+        }
+      }
+    `,
+  ];
+
+  override render(): TemplateResult {
+    const { chosen, things } = this;
+    const others = things.filter(({ value }) => !chosen.includes(value));
+    return html`${
+      chosen.length === 0
+        ? nothing
+        : html`<ol aria-label=${this.label}>
+            ${repeat(
+              chosen,
+              (value) => value,
+              (value, index) => this.row(value, index),
+            )}
+          </ol>`
+    }
+      ${
+        others.length > 0 && chosen.length < this.most
+          ? add_from(this.add_label, others, (value) => this.put([...chosen, value]))
+          : nothing
+      }`;
+  }
+
+  private row(value: string, index: number): TemplateResult {
+    const { chosen } = this;
+    const thing = this.things.find((each) => each.value === value);
+    const name = thing?.name ?? words.gone(value);
+    const more = this.more?.(value);
+    const button = (
+      glyph: IconName,
+      label: string,
+      disabled: boolean,
+      act: () => void,
+    ): TemplateResult =>
+      html`<button type="button" class="icon quiet" aria-label=${label} title=${label} ?disabled=${disabled} @click=${act}>${icon(glyph)}</button>`;
+    return html`<li class=${this.wrong.includes(value) ? "wrong" : ""}>
+      <span class="name">${name}${thing?.badge ?? nothing}</span>
+      <span class="buttons">
+        ${
+          chosen.length > 1
+            ? html`${button("up", words.up(name), index === 0, () => this.put(moved(chosen, index, index - 1)))}
+            ${button("down", words.down(name), index === chosen.length - 1, () => this.put(moved(chosen, index, index + 1)))}`
+            : nothing
+        }
+        ${button("close", words.remove(name), false, () => this.put(chosen.filter((each) => each !== value)))}
+      </span>
+      ${more ? html`<div class="more">${more}</div>` : nothing}
+    </li>`;
+  }
+
+  private put(chosen: readonly string[]): void {
+    this.dispatchEvent(new CustomEvent<readonly string[]>("chosen", { detail: chosen }));
+  }
+}

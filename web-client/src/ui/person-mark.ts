@@ -1,0 +1,24 @@
+// The initials of a person, in their colour.
+
+import { css, html, type TemplateResult } from "lit";
+import { initials, type Named } from "../domain/people";
+import { styled } from "./styled";
+
+export const person_mark_styles = css`
+  .person-mark {
+    display: inline-grid;
+    place-items: center;
+    flex: none;
+    width: 26px;
+    height: 26px;
+    border-radius: 50%;
+    background: var(--mark-settled);
+    color: var(--mark-light);
+    font-size: 0.72rem;
+    font-weight: 700;
+    letter-spacing: 0.02em;
+  }
+`;
+
+export const person_mark = (person: Named): TemplateResult =>
+  html`<span class="person-mark" aria-hidden="true" ${styled({ background: person.color ?? null })}>${initials(person)}</span>`;

@@ -1,0 +1,63 @@
+// One choice among several, as buttons: one stop of the Tab key, and the arrow keys choose.
+
+import { html, type TemplateResult } from "lit";
+import { arrow_step } from "../shell/keyboard";
+
+export interface RadioChoice<T> {
+  value: T;
+  content: unknown;
+  title?: string;
+}
+
+export interface RadioGroup<T> {
+  /** What is asked: in words, or the id of the element that says it. */
+  label: string | { id: string };
+  class: string;
+  choices: readonly RadioChoice<T>[];
+  chosen: T | null;
+  choose(value: T): void;
+}
+
+export function radio_group<T>({
+  label,
+  class: style,
+  choices,
+  chosen,
+  choose,
+}: RadioGroup<T>): TemplateResult {
+  // also while none is chosen
+  const stop = Math.max(
+    0,
+    choices.findIndex((choice) => choice.value === chosen),
+  );
+  const buttons = choices.map(
+    ({ value, content, title }, index) =>
+      html`<button
+        type="button"
+        role="radio"
+        aria-checked=${value === chosen}
+        tabindex=${index === stop ? 0 : -1}
+        title=${title ?? ""}
+        @click=${() => choose(value)}
+      >
+        ${content}
+      </button>`,
+  );
+  return typeof label === "string"
+    ? html`<div class=${style} role="radiogroup" aria-label=${label} @keydown=${on_radio_key}>${buttons}</div>`
+    : html`<div class=${style} role="radiogroup" aria-labelledby=${label.id} @keydown=${on_radio_key}>${buttons}</div>`;
+}
+
+function on_radio_key(event: KeyboardEvent): void {
+  const buttons = [...(event.currentTarget as HTMLElement).querySelectorAll("button")];
+  const next = arrow_step(
+    event.key,
+    buttons.indexOf(event.target as HTMLButtonElement),
+    buttons.length,
+  );
+  if (next === null) return;
+  event.preventDefault();
+  event.stopPropagation();
+  buttons[next]!.click();
+  buttons[next]!.focus();
+}

@@ -1,0 +1,66 @@
+// Deleting what goes to the Bin of a project: the question before, and the way back after.
+
+import { ApiError, type Api } from "../net/api";
+import type { BinKind, BinRestored } from "../core/protocol.gen";
+import { ask } from "./dialog";
+import { notices } from "./notices";
+import { texts } from "../texts";
+
+export type BinApi = Pick<Api, "bin" | "restore_from_bin" | "erase_from_bin">;
+
+export interface Deletable {
+  kind: BinKind;
+  entry: string; // its id in the Bin
+  name: string;
+  project: string; // its slug
+}
+
+/**
+ * Whether to go on, told what can be undone: for how long things stay in the Bin is the server's to
+ * say.
+ */
+export async function ask_to_bin(
+  api: BinApi,
+  { name, project }: Deletable,
+  words: { title: (name: string) => string; lead: string },
+): Promise<boolean> {
+  const days = await api.bin(project, { limit: 1, offset: 0 }).then(
+    (bin) => bin.days,
+    (error: unknown) => {
+      if (!(error instanceof ApiError)) throw error;
+      return null; // whoever deletes is told what is wrong
+    },
+  );
+  return ask({
+    heading: words.title(name),
+    lead: `${words.lead} ${days === 0 ? texts.bin.not_kept : texts.bin.kept(days)}`,
+    yes: texts.delete,
+    danger: true,
+  });
+}
+
+/** Says that it was deleted, with a button that brings it back. `came_back`: once it did. */
+export function tell_binned(
+  api: BinApi,
+  gone: Deletable,
+  came_back: (restored: BinRestored) => void = () => {},
+): void {
+  const undo = async (): Promise<void> => {
+    try {
+      const restored = await api.restore_from_bin(gone.project, gone.entry);
+      notices.show("success", told_restored(restored));
+      came_back(restored);
+    } catch (error) {
+      notices.error(error);
+    }
+  };
+  notices.show("success", texts.bin.deleted[gone.kind](gone.name), "", {
+    label: texts.model.undo,
+    act: () => void undo(),
+  });
+}
+
+export const told_restored = ({ name, slug, former_slug }: BinRestored): string =>
+  slug === undefined || former_slug === undefined
+    ? texts.bin.restored(name)
+    : texts.bin.restored_as(name, former_slug, slug);

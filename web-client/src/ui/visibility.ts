@@ -1,0 +1,40 @@
+// Who sees a layer, a column or a file: the choice in dialogs, and the badge where not everybody
+// does.
+
+import { html, nothing, type TemplateResult } from "lit";
+import type { Visibility } from "../core/protocol.gen";
+import { icon, type IconName } from "./icons";
+import { radio_group } from "./radio-group";
+import { texts } from "../texts";
+
+export const kVisibilities: readonly Visibility[] = ["public", "team", "private"];
+const kIcons: Record<Visibility, IconName> = { public: "eye", team: "people", private: "shield" };
+
+/** With what is chosen said in plain words below. */
+export function visibility_choice(
+  chosen: Visibility,
+  choose: (visibility: Visibility) => void,
+): TemplateResult {
+  const words = texts.visibility;
+  return html`<div class="visibility">
+    <p class="caption" id="visibility">${words.question}</p>
+    ${radio_group<Visibility>({
+      label: { id: "visibility" },
+      class: "segments",
+      choices: kVisibilities.map((value) => ({
+        value,
+        content: html`${icon(kIcons[value])}${words.names[value]}`,
+      })),
+      chosen,
+      choose,
+    })}
+    <p class="hint" role="status">${words.says[chosen]}</p>
+  </div>`;
+}
+
+/** Nothing for what everybody sees. */
+export function visibility_badge(visibility: Visibility): TemplateResult | typeof nothing {
+  if (visibility === "public") return nothing;
+  const says = texts.visibility.says[visibility];
+  return html`<span class="seen-by" role="img" aria-label=${says} title=${says}>${icon(kIcons[visibility])}</span>`;
+}

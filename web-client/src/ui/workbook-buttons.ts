@@ -1,0 +1,48 @@
+// What is done with a table of numbers: it is copied, to be pasted into a spreadsheet, or saved as
+// a file.
+
+import { html, type TemplateResult } from "lit";
+import { csv_separator, page_locale } from "../core/locale";
+import type { SheetQuery } from "../net/api";
+import { copy_text } from "./copy-field";
+import { icon } from "./icons";
+import { notices } from "./notices";
+import { texts } from "../texts";
+
+export const sheet_query = (f: SheetQuery["f"]): SheetQuery => ({
+  f,
+  lang: page_locale(),
+  separator: csv_separator(),
+});
+
+/** `rows`: of texts. Cells that hold tabs or lines would fall apart where they are pasted. */
+export const as_pasted = (rows: readonly (readonly string[])[]): string =>
+  rows.map((row) => row.map((cell) => cell.replaceAll(/[\t\r\n]+/g, " ")).join("\t")).join("\n");
+
+async function copy(rows: readonly (readonly string[])[], holder: HTMLElement): Promise<void> {
+  const text = as_pasted(rows);
+  const copied = await copy_text(text, () => {
+    const field = document.createElement("textarea");
+    field.value = text;
+    field.style.position = "fixed";
+    field.style.opacity = "0";
+    holder.after(field); // within the dialog, outside of which nothing can be selected
+    field.select();
+    return () => field.remove();
+  });
+  notices.show(
+    copied ? "success" : "problem",
+    copied ? texts.statistics.copied : texts.statistics.not_copied,
+  );
+}
+
+export function sheet_buttons(of: {
+  what: string;
+  rows: () => readonly (readonly string[])[];
+  save: (f: SheetQuery["f"]) => void;
+}): TemplateResult {
+  const words = texts.statistics;
+  const files: SheetQuery["f"][] = ["csv", "xlsx"];
+  return html`<button type="button" aria-label="${words.copy}: ${of.what}" @click=${(event: Event) => void copy(of.rows(), event.currentTarget as HTMLElement)}>${icon("copy")}${words.copy}</button>
+    ${files.map((f) => html`<button type="button" aria-label="${f.toUpperCase()}: ${of.what}" title=${words.save[f]} @click=${() => of.save(f)}>${icon("import")}${f.toUpperCase()}</button>`)}`;
+}

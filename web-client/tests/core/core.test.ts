@@ -1,0 +1,274 @@
+import { describe, expect, it } from "vitest";
+
+import { Api, ApiError, name_of_file, new_id, problem_of_text } from "../../src/net/api";
+import {
+  detail_choices,
+  format_area,
+  format_length,
+  format_number,
+  format_size,
+  likely_scale,
+  scale_bar,
+  ticks,
+} from "../../src/domain/measure";
+import {
+  class_palette,
+  color_of,
+  css_gradient,
+  measurement_palette,
+  presence_palette,
+  purpose_of,
+  same_palette,
+} from "../../src/domain/palette";
+import { complete_palette } from "../../src/core/types";
+
+describe("numbers as people write them", () => {
+  it("lengths take the unit that suits them", () => {
+    const lengths = [0.0000021, 0.0002, 0.0008, 0.0123, 0.5, 3.14159, 1234].map(format_length);
+    expect(lengths).toEqual([
+      "2.1 µm",
+      "0.2 mm",
+      "0.8 mm",
+      "1.23 cm",
+      "50 cm",
+      "3.14 m",
+      "1.23 km",
+    ]);
+  });
+  it("areas do, too", () => {
+    expect([0, 2.5e-6, 0.0123, 2.5].map(format_area)).toEqual([
+      "0 mm²",
+      "2.5 mm²",
+      "123 cm²",
+      "2.5 m²",
+    ]);
+  });
+  it("a size is three numbers and one unit", () => {
+    expect(format_size([0.1052, 0.099, 0.0908])).toBe("105 × 99 × 90.8 mm");
+    expect(format_size([4.2, 1.05, 0.3])).toBe("420 × 105 × 30 cm");
+    expect(format_size([105, 99, 91])).toBe("105 × 99 × 91 m");
+  });
+  it("numbers have three digits and no exponent for everyday sizes", () => {
+    expect([0, 0.012345, 1234.5, -7.006, Number.NaN].map((n) => format_number(n))).toEqual([
+      "0",
+      "0.0123",
+      "1,235",
+      "-7.01",
+      "–",
+    ]);
+  });
+  it("a scale bar is round and not longer than asked", () => {
+    for (const metres_per_px of [3.3e-7, 0.00042, 0.013, 7.7]) {
+      const bar = scale_bar(metres_per_px, 150);
+      expect(bar.px).toBeLessThanOrEqual(150);
+      expect(bar.px).toBeGreaterThan(59);
+      expect(bar.px * metres_per_px).toBeCloseTo(bar.metres, 9);
+      expect(bar.metres.toExponential(6)).toMatch(/^[125]\.0+e/);
+    }
+  });
+  it("ticks are round numbers within the limits", () => {
+    expect(ticks(0, 40)).toEqual([0, 10, 20, 30, 40]);
+    expect(ticks(-0.3, 0.9)).toEqual([0, 0.5]);
+    expect(ticks(5, 5)).toEqual([5]);
+  });
+  it("a question about the size begins with what is proposed, unless somebody has said otherwise", () => {
+    const proposal = {
+      unit: "mm",
+      unit_reason: "size",
+      unit_confidence: 0.8,
+      up: "y",
+      up_reason: "shape",
+      up_confidence: 0.7,
+    } as const;
+    const model = {
+      unit: "m",
+      unit_assumed: true,
+      scale_verified: false,
+      up: "z",
+      proposal,
+    } as const;
+    expect(likely_scale(model)).toEqual({ unit: "mm", up: "y" });
+    expect(likely_scale({ ...model, unit: "cm", unit_assumed: false })).toEqual({
+      unit: "cm",
+      up: "y",
+    });
+    expect(likely_scale({ ...model, up: "-x" })).toEqual({ unit: "mm", up: "-x" });
+    expect(likely_scale({ ...model, scale_verified: true })).toEqual({ unit: "m", up: "z" });
+    expect(likely_scale({ ...model, proposal: undefined })).toEqual({ unit: "m", up: "z" });
+  });
+  it("the smallest detail halves with each doubling of the layer", () => {
+    const choices = detail_choices({ lowest_resolution: 2048, texel_area_max_m2: 6.4e-7 });
+    expect(choices.map((choice) => choice.resolution)).toEqual([2048, 4096, 8192]);
+    expect(choices.map((choice) => format_length(choice.detail_m))).toEqual([
+      "0.8 mm",
+      "0.4 mm",
+      "0.2 mm",
+    ]);
+  });
+  it("the smallest detail is what was measured at that resolution, where it was", () => {
+    const texel_sizes = [{ resolution: 4096, area_mean_m2: 1e-7, area_max_m2: 2.5e-7 }];
+    const choices = detail_choices({
+      lowest_resolution: 2048,
+      texel_area_max_m2: 6.4e-7,
+      texel_sizes,
+    });
+    expect(choices.map((choice) => format_length(choice.detail_m))).toEqual([
+      "0.8 mm",
+      "0.5 mm",
+      "0.2 mm",
+    ]);
+  });
+});
+
+const classes_without_points = complete_palette({ mode: "categorical" });
+
+describe("palettes", () => {
+  it("a linear palette blends, a stepped one holds the point below, both keep to their limits", () => {
+    const linear = complete_palette({
+      mode: "linear",
+      points: [
+        { at: 0, color: "#000000ff" },
+        { at: 10, color: "#ff800000" },
+      ],
+    });
+    expect(color_of(linear, 5)).toBe("#80400080");
+    expect(color_of(linear, -3)).toBe("#000000ff");
+    expect(color_of(linear, 99)).toBe("#ff800000");
+    expect(color_of({ ...linear, mode: "step" }, 9.9)).toBe("#000000ff");
+  });
+  it("a class that the palette does not list has the colour that the server makes", () => {
+    const classes = class_palette([
+      { at: 2, label: "b", color: "#0000ffff" },
+      { at: 1, label: "a", color: "#ff0000ff" },
+    ]);
+    expect(classes.points.map((point) => point.at)).toEqual([1, 2]);
+    expect(color_of(classes, 2)).toBe("#0000ffff");
+    const colors = [0, 1, 2, 7, 300, 70_000, 4_294_967_295].map((key) =>
+      color_of(classes_without_points, key),
+    );
+    // of generated_color() in server/core/palette.cpp
+    expect(colors).toEqual([
+      "#d96262ff",
+      "#3c6ad9ff",
+      "#9ed94dff",
+      "#3bd934ff",
+      "#4bd98cff",
+      "#4ad971ff",
+      "#51d978ff",
+    ]);
+  });
+  it("the purpose of a layer is read from its palette", () => {
+    const purpose = (palette: Parameters<typeof complete_palette>[0]) =>
+      purpose_of({ kind: "numeric", palette: complete_palette(palette) });
+    expect(purpose(presence_palette("Cracks", "#d55e00ff"))).toBe("presence");
+    expect(purpose(measurement_palette(0, 1))).toBe("measurement");
+    expect(purpose(measurement_palette(0, 1, "step"))).toBe("measurement");
+    expect(purpose({ mode: "categorical" })).toBe("classes");
+  });
+  it("palettes are the same when they show and call every value alike", () => {
+    const one = class_palette([{ at: 1, label: "", color: "#ff0000ff" }]);
+    expect(same_palette(one, { ...one, points: [{ at: 1, color: "#ff0000ff" }] })).toBe(true);
+    expect(same_palette(one, { ...one, points: [{ at: 1, color: "#ff0000fe" }] })).toBe(false);
+    expect(same_palette(one, { ...one, points: [] })).toBe(false);
+    expect(same_palette(one, { ...one, max: 2 })).toBe(false);
+  });
+  it("a stepped gradient has hard edges", () => {
+    const palette = complete_palette({
+      mode: "step",
+      min: 0,
+      max: 2,
+      points: [
+        { at: 0, color: "#000000" },
+        { at: 1, color: "#ffffff" },
+      ],
+    });
+    expect(css_gradient(palette)).toBe(
+      "linear-gradient(to right, rgb(0 0 0 / 1.000) 0.00%, rgb(0 0 0 / 1.000) 50.00%, rgb(255 255 255 / 1.000) 50.00%)",
+    );
+  });
+});
+
+describe("HTTP", () => {
+  const answer = (status: number, body: string, headers = {}): Response =>
+    new Response(status === 204 ? null : body, { status, headers });
+
+  it("a problem keeps its words and its field", async () => {
+    const problem = {
+      status: 422,
+      title: "Value out of range",
+      detail: "Give 0 to 255.",
+      field: "value",
+    };
+    const api = new Api(async () => answer(422, JSON.stringify(problem)));
+    await expect(api.me()).rejects.toEqual(new ApiError(problem));
+  });
+  it("an answer that is no problem object is told in plain words", () => {
+    expect(problem_of_text(503, "<html>").title).toBe("The server is not ready");
+    expect(problem_of_text(418, "null").title).toBe("The server answered 418");
+  });
+  it("a lost network is an ApiError of status 0", async () => {
+    const api = new Api(() => Promise.reject(new TypeError("failed")));
+    await expect(api.models()).rejects.toMatchObject({ status: 0 });
+  });
+  it("a picture that nobody waits for any more is asked for no longer", async () => {
+    const given_up: string[] = [];
+    const api = new Api(
+      (path, init) =>
+        new Promise((_, reject) =>
+          init!.signal!.addEventListener("abort", () => {
+            given_up.push(path);
+            reject(new DOMException("stopped", "AbortError"));
+          }),
+        ),
+    );
+    const stop = new AbortController();
+    const camera = { op: "camera" } as unknown as Parameters<Api["frame"]>[1];
+    const pictures = [api.frame(1, camera, stop.signal), api.view_picture(1, 2, 256, stop.signal)];
+    stop.abort();
+    for (const picture of pictures) await expect(picture).rejects.toMatchObject({ status: 499 });
+    expect(given_up).toEqual([
+      "/api/v1/models/1/frame",
+      "/api/v1/models/1/views/2/picture?thumbnail=256",
+    ]);
+  });
+  it("a layer is changed with the version that was read", async () => {
+    const calls: [string, string, unknown][] = [];
+    const api = new Api(async (path, init) => {
+      calls.push([init!.method!, path, (init!.headers as Record<string, string>)["If-Match"]]);
+      return answer(200, '{"id":7,"palette":{"mode":"categorical"}}', { ETag: '"3"' });
+    });
+    const changed = await api.change_layer(1, 7, { name: "x" });
+    expect(calls).toEqual([
+      ["GET", "/api/v1/models/1/layers/7", undefined],
+      ["PATCH", "/api/v1/models/1/layers/7", '"3"'],
+    ]);
+    expect(changed.palette.points).toEqual([]);
+    calls.length = 0;
+    // the version that somebody looked at, even if it is old by now
+    await api.change_layer(1, 7, { name: "y" }, '"2"');
+    expect(calls).toEqual([["PATCH", "/api/v1/models/1/layers/7", '"2"']]);
+  });
+  it("every POST that changes something has a key of its own", async () => {
+    const keys = new Set<string>();
+    const api = new Api(async (_path, init) => {
+      keys.add((init!.headers as Record<string, string>)["Idempotency-Key"]!);
+      return answer(201, '{"palette":{"mode":"categorical"}}');
+    });
+    for (let i = 0; i < 3; ++i) await api.create_layer(1, { name: "a" });
+    expect(keys.size).toBe(3);
+    expect(keys.has(undefined as unknown as string)).toBe(false);
+  });
+  it("ids are version 4 UUIDs", () => {
+    for (let i = 0; i < 50; ++i)
+      expect(new_id()).toMatch(
+        /^[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}$/,
+      );
+  });
+  it("a model's name comes from its file", () => {
+    expect(["statue_nefertiti_70k.ply", "a.b.OBJ", ".ply"].map(name_of_file)).toEqual([
+      "statue nefertiti 70k",
+      "a.b",
+      ".ply",
+    ]);
+  });
+});

@@ -1,0 +1,194 @@
+import { afterEach, describe, expect, it } from "vitest";
+
+import { told_date, told_time } from "../../src/domain/times";
+import { load_texts, texts, type Texts } from "../../src/texts";
+import { cell_text, label_of, parse_cell } from "../../src/domain/cells";
+import {
+  format_count,
+  format_list,
+  format_place,
+  kPageLanguages,
+  page_language,
+  page_locale,
+  person_languages,
+  read_number,
+  set_locale,
+  typed_number,
+} from "../../src/core/locale";
+import { format_area, format_length, format_number } from "../../src/domain/measure";
+
+afterEach(() => load_texts("en", true, []));
+
+describe("the language of the page", () => {
+  it("is the one that was chosen, else the first of the browser's that there is, else English", () => {
+    expect(page_language(null, ["de-AT", "en"])).toBe("de");
+    expect(page_language(null, ["fr", "es-MX", "de"])).toBe("es");
+    expect(page_language("es", ["de"])).toBe("es");
+    expect(page_language(null, ["fr"])).toBe("en");
+    expect(page_language(null, [])).toBe("en");
+    expect(page_language("tlh", ["de"])).toBe("de"); // kept by a page that had more languages
+  });
+
+  it("is written as in the browser's variety of it, and data are called by it first where it was chosen", () => {
+    set_locale("de", false, ["fr", "de-CH", "de"]);
+    expect(page_locale()).toBe("de-CH");
+    expect(person_languages()).toEqual(["fr", "de-CH", "de"]);
+    set_locale("es", true, ["de-CH", "de"]);
+    expect(page_locale()).toBe("es");
+    expect(person_languages()).toEqual(["es", "de-CH", "de"]);
+    expect(label_of({ name: "State", labels: { de: "Zustand", es: "Estado" } })).toBe("Estado");
+  });
+});
+
+describe("numbers", () => {
+  it("are written as in the language", () => {
+    const written = (): string[] => [
+      format_count(1234567),
+      format_number(0.125),
+      format_length(1.24),
+      format_area(2.5e9),
+      typed_number(-1.5),
+      format_place(["1", "2"]),
+    ];
+    set_locale("en", false, ["en-GB"]);
+    expect(written()).toEqual(["1,234,567", "0.125", "1.24 m", "2.50e+9 m²", "-1.5", "1, 2"]);
+    set_locale("de", false, ["de-DE"]);
+    expect(written()).toEqual(["1.234.567", "0,125", "1,24 m", "2,50e+9 m²", "-1,5", "1; 2"]);
+    set_locale("es", false, ["es-MX"]);
+    expect(written()).toEqual(["1,234,567", "0.125", "1.24 m", "2.50e+9 m²", "-1.5", "1, 2"]);
+  });
+
+  it("are read with the language's decimal sign or a point, and never guessed", () => {
+    set_locale("de", false, []);
+    expect(["1,5", " -0,25 ", "1.5", "0.125", "1e-3", ",5", "1500"].map(read_number)).toEqual([
+      1.5, -0.25, 1.5, 0.125, 0.001, 0.5, 1500,
+    ]);
+    for (const wrong of [
+      "1.500",
+      "12.345.678",
+      "1,500.5",
+      "1.500,5",
+      "1,5,5",
+      "",
+      "eins",
+      "1 500",
+      "NaN",
+      "Infinity",
+    ])
+      expect(read_number(wrong), wrong).toBeNaN();
+    set_locale("en", false, []);
+    expect(["1.5", "1.500"].map(read_number)).toEqual([1.5, 1.5]);
+    for (const wrong of ["1,5", "1,500"]) expect(read_number(wrong), wrong).toBeNaN();
+  });
+
+  it("are in fields of records as they may be typed again", () => {
+    for (const language of kPageLanguages) {
+      set_locale(language, true, []);
+      for (const value of [0, 1.5, -1234.5678, 1e21, 1e-7, 1500, 0.001])
+        expect(parse_cell({ kind: "numeric" }, cell_text(value))).toEqual({ value });
+    }
+  });
+});
+
+describe("moments and lists", () => {
+  it("are told as in the language", () => {
+    const now = new Date(2026, 10, 21, 15, 0);
+    const at = (days: number): string => new Date(2026, 10, 21 - days, 14, 5).toISOString();
+    const told = (): string[] => [
+      told_time(at(0), now),
+      told_time(at(1), now),
+      told_date(at(2)),
+      format_list(["a", "b", "c"]),
+    ];
+    set_locale("en", false, ["en-GB"]);
+    expect(told()).toEqual(["today, 14:05", "yesterday, 14:05", "19 Nov 2026", "a, b, c"]);
+    set_locale("de", false, ["de-DE"]);
+    expect(told()).toEqual(["heute, 14:05", "gestern, 14:05", "19. Nov. 2026", "a, b und c"]);
+    set_locale("es", false, ["es-ES"]);
+    expect(told()).toEqual(["hoy, 14:05", "ayer, 14:05", "19 nov 2026", "a, b, c"]);
+  });
+});
+
+/** Every text with where it stands; of those that take arguments what they make of them. */
+function leaves(from: unknown, path = ""): [string, string][] {
+  if (typeof from === "string") return [[path, from]];
+  if (typeof from === "function") {
+    const makes = from as (...args: unknown[]) => string;
+    return [1, 7].map((n) => [
+      `${path}(${n})`,
+      makes(
+        ...Array.from({ length: makes.length }, () => n).map((each, i) =>
+          takes_words.has(path) ? `word${i}` : each,
+        ),
+      ),
+    ]);
+  }
+  if (typeof from !== "object" || from === null) return [];
+  return Object.entries(from).flatMap(([key, value]) =>
+    leaves(value, path ? `${path}.${key}` : key),
+  );
+}
+const takes_words = new Set([
+  "account.token_line",
+  "join.lead",
+  "people.role_now",
+  "project_roles.by_groups",
+  "project_roles.by_groups_also",
+  "project_roles.lead",
+  "site_people.role_changed",
+]);
+
+async function in_language(
+  language: (typeof kPageLanguages)[number],
+): Promise<Map<string, string>> {
+  await load_texts(language, true, []);
+  return new Map(leaves(texts satisfies Texts));
+}
+
+describe("the texts", () => {
+  it("are there in each language, none empty, and none left in English", async () => {
+    const english = await in_language("en");
+    expect(english.size).toBeGreaterThan(900);
+    // Written alike in two languages: names, signs, examples of what is typed.
+    const alike =
+      /^(product|brush\.width_|account\.token_line|expressions\.functions|areas\.grammar|tables\.examples|view\.sections|labels\.language_example|help\.\w+\.\d+\.0)/;
+    for (const language of ["de", "es"] as const) {
+      const translated = await in_language(language);
+      expect([...translated.keys()]).toEqual([...english.keys()]);
+      for (const [path, text] of translated) {
+        expect(text, `${language} ${path}`).not.toBe("");
+        if (english.get(path)!.length > 14 && !alike.test(path))
+          expect(text, `${language} ${path}`).not.toBe(english.get(path));
+        expect(text.includes("undefined"), `${language} ${path}: ${text}`).toBe(false);
+      }
+    }
+  });
+
+  it("keep what they are told: each argument of a text is in each language's", async () => {
+    const english = await in_language("en");
+    for (const language of ["de", "es"] as const) {
+      for (const [path, text] of await in_language(language)) {
+        if (!path.endsWith("(7)")) continue;
+        const told = (said: string): number => said.split(/7|word\d/).length - 1;
+        expect(told(text) > 0, `${language} ${path}: ${text}`).toBe(told(english.get(path)!) > 0);
+      }
+    }
+  });
+
+  it("have the plurals of the language", async () => {
+    await load_texts("en", true, []);
+    expect([0, 1, 2].map(texts.home.count)).toEqual(["0 models", "1 model", "2 models"]);
+    await load_texts("de", true, []);
+    expect([0, 1, 1200].map(texts.tables.records)).toEqual([
+      "0 Datensätze",
+      "1 Datensatz",
+      "1.200 Datensätze",
+    ]);
+    await load_texts("es", true, []);
+    expect([1, 2, 1000000].map(texts.home.triangles)).toEqual([
+      "1 triángulo",
+      "2 triángulos",
+      "1.000.000 de triángulos",
+    ]);
+  });
+});

@@ -1,0 +1,206 @@
+import { describe, expect, it } from "vitest";
+
+import type { Point } from "../../src/net/connection";
+import { mark_length } from "../../src/domain/marks";
+import type { MarkPlace } from "../../src/core/protocol.gen";
+import {
+  length_seen,
+  line_on_surface,
+  type Measures,
+  type NearestAlong,
+  type Step,
+} from "../../src/domain/surface-line";
+
+// Seen along -z, a pixel of the picture is 1: an upright cylinder around the y axis, and a wall
+// behind it.
+const kRadius = 100;
+const kWall = -140;
+const measures: Measures = { pixel_at: () => 1, scale: 1 };
+
+type Seen = (x: number, y: number) => Pick<Step, "place" | "normal">;
+const cylinder: Seen = (x, y) => {
+  const z = Math.sqrt(kRadius * kRadius - x * x);
+  return Math.abs(x) < kRadius
+    ? { place: [x, y, z], normal: [x / kRadius, 0, z / kRadius] }
+    : { place: null, normal: null };
+};
+const before_a_wall: Seen = (x, y) =>
+  Math.abs(x) < kRadius ? cylinder(x, y) : { place: [x, y, kWall], normal: [0, 0, 1] };
+/** As the server finds them: of the cylinder and the wall the nearer one. */
+const nearest_along =
+  (wall: boolean): NearestAlong =>
+  (from, to, step) => {
+    const count = Math.max(
+      1,
+      Math.ceil(Math.hypot(...from.map((value, axis) => to[axis]! - value)) / step),
+    );
+    const places = Array.from({ length: count + 1 }, (_, at): MarkPlace => {
+      const [x, y, z] = from.map(
+        (value, axis) => value + ((to[axis]! - value) * at) / count,
+      ) as MarkPlace;
+      const out = Math.hypot(x, z);
+      if (wall && Math.abs(z - kWall) < Math.abs(out - kRadius)) return [x, y, kWall];
+      return [(x * kRadius) / out, y, (z * kRadius) / out];
+    });
+    return Promise.resolve(places);
+  };
+
+/** Pixel by pixel along a drawing. */
+function drawn(path: (t: number) => Point, seen: Seen): Step[] {
+  const steps: Step[] = [];
+  let last: Point | null = null;
+  for (let t = 0; t <= 1; t += 1e-4) {
+    const at = path(t);
+    if (last && Math.hypot(at[0] - last[0], at[1] - last[1]) < 0.99) continue;
+    steps.push({ at, ...seen(...at) });
+    last = at;
+  }
+  return steps;
+}
+const length_of = (pieces: MarkPlace[][]): number =>
+  pieces.reduce((sum, coordinates) => sum + mark_length({ coordinates }), 0);
+const off_the_cylinder = (piece: MarkPlace[]): number =>
+  Math.max(...piece.map(([x, , z]) => Math.abs(Math.hypot(x, z) - kRadius)));
+
+describe("a line that is drawn over a surface", () => {
+  it("has the length of its way around a cylinder", async () => {
+    const steps = drawn((t) => [-95 + 190 * t, 50 * t], cylinder);
+    const pieces = await line_on_surface(steps, measures, nearest_along(false));
+    expect(pieces).toHaveLength(1);
+    // A helix around the cylinder is not straight on the picture: the way is summed up finely.
+    let analytic = 0;
+    for (let i = 0; i < 1e5; ++i) {
+      const [a, b] = [-95 + (190 * i) / 1e5, -95 + (190 * (i + 1)) / 1e5];
+      analytic += Math.hypot(kRadius * (Math.asin(b / kRadius) - Math.asin(a / kRadius)), 50 / 1e5);
+    }
+    expect(length_of(pieces) / analytic).toBeCloseTo(1, 2);
+    expect(length_seen(steps, measures) / analytic).toBeCloseTo(1, 2);
+  });
+
+  for (const [what, seen, wall] of [
+    ["nothing", cylinder, false],
+    ["a wall", before_a_wall, true],
+  ] as const) {
+    it(`stays one line along the edge that it crosses again and again, before ${what}`, async () => {
+      // Down the silhouette, 9 pixels beyond it and 13 on it, five times.
+      const steps = drawn((t) => [98 + 11 * Math.sin(t * Math.PI * 10) - 2, 300 * t], seen);
+      const pieces = await line_on_surface(steps, measures, nearest_along(wall));
+      expect(pieces).toHaveLength(1);
+      expect(off_the_cylinder(pieces[0]!)).toBeLessThan(0.5);
+      // nothing of the wall
+      expect(Math.min(...pieces[0]!.map(([, , z]) => z))).toBeGreaterThan(-30);
+      // Where it is on the cylinder its own way, and beside it along the edge.
+      let analytic = 0;
+      let last: MarkPlace | null = null;
+      for (let t = 0; t <= 1; t += 1e-5) {
+        const x = Math.min(kRadius, 98 + 11 * Math.sin(t * Math.PI * 10) - 2);
+        const place: MarkPlace = [x, 300 * t, Math.sqrt(kRadius * kRadius - x * x)];
+        if (last)
+          analytic += Math.hypot(
+            kRadius * (Math.asin(place[0] / kRadius) - Math.asin(last[0] / kRadius)),
+            place[1] - last[1],
+          );
+        last = place;
+      }
+      expect(Math.abs(length_of(pieces) / analytic - 1)).toBeLessThan(0.12);
+      expect(Math.abs(length_seen(steps, measures) / length_of(pieces) - 1)).toBeLessThan(0.05);
+    });
+  }
+
+  it("does not take the wall on which it slips off at the end", async () => {
+    const steps = drawn((t) => [60 + 55 * t, 10 * t], before_a_wall);
+    const pieces = await line_on_surface(steps, measures, nearest_along(true));
+    expect(pieces).toHaveLength(1);
+    expect(off_the_cylinder(pieces[0]!)).toBeLessThan(0.5);
+  });
+
+  it("is cut where it goes on far behind the edge", async () => {
+    const pieces = await line_on_surface(
+      drawn((t) => [50 + 150 * t, 0], before_a_wall),
+      measures,
+      nearest_along(true),
+    );
+    expect(pieces).toHaveLength(2);
+    expect(off_the_cylinder(pieces[0]!)).toBeLessThan(0.5);
+    expect(pieces[1]!.every(([, , z]) => z === kWall)).toBe(true);
+    expect(length_of([pieces[1]!])).toBeCloseTo(100, -1);
+    expect(length_of([pieces[0]!]) / (kRadius * (Math.PI / 2 - Math.asin(0.5)))).toBeGreaterThan(
+      0.85,
+    );
+  });
+
+  it("goes on below a handle that lies over it, and over a narrow gap, but not over a wide one", async () => {
+    const flat =
+      (place: (x: number) => MarkPlace | null): Seen =>
+      (x) => ({ place: place(x), normal: [0, 0, 1] });
+    const plane: NearestAlong = (from, to, step) => {
+      const count = Math.ceil(Math.abs(to[0] - from[0]) / step);
+      return Promise.resolve(
+        Array.from({ length: count + 1 }, (_, at): MarkPlace => [
+          from[0] + ((to[0] - from[0]) * at) / count,
+          0,
+          0,
+        ]),
+      );
+    };
+    const nothing: NearestAlong = () => Promise.resolve([]);
+    const across = (seen: Seen): Step[] => drawn((t) => [200 * t, 0], seen);
+    const below = await line_on_surface(
+      across(flat((x) => (x > 80 && x < 120 ? [x, 0, 60] : [x, 0, 0]))),
+      measures,
+      plane,
+    );
+    expect(below).toHaveLength(1);
+    expect(length_of(below)).toBeCloseTo(200, -0.5);
+    const narrow = await line_on_surface(
+      across(flat((x) => (x > 95 && x < 105 ? null : [x, 0, 0]))),
+      measures,
+      nothing,
+    );
+    expect(narrow).toHaveLength(1);
+    const wide = await line_on_surface(
+      across(flat((x) => (x > 70 && x < 130 ? null : [x, 0, 0]))),
+      measures,
+      nothing,
+    );
+    expect(wide).toHaveLength(2);
+  });
+
+  it("follows the steps of a relief, and the floor of a wide groove", async () => {
+    const seen: Seen = (x) => ({ place: [x, 0, x > 60 && x < 140 ? -15 : 0], normal: [0, 0, 1] });
+    const walls: NearestAlong = (from, to, step) => {
+      const count = Math.ceil(Math.abs(to[2] - from[2]) / step);
+      return Promise.resolve(
+        Array.from({ length: count + 1 }, (_, at): MarkPlace => [
+          to[0],
+          0,
+          from[2] + ((to[2] - from[2]) * at) / count,
+        ]),
+      );
+    };
+    const pieces = await line_on_surface(
+      drawn((t) => [200 * t, 0], seen),
+      measures,
+      walls,
+    );
+    expect(pieces).toHaveLength(1);
+    expect(length_of(pieces)).toBeCloseTo(230, -0.5);
+  });
+
+  it("is none where there is no surface, or of a single place", async () => {
+    const none = (places: (MarkPlace | null)[]): Promise<MarkPlace[][]> =>
+      line_on_surface(
+        places.map((place, at) => ({ at: [at, 0], place, normal: null })),
+        measures,
+        nearest_along(false),
+      );
+    expect(await none([null, null])).toEqual([]);
+    expect(
+      await none([
+        [1, 1, 1],
+        [1, 1, 1],
+      ]),
+    ).toEqual([]);
+    expect(await none([])).toEqual([]);
+  });
+});

@@ -1,0 +1,158 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+
+import { Activities, type ActivitiesHost } from "../../../src/features/activity/activity";
+import { told_day } from "../../../src/domain/times";
+import { by_day, with_first_page, with_next_page } from "../../../src/domain/activity";
+import { ApiError, type Api } from "../../../src/net/api";
+import type { Activity, ActivityList } from "../../../src/core/protocol.gen";
+
+const line = (id: number, minute: number, more: Partial<Activity> = {}): Activity => {
+  const time = `2026-05-04T12:${String(minute).padStart(2, "0")}:00.000Z`;
+  return { id, time, begun: time, kind: "edit", op: "stroke", count: 1, ...more };
+};
+const ids = ({ lines }: { lines: readonly Activity[] }): number[] => lines.map(({ id }) => id);
+
+describe("a log of activity", () => {
+  const known = { lines: [line(4, 40), line(3, 30), line(2, 20), line(1, 10)], next: "a place" };
+
+  it("takes a newer first page, where a line that went on has moved to the top", () => {
+    const page = { lines: [line(5, 50), line(3, 49, { count: 2 }), line(4, 40)], next: "earlier" };
+    const now = with_first_page(known, page);
+    expect(ids(now)).toEqual([5, 3, 4, 2, 1]);
+    expect(now.lines[1]!.count).toBe(2);
+    expect(now.next).toBe("a place");
+  });
+
+  it("forgets what does not meet the page, and what the page lacks though it would stand there", () => {
+    expect(
+      ids(with_first_page(known, { lines: [line(9, 59), line(8, 58)], next: "earlier" })),
+    ).toEqual([9, 8]);
+    // comment 3 was deleted
+    const gone = with_first_page(known, { lines: [line(4, 40), line(2, 20)], next: "earlier" });
+    expect(ids(gone)).toEqual([4, 2, 1]);
+    expect(ids(with_first_page(known, { lines: [], next: undefined }))).toEqual([]);
+  });
+
+  it("goes on with the next page, no line twice", () => {
+    const now = with_next_page(known, { lines: [line(1, 10), line(6, 5)], next: undefined });
+    expect(ids(now)).toEqual([4, 3, 2, 1, 6]);
+    expect(now.next).toBeUndefined();
+  });
+
+  it("is told by days", () => {
+    const now = new Date(2026, 4, 4, 18);
+    const at = (id: number, day: number): Activity =>
+      line(id, 0, { time: new Date(2026, 4, day, 12).toISOString() });
+    const days = by_day([at(4, 4), at(3, 4), at(2, 3), at(1, 1)], (iso) => told_day(iso, now));
+    expect(days.map(({ day, lines }) => [day, lines.length])).toEqual([
+      ["today", 2],
+      ["yesterday", 1],
+      ["1 May 2026", 1],
+    ]);
+  });
+});
+
+describe("the activity of a model", () => {
+  const asked: unknown[] = [];
+  let answer: (asked: { before: string | undefined }) => Promise<ActivityList>;
+  const api = {
+    activity: (project: number, query: { before: string | undefined }) => {
+      asked.push([project, query]);
+      return answer(query);
+    },
+  } as unknown as Api;
+  const flown: unknown[] = [];
+  const host = {
+    comments: { go_to: (id: number) => flown.push(id) },
+    layers: { find: () => null, all: [] },
+    model: () => ({ id: 7, project: 1 }),
+    changed: () => {},
+  } as unknown as ActivitiesHost;
+  let activity: Activities;
+  const settle = async (): Promise<void> => {
+    for (let i = 0; i < 10; ++i) await Promise.resolve();
+  };
+
+  beforeEach(() => {
+    vi.useFakeTimers();
+    asked.length = flown.length = 0;
+    answer = ({ before }) =>
+      Promise.resolve(
+        before === undefined ? { activity: [line(2, 20)], next: "x" } : { activity: [line(1, 10)] },
+      );
+    activity = new Activities(api, host);
+  });
+  afterEach(() => {
+    activity.close();
+    vi.useRealTimers();
+  });
+
+  it("is read while somebody looks, once for all that happens in one go, and once more when that is saved", async () => {
+    activity.outdated();
+    vi.runAllTimers();
+    expect(asked).toEqual([]);
+    activity.watch(true);
+    await settle();
+    expect(asked).toEqual([[1, { limit: 50, before: undefined, model: 7 }]]);
+    for (let i = 0; i < 5; ++i) activity.outdated();
+    vi.runAllTimers();
+    await settle();
+    expect(asked).toHaveLength(3);
+    activity.outdated();
+    vi.advanceTimersByTime(900);
+    activity.outdated();
+    vi.advanceTimersByTime(200);
+    await settle();
+    expect(asked).toHaveLength(4); // the second may not have been saved by then
+    vi.advanceTimersByTime(2900);
+    await settle();
+    expect(asked).toHaveLength(5);
+    activity.outdated();
+    activity.watch(false);
+    vi.runAllTimers();
+    expect(asked).toHaveLength(5);
+  });
+
+  it("goes on where the page ended, and of the whole project begins anew", async () => {
+    activity.watch(true);
+    await settle();
+    expect([ids(activity), activity.has_more]).toEqual([[2], true]);
+    await activity.more();
+    expect([ids(activity), activity.has_more]).toEqual([[2, 1], false]);
+    activity.whole = true;
+    expect(activity.lines).toEqual([]);
+    await settle();
+    expect(asked[2]).toEqual([1, { limit: 50, before: undefined, model: undefined }]);
+  });
+
+  it("tells that it could not be read, and takes no answer that came too late", async () => {
+    answer = () => Promise.reject(new ApiError({ status: 503, title: "Away", detail: "" }));
+    activity.watch(true);
+    await settle();
+    expect([activity.failed, activity.busy]).toEqual([true, false]);
+    let late: (page: ActivityList) => void = () => {};
+    answer = () => new Promise((resolve) => (late = resolve));
+    const first = activity.load();
+    answer = () => Promise.resolve({ activity: [line(3, 30)] });
+    await activity.load();
+    late({ activity: [line(9, 9)] });
+    await first;
+    expect([ids(activity), activity.failed]).toEqual([[3], false]);
+  });
+
+  it("leads to comments that are there, and nowhere without a thing", async () => {
+    const comment = line(1, 1, { kind: "comment", op: "written", model: 7, comment: 5 });
+    expect(activity.leads_somewhere(comment)).toBe(true);
+    expect(activity.leads_somewhere(line(1, 1, { kind: "comment", op: "written", model: 7 }))).toBe(
+      false,
+    );
+    expect(activity.leads_somewhere(line(1, 1, { kind: "layer", op: "deleted", model: 7 }))).toBe(
+      false,
+    );
+    expect(activity.leads_somewhere(line(1, 1, { kind: "model", op: "changed", model: 8 }))).toBe(
+      true,
+    );
+    await activity.go_to(comment);
+    expect(flown).toEqual([5]);
+  });
+});

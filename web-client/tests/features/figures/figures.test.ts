@@ -1,0 +1,549 @@
+import fc from "fast-check";
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+
+import { FacePick } from "../../../src/features/figures/face-pick";
+import { Figures } from "../../../src/features/figures/figures";
+import { is_busy, LayerJobs } from "../../../src/features/layers/layer-jobs";
+import { notices, type Notice } from "../../../src/ui/notices";
+import { texts } from "../../../src/texts";
+import { Api, ApiError } from "../../../src/net/api";
+import { OrbitCamera } from "../../../src/math/camera";
+import {
+  figure_choices,
+  figure_request,
+  kDirections,
+  kPapers,
+  kScaleRange,
+  kScales,
+  preview_request,
+  read_scale,
+  scale_text,
+  usual_figure,
+  type FigureChoices,
+  type FigureWords,
+} from "../../../src/domain/figures";
+import { set_locale } from "../../../src/core/locale";
+import type { ViewContent } from "../../../src/domain/views";
+import { FaceTool } from "../../../src/features/figures/face-tool";
+import { OrbitTool } from "../../../src/tools/navigate";
+import { ToolManager } from "../../../src/tools/tool-manager";
+
+const unwritten: FigureWords = { title: "", caption: " \n", credit: "" };
+const shown = {
+  camera: { view: [], projection: [], width: 4, height: 3 },
+  layers: [{ layer: 7, visible: false }],
+  looks: [],
+  light: { mode: "raking" },
+} as unknown as ViewContent;
+const face = {
+  center: [1, 2, 3] as [number, number, number],
+  normal: [0, -1, 0] as [number, number, number],
+};
+
+describe("a scale that is typed", () => {
+  const scales: [string, number][] = [
+    ["1:40", 40],
+    ["1 : 2.5", 2.5],
+    ["2:1", 0.5],
+    ["2 : 5", 2.5],
+    ["40", 40],
+    ["0.5", 0.5],
+    ["100:1", 0.01],
+  ];
+  it.each(scales)("%s is read", (typed, scale) => expect(read_scale(typed)).toBe(scale));
+
+  it.each([
+    "",
+    "1:",
+    ":40",
+    "1:0",
+    "0:1",
+    "-1:40",
+    "1:-40",
+    "1:4:0",
+    "1/40",
+    "forty",
+    "1:1e9",
+    "1000:1",
+    "Infinity",
+    "NaN",
+  ])("%s is none", (typed) => expect(read_scale(typed)).toBeNaN());
+
+  it("is read as it is written, in the language of the page", () => {
+    try {
+      for (const language of ["en", "de", "es"] as const) {
+        set_locale(language, true, []);
+        fc.assert(
+          fc.property(
+            fc.double({
+              min: Math.log(kScaleRange.least),
+              max: Math.log(kScaleRange.most),
+              noNaN: true,
+            }),
+            (power) => {
+              const scale = Math.min(
+                kScaleRange.most,
+                Math.max(kScaleRange.least, Math.exp(power)),
+              );
+              expect(read_scale(scale_text(scale)) / scale).toBeCloseTo(1, 4);
+            },
+          ),
+        );
+        for (const scale of kScales) expect(read_scale(scale_text(scale))).toBe(scale);
+      }
+      expect(scale_text(2.5)).toBe("1 : 2,5");
+    } finally {
+      set_locale("en", true, []);
+    }
+    expect([scale_text(0.5), scale_text(2.5), scale_text(500)]).toEqual([
+      "2 : 1",
+      "1 : 2.5",
+      "1 : 500",
+    ]);
+  });
+});
+
+describe("choices that a browser kept", () => {
+  const a_choice: fc.Arbitrary<FigureChoices> = fc.record({
+    from: fc.constantFrom("camera" as const, "face" as const, ...kDirections),
+    scale: fc.option(fc.constantFrom(...kScales, 0.01, 1_000_000, 37.5)),
+    paper: fc.constantFrom(...kPapers),
+    orientation: fc.constantFrom(null, "portrait" as const, "landscape" as const),
+    dpi: fc.integer({ min: 50, max: 600 }),
+    format: fc.constantFrom("pdf" as const, "svg" as const, "png" as const, "tiff" as const),
+    legend: fc.boolean(),
+  });
+
+  it("come back", () => {
+    fc.assert(
+      fc.property(
+        a_choice,
+        (choices) =>
+          void expect(figure_choices(JSON.parse(JSON.stringify(choices)))).toEqual(choices),
+      ),
+    );
+  });
+
+  it("are the usual ones where they are none, one by one", () => {
+    for (const nonsense of [null, undefined, 3, "x", [], {}])
+      expect(figure_choices(nonsense)).toEqual(usual_figure());
+    const kept = {
+      from: "north",
+      scale: "5",
+      paper: "a0",
+      orientation: "square",
+      dpi: 72.5,
+      format: "bmp",
+      legend: 1,
+      more: true,
+    };
+    expect(figure_choices(kept)).toEqual(usual_figure());
+    expect(figure_choices({ ...kept, paper: "a3", dpi: 72 })).toEqual({
+      ...usual_figure(),
+      paper: "a3",
+      dpi: 72,
+    });
+    for (const scale of [0, -1, 0.001, 2e6, Number.NaN])
+      expect(figure_choices({ scale }).scale).toBeNull();
+    for (const dpi of [49, 601, 0]) expect(figure_choices({ dpi }).dpi).toBe(300);
+  });
+
+  it("are the usual ones whatever stands there", () => {
+    fc.assert(
+      fc.property(
+        fc.anything(),
+        (kept) =>
+          void expect(Object.keys(figure_choices(kept))).toEqual(Object.keys(usual_figure())),
+      ),
+    );
+  });
+});
+
+describe("what is asked for", () => {
+  it("is all that the person sees, and only what was chosen or written besides", () => {
+    expect(figure_request(shown, usual_figure(), unwritten, null, null)).toEqual({
+      ...shown,
+      paper: "a4",
+      dpi: 300,
+      format: "pdf",
+      legend: true,
+    });
+    const choices: FigureChoices = {
+      from: "front",
+      scale: 5,
+      paper: "a3",
+      orientation: "landscape",
+      dpi: 600,
+      format: "tiff",
+      legend: false,
+    };
+    const words = { title: "West wall ", caption: "After\ncleaning", credit: "Museum" };
+    expect(figure_request(shown, choices, words, face, { layer: 7, column: "name" })).toEqual({
+      ...shown,
+      direction: "front",
+      scale: 5,
+      paper: "a3",
+      orientation: "landscape",
+      dpi: 600,
+      format: "tiff",
+      legend: false,
+      title: "West wall",
+      caption: "After\ncleaning",
+      credit: "Museum",
+      labels: { layer: 7, column: "name" },
+    });
+  });
+
+  it("is a named view's where one is meant", () => {
+    expect(
+      figure_request({ view: "12" }, { ...usual_figure(), from: "top" }, unwritten, null, null),
+    ).toEqual({ view: "12", direction: "top", paper: "a4", dpi: 300, format: "pdf", legend: true });
+  });
+
+  it("is square to a face that was picked, and nothing before", () => {
+    const choices: FigureChoices = { ...usual_figure(), from: "face" };
+    expect(figure_request(shown, choices, unwritten, null, null)).toBeNull();
+    const request = figure_request(shown, choices, unwritten, face, null)!;
+    expect([request.normal, request.center, request.direction]).toEqual([
+      face.normal,
+      face.center,
+      undefined,
+    ]);
+  });
+
+  it("is the same sheet as a small picture for the preview", () => {
+    const request = figure_request(
+      shown,
+      { ...usual_figure(), paper: "a3", dpi: 600, scale: 5 },
+      unwritten,
+      null,
+      null,
+    )!;
+    const preview = preview_request(request);
+    expect(preview).toEqual({ ...request, dpi: preview.dpi, format: "png" });
+    for (const paper of kPapers) {
+      const { dpi = 0 } = preview_request({ paper });
+      expect(Number.isInteger(dpi) && dpi >= 50 && dpi <= 100).toBe(true);
+    }
+  });
+});
+
+// ── with a server
+// ───────────────────────────────────────────────────────────────────────────────────────────────────
+
+let answers: Map<string, () => Response | Promise<Response>>; // by method and path
+let calls: { method: string; path: string; body: unknown; headers: Record<string, string> }[];
+let api: Api;
+let told: readonly Notice[];
+let unsubscribe: () => void;
+let saved: string[];
+
+const json = (body: unknown, status = 200): Response =>
+  new Response(JSON.stringify(body), { status });
+const job = (state: string, more: object = {}): object => ({
+  id: 5,
+  kind: "figure",
+  state,
+  progress: 0.5,
+  message: "Tile 3 of 6",
+  ...more,
+});
+const file = { name: "pot-front.pdf", media_type: "application/pdf", bytes: 1234 };
+const kFigures = "POST /api/v1/models/9/figures?lang=en-GB";
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  [calls, saved] = [[], []];
+  answers = new Map();
+  api = new Api(async (path, init) => {
+    calls.push({
+      method: init!.method!,
+      path,
+      body: init!.body ? JSON.parse(init!.body as string) : undefined,
+      headers: init!.headers as Record<string, string>,
+    });
+    const answer =
+      answers.get(`${init!.method} ${path}`)?.() ??
+      json({ title: `no answer for ${init!.method} ${path}` }, 500);
+    const stopped = new Promise<never>((_, reject) =>
+      init!.signal?.addEventListener("abort", () =>
+        reject(new DOMException("stopped", "AbortError")),
+      ),
+    );
+    return Promise.race([answer, stopped]);
+  });
+  unsubscribe = notices.subscribe((shown_now) => (told = shown_now));
+  vi.stubGlobal("document", {
+    createElement: () => ({
+      click(this: { download: string }) {
+        saved.push(this.download);
+      },
+    }),
+  });
+  vi.stubGlobal(
+    "URL",
+    Object.assign(URL, { createObjectURL: () => "blob:", revokeObjectURL: () => {} }),
+  );
+});
+afterEach(() => {
+  vi.advanceTimersByTime(120_000); // notices go
+  unsubscribe();
+  vi.unstubAllGlobals();
+  vi.useRealTimers();
+});
+
+describe("a figure", () => {
+  let jobs: LayerJobs;
+  let figures: Figures;
+  let state: object;
+  beforeEach(() => {
+    jobs = new LayerJobs(api, "9", () => {});
+    figures = new Figures(api, jobs);
+    state = job("running");
+    answers.set(kFigures, () => json(job("queued"), 202));
+    answers.set("GET /api/v1/jobs/5", () => json(state));
+    // As the server does: who takes JSON alone gets no drawing.
+    answers.set("GET /api/v1/jobs/5/file", () =>
+      calls.at(-1)!.headers["Accept"] === "*/*"
+        ? new Response("%PDF-1.7")
+        : json({ title: "Not acceptable" }, 406),
+    );
+    answers.set("DELETE /api/v1/jobs/5", () => new Response(null, { status: 204 }));
+  });
+  const make = (): Promise<number> => figures.make("Figure: Pot", { direction: "front", scale: 5 });
+  const poll = (): Promise<unknown> => vi.advanceTimersByTimeAsync(1000);
+  const end = async (last: object): Promise<void> => {
+    state = last;
+    await poll();
+  };
+
+  it("is asked for as a job, followed, and saved under its name where somebody waits for it", async () => {
+    const key = await make();
+    expect(calls[0]).toMatchObject({
+      path: "/api/v1/models/9/figures?lang=en-GB",
+      body: { direction: "front", scale: 5 },
+      headers: { Prefer: "respond-async" },
+    });
+    await poll();
+    expect(jobs.entries).toMatchObject([
+      { key, name: "Figure: Pot", job: { state: "running", progress: 0.5 } },
+    ]);
+    await end(job("done", { file }));
+    expect([saved, figures.saved, jobs.entries, told]).toEqual([
+      ["pot-front.pdf"],
+      "pot-front.pdf",
+      [],
+      [],
+    ]);
+  });
+
+  it("is offered where nobody waits any more, and stays listed until it is saved", async () => {
+    await make();
+    figures.awaited = null;
+    await end(job("done", { file }));
+    expect([saved, jobs.entries.length, is_busy(jobs.entries[0]!)]).toEqual([[], 1, false]);
+    expect(told.map(({ title, detail }) => [title, detail])).toEqual([
+      [texts.figures.ready, "pot-front.pdf"],
+    ]);
+    const link = told[0]!.link!;
+    if ("act" in link) link.act();
+    await poll();
+    expect([saved, jobs.entries]).toEqual([["pot-front.pdf"], []]);
+  });
+
+  it("that the server no longer has is told, and stays listed", async () => {
+    answers.set("GET /api/v1/jobs/5/file", () =>
+      json({ status: 404, title: "This file is gone" }, 404),
+    );
+    await make();
+    await end(job("done", { file }));
+    expect([saved, jobs.entries.length, told.map(({ title }) => title)]).toEqual([
+      [],
+      1,
+      ["This file is gone"],
+    ]);
+  });
+
+  it("is gone once it is cancelled", async () => {
+    const key = await make();
+    await jobs.cancel(key);
+    expect(calls.at(-1)).toMatchObject({ method: "DELETE", path: "/api/v1/jobs/5" });
+    await end(job("cancelled"));
+    expect([jobs.entries, saved, told]).toEqual([[], [], []]);
+  });
+
+  it("that fails tells why", async () => {
+    await make();
+    await end(
+      job("failed", {
+        problem: { status: 422, title: "Not so", detail: "No such column", field: "labels.column" },
+      }),
+    );
+    expect(jobs.entries).toMatchObject([{ problem: { field: "labels.column" } }]);
+    expect(saved).toEqual([]);
+  });
+
+  it("that is refused at once is not listed", async () => {
+    answers.set(kFigures, () => json({ status: 422, title: "Not so", field: "scale" }, 422));
+    await expect(make()).rejects.toMatchObject({ problem: { field: "scale" } });
+    expect(jobs.entries).toEqual([]);
+  });
+
+  it("as a picture is given up when it is not wanted any more, which is not a lost network", async () => {
+    answers.set(kFigures, () => new Promise<Response>(() => {}));
+    const stop = new AbortController();
+    const picture = api
+      .figure("9", { format: "png", dpi: 60 }, stop.signal)
+      .catch((error: unknown) => error);
+    stop.abort();
+    const error = await picture;
+    expect(error).toBeInstanceOf(ApiError);
+    expect((error as ApiError).status).toBe(499);
+    expect(calls[0]!.headers["Prefer"]).toBeUndefined();
+  });
+});
+
+describe("a face that is asked for", () => {
+  let pick: FacePick;
+  let tools: ToolManager;
+  let camera: OrbitCamera;
+  let turned: number;
+  const surface = (normal: number[] | null, more: object = {}): void =>
+    void answers.set("POST /api/v1/models/9/pick", () =>
+      json({ hit: true, position: [0, 0, 0], ...(normal ? { normal } : {}), ...more }),
+    );
+
+  beforeEach(() => {
+    camera = new OrbitCamera();
+    camera.set_model({ min: [-50, -50, -50], max: [50, 50, 50] }, "z");
+    camera.resize(400, 400);
+    camera.standard_view("front"); // looks along +y
+    turned = 0;
+    const navigator = { orbit: () => void (turned += 1), pan: () => {}, tap: () => {} };
+    pick = new FacePick(api, {
+      view: { camera } as never,
+      model: () => ({ id: 9 }) as never,
+      begin: () => tools.borrow("face"),
+      end: () => tools.give_back(),
+    });
+    const host = {
+      ...navigator,
+      tap: (sample: { x: number; y: number }) => void pick.take_at(sample),
+      take_in_middle: () => pick.take_in_middle(),
+      give_up: () => pick.give_up(),
+    };
+    tools = new ToolManager(
+      [
+        new OrbitTool(navigator),
+        Object.assign(new OrbitTool(navigator), { name: "pan" as const }),
+        new FaceTool(host),
+      ] as never,
+      "pan",
+    );
+  });
+  const tap = (x: number, y: number): void => {
+    tools.down({ x, y });
+    tools.up();
+  };
+
+  it("is where one taps, and the tool from before is in hand again", async () => {
+    surface([0, -1, 0]);
+    const found = pick.ask();
+    expect(tools.active).toBe("face");
+    tap(120, 80);
+    expect(await found).toEqual({ center: [0, 0, 0], normal: [0, -1, 0] });
+    expect(calls.at(-1)!.body).toMatchObject({ x: 120, y: 80 });
+    expect(tools.active).toBe("pan");
+  });
+
+  it("faces who picked it: of an open scan its inside, and without a normal the picture", async () => {
+    surface([0.6, 0.8, 0]);
+    let found = pick.ask();
+    tap(1, 1);
+    expect((await found)!.normal).toEqual([-0.6, -0.8, -0]);
+    surface(null);
+    found = pick.ask();
+    tap(1, 1);
+    expect((await found)!.normal.map((part) => Math.round(part) + 0)).toEqual([0, -1, 0]);
+  });
+
+  it("is looked for with drags, which turn the model, and taken from the middle by a key", async () => {
+    surface([0, -1, 0]);
+    const found = pick.ask();
+    tools.down({ x: 100, y: 100 });
+    tools.move([{ x: 160, y: 100 }]);
+    tools.up();
+    expect([turned, calls.length, tools.active]).toEqual([1, 0, "face"]);
+    expect(tools.key("Enter")).toBe(true);
+    expect(await found).not.toBeNull();
+    expect(calls.at(-1)!.body).toMatchObject({ x: 200, y: 200 });
+  });
+
+  it("is asked for on where there is no surface, or no answer", async () => {
+    answers.set("POST /api/v1/models/9/pick", () => json({ hit: false }));
+    const found = pick.ask();
+    tap(1, 1);
+    await vi.advanceTimersByTimeAsync(0);
+    expect([tools.active, told.map(({ title }) => title)]).toEqual(["face", [texts.marks.missed]]);
+    answers.delete("POST /api/v1/models/9/pick");
+    tap(1, 1);
+    await vi.advanceTimersByTimeAsync(0);
+    expect([tools.active, told.length]).toEqual(["face", 2]);
+    surface([0, -1, 0]);
+    tap(1, 1);
+    expect(await found).not.toBeNull();
+  });
+
+  it.each([
+    ["Escape", () => void tools.key("Escape")],
+    ["another tool", () => tools.choose("orbit")],
+    ["the end of the page", () => tools.stop()],
+    ["a second question", () => void pick.ask()],
+  ])("is none after %s, also when an answer is still on its way", async (_, leave) => {
+    surface([0, -1, 0]);
+    const found = pick.ask();
+    tap(1, 1);
+    leave();
+    expect(await found).toBeNull();
+    await vi.advanceTimersByTimeAsync(0);
+    expect(told).toEqual([]);
+  });
+
+  it("leaves the chosen tool as it is", () => {
+    const begun = vi.fn();
+    const before = {
+      name: "pan" as const,
+      activate: vi.fn(),
+      deactivate: begun,
+      down: vi.fn(),
+      move: vi.fn(),
+      up: vi.fn(),
+      cancel: vi.fn(),
+    };
+    const changed = vi.fn();
+    const manager = new ToolManager(
+      [
+        before,
+        new FaceTool({
+          orbit: vi.fn(),
+          pan: vi.fn(),
+          tap: vi.fn(),
+          take_in_middle: vi.fn(),
+          give_up: vi.fn(),
+        }),
+      ],
+      "pan",
+      changed,
+    );
+    manager.borrow("face");
+    manager.borrow("face");
+    manager.give_back();
+    manager.give_back();
+    expect([manager.active, before.activate.mock.calls.length, begun.mock.calls.length]).toEqual([
+      "pan",
+      1,
+      0,
+    ]);
+    expect(changed.mock.calls).toEqual([["face"], ["pan"]]);
+  });
+});

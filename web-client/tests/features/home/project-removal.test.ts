@@ -1,0 +1,104 @@
+import { describe, expect, it } from "vitest";
+
+import { is_name_of, remove_project } from "../../../src/features/home/project-removal";
+import { ApiError } from "../../../src/net/api";
+import type { Project, Table } from "../../../src/core/protocol.gen";
+
+const villa: Project = { id: 4, name: "Villa  Ñuño", slug: "villa", description: "" };
+const table = (id: number): Table => ({ id }) as Table;
+
+/** A server with tables, each of which names others, and one project. */
+class FakeServer {
+  readonly done: (number | string)[] = [];
+  /** By table, what else is answered first, once. */
+  readonly faults = new Map<number, ApiError>();
+
+  constructor(
+    private readonly names_: Map<number, number[]>,
+    private has_project_ = true,
+  ) {}
+
+  async delete_table(id: number | string): Promise<void> {
+    const at = Number(id);
+    const fault = this.faults.get(at);
+    this.faults.delete(at);
+    if (fault) throw fault;
+    if (!this.names_.has(at)) throw new ApiError({ status: 404, title: "Not found" });
+    for (const [other, named] of this.names_)
+      if (other !== at && named.includes(at))
+        throw new ApiError({ status: 409, title: "Table in use", detail: `named by ${other}` });
+    this.names_.delete(at);
+    this.done.push(at);
+  }
+  async delete_project(slug: number | string): Promise<void> {
+    if (this.names_.size > 0)
+      throw new ApiError({ status: 409, title: "Conflict", detail: "still has tables" });
+    if (!this.has_project_) throw new ApiError({ status: 404, title: "Not found" });
+    this.has_project_ = false;
+    this.done.push(slug);
+  }
+}
+
+describe("deleting a project", () => {
+  it("takes its tables along, those that others name after these", async () => {
+    const server = new FakeServer(
+      new Map([
+        [1, []],
+        [2, [1]],
+        [3, [2, 3]],
+      ]),
+    );
+    await remove_project(server, villa, [table(1), table(2), table(3)]);
+    expect(server.done).toEqual([3, 2, 1, "villa"]);
+  });
+
+  it("says why where tables name each other in a circle, and leaves the project", async () => {
+    const server = new FakeServer(
+      new Map([
+        [1, [2]],
+        [2, [1]],
+        [3, []],
+      ]),
+    );
+    await expect(
+      remove_project(server, villa, [table(1), table(2), table(3)]),
+    ).rejects.toMatchObject({ status: 409, problem: { title: "Table in use" } });
+    expect(server.done).toEqual([3]);
+  });
+
+  it("goes on where another attempt ended", async () => {
+    const server = new FakeServer(
+      new Map([
+        [1, []],
+        [2, []],
+      ]),
+    );
+    server.faults.set(2, new ApiError({ status: 503, title: "Busy" }));
+    await expect(remove_project(server, villa, [table(1), table(2)])).rejects.toMatchObject({
+      status: 503,
+    });
+    expect(server.done).toEqual([1]);
+    await remove_project(server, villa, [table(1), table(2)]);
+    expect(server.done).toEqual([1, 2, "villa"]);
+    await remove_project(server, villa, []); // somebody else was faster
+  });
+
+  it("fails where there is more in it than was shown", async () => {
+    const server = new FakeServer(new Map([[1, []]]));
+    await expect(remove_project(server, villa, [])).rejects.toMatchObject({
+      status: 409,
+      problem: { detail: "still has tables" },
+    });
+  });
+});
+
+describe("the name that is typed", () => {
+  it("is the project's as it is seen", () => {
+    expect(is_name_of("Villa Ñuño", villa)).toBe(true);
+    // a keyboard that composes letters
+    expect(is_name_of("  Villa N\u0303un\u0303o ", villa)).toBe(true);
+    for (const other of ["", "villa ñuño", "Villa", "Villa Ñuño 2"])
+      expect(is_name_of(other, villa)).toBe(false);
+    expect(is_name_of(" ", { ...villa, name: "\u2003" })).toBe(false);
+  });
+});

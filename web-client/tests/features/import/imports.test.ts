@@ -1,0 +1,79 @@
+import { describe, expect, it, vi } from "vitest";
+import { ApiError, type Api } from "../../../src/net/api";
+import type { Job } from "../../../src/core/types";
+import { Imports, type Scan } from "../../../src/features/import/imports";
+
+const scan: Scan = {
+  files: [{ file: new File(["ply"], "mesh.ply"), path: "mesh.ply" }],
+  name: "a/mesh",
+};
+const job = (state: Job["state"], more: Partial<Job> = {}): Job => ({
+  id: 7,
+  state,
+  progress: 0,
+  message: "",
+  ...more,
+});
+const problem = (status: number): NonNullable<Job["problem"]> => ({
+  status,
+  title: "Server was restarted",
+  detail: "Start it again.",
+});
+
+/** Answers of GET /jobs/7, one after the other: a job, or the status of a refusal. */
+function importing(...answers: (Job | number)[]): { imports: Imports; sent: string[] } {
+  const sent: string[] = [];
+  const api = {
+    upload_model: (_files: unknown, name: string) => {
+      sent.push(name);
+      return { done: Promise.resolve(job("queued")), cancel: () => {} };
+    },
+    job: async () => {
+      const next = answers.shift()!;
+      if (typeof next === "number") throw new ApiError(problem(next));
+      return next;
+    },
+  } as unknown as Api;
+  return { imports: new Imports(api), sent };
+}
+
+describe("an import", () => {
+  it("waits for a server that is away, and offers to begin again what a restart ended", async () => {
+    vi.useFakeTimers();
+    try {
+      const { imports, sent } = importing(
+        job("running"),
+        0,
+        503,
+        0,
+        job("failed", { problem: problem(503) }),
+        job("done", { model: 3 }),
+      );
+      const first = imports.start(scan, "default");
+      await vi.runAllTimersAsync();
+      expect(await first).toEqual({ model: null, problem: problem(503) });
+      expect(imports.entries).toMatchObject([
+        { name: "a/mesh", state: "failed", may_repeat: true },
+      ]);
+      const second = imports.repeat(imports.entries[0]!.key);
+      await vi.runAllTimersAsync();
+      expect(await second).toEqual({ model: 3, problem: null });
+      expect(imports.entries).toEqual([]);
+      expect(sent).toEqual(["a/mesh", "a/mesh"]);
+    } finally {
+      vi.useRealTimers();
+    }
+  });
+  it("that the file itself spoils is not offered again", async () => {
+    vi.useFakeTimers();
+    try {
+      const { imports } = importing(job("failed", { problem: problem(422) }));
+      const ending = imports.start(scan, "default");
+      await vi.runAllTimersAsync();
+      expect((await ending).problem?.status).toBe(422);
+      expect(imports.entries).toMatchObject([{ state: "failed", may_repeat: false }]);
+    } finally {
+      vi.useRealTimers();
+    }
+  });
+});

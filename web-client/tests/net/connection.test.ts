@@ -1,0 +1,690 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+
+import golden from "../../../protocol/golden/frame_headers.json";
+import { Connection, type ConnectionCallbacks, type StrokeOptions } from "../../src/net/connection";
+import type { ChangeMessage } from "../../src/net/outbox";
+import type { Layer } from "../../src/core/protocol.gen";
+import { FakeSocket, welcome } from "../fake-socket";
+
+const camera = { view: [1], projection: [1], width: 640, height: 480 };
+const stroke_options: StrokeOptions = {
+  layer: 7,
+  value: 3,
+  erase: false,
+  camera,
+  radius: { px: 12 },
+  shape: "disc",
+  through: false,
+};
+
+let sockets: FakeSocket[];
+let frames: (() => void)[];
+let callbacks: {
+  [Name in keyof ConnectionCallbacks]: ReturnType<typeof vi.fn<ConnectionCallbacks[Name]>>;
+};
+let connection: Connection;
+let shelved: ChangeMessage[]; // what the browser keeps beyond the page
+
+const socket = (): FakeSocket => sockets[sockets.length - 1]!;
+const draw = (): void => frames.splice(0).forEach((frame) => frame());
+const saving = (): unknown => callbacks.saving.mock.lastCall?.[0];
+
+function connect(strokes: Parameters<typeof welcome>[0] = []): void {
+  socket().open();
+  socket().receive(welcome(strokes));
+}
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  sockets = [];
+  frames = [];
+  callbacks = {
+    state: vi.fn(),
+    welcome: vi.fn(),
+    frame: vi.fn(),
+    saving: vi.fn(),
+    applied: vi.fn(),
+    saved: vi.fn(),
+    layer: vi.fn(),
+    look: vi.fn(),
+    tool: vi.fn(),
+    model: vi.fn(),
+    record: vi.fn(),
+    table: vi.fn(),
+    editors: vi.fn(),
+    comment: vi.fn(),
+    view: vi.fn(),
+    presence: vi.fn(),
+    picked: vi.fn(),
+    problem: vi.fn(),
+    taken_up: vi.fn(),
+  };
+  shelved = [];
+  connection = new Connection(
+    {
+      url: "ws://here/api/v1/models/1/live",
+      client: "test",
+      device_pixel_ratio: 2,
+      make_socket: (url, protocol) => {
+        sockets.push(new FakeSocket(url, protocol));
+        return socket();
+      },
+      make_shelf: (user) => {
+        expect(user).toBe("owner");
+        return {
+          read: async () => [...shelved],
+          put: (message) => void shelved.push(message),
+          remove: (ids) => void (shelved = shelved.filter(({ id }) => !ids.includes(id))),
+        };
+      },
+      next_frame: (callback) => void frames.push(callback),
+      random: () => 0.5,
+    },
+    callbacks,
+  );
+  connection.open();
+});
+
+afterEach(() => {
+  connection.close();
+  vi.useRealTimers();
+});
+
+describe("opening", () => {
+  it("says hello with the subprotocol, and is open after the welcome", () => {
+    expect(socket().protocol).toBe("strata.v1");
+    socket().open();
+    expect(socket().sent).toEqual([
+      { op: "hello", client: "test", dpr: 2, accept: ["jpeg", "png"] },
+    ]);
+    expect(connection.state).toBe("connecting");
+    socket().receive(welcome());
+    expect(connection.state).toBe("open");
+  });
+
+  it("takes no stroke while too much waits to be saved, and says that this is why", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    for (let i = 0; i <= 5000; ++i) stroke.extend([[i, i]]);
+    expect([connection.begin_stroke(stroke_options), connection.full]).toEqual([null, true]);
+    socket().receive({ op: "saved", stroke: stroke.stroke, n: 0, sequence: 1 });
+    expect(connection.full).toBe(false);
+    expect(connection.begin_stroke(stroke_options)).not.toBeNull();
+  });
+
+  it("takes no stroke before it is open", () => {
+    expect(connection.begin_stroke(stroke_options)).toBeNull();
+    socket().open();
+    expect(connection.begin_stroke(stroke_options)).toBeNull();
+  });
+});
+
+describe("cameras", () => {
+  it("only the newest camera of a drawn picture is sent, with ascending numbers", () => {
+    connect();
+    connection.set_camera({ ...camera, width: 1 }, true);
+    connection.set_camera({ ...camera, width: 2 }, true);
+    connection.set_camera({ ...camera, width: 3 }, true);
+    expect(socket().of("camera")).toEqual([]);
+    draw();
+    connection.set_camera({ ...camera, width: 4 }, false);
+    draw();
+    expect(
+      socket()
+        .of("camera")
+        .map(({ seq, width, moving }) => [seq, width, moving]),
+    ).toEqual([
+      [1, 3, true],
+      [2, 4, false],
+    ]);
+  });
+
+  it("a camera waits while the socket is busy, and only the newest leaves then", () => {
+    connect();
+    socket().bufferedAmount = 1e6;
+    connection.set_camera({ ...camera, width: 1 }, true);
+    draw();
+    connection.set_camera({ ...camera, width: 2 }, true);
+    draw();
+    expect(socket().of("camera")).toEqual([]);
+    socket().bufferedAmount = 0;
+    draw();
+    expect(
+      socket()
+        .of("camera")
+        .map((message) => message.width),
+    ).toEqual([2]);
+  });
+
+  it("after a reconnect the last camera and layer settings are sent again", () => {
+    connect();
+    connection.set_camera(camera, true);
+    connection.set_layer_overrides([
+      { layer: 7, visible: false },
+      { layer: 8, opacity: 0.5 },
+    ]);
+    draw();
+    socket().lose();
+    vi.advanceTimersByTime(300);
+    socket().open();
+    // 8 was deleted meanwhile: it would have all refused
+    socket().receive({ ...welcome(), layers: [{ id: 7 } as Layer] });
+    expect(
+      socket()
+        .of("camera")
+        .map(({ seq, moving }) => [seq, moving]),
+    ).toEqual([[2, false]]);
+    expect(socket().of("layers")).toEqual([
+      { op: "layers", layers: [{ layer: 7, visible: false }] },
+    ]);
+  });
+
+  it("nothing is viewed any more once nobody looks", () => {
+    connect();
+    connection.set_camera(camera, false);
+    draw();
+    connection.stop_viewing();
+    socket().lose();
+    vi.advanceTimersByTime(300);
+    connect();
+    expect(socket().sent_ops()).toEqual(["hello"]);
+  });
+});
+
+describe("strokes", () => {
+  it("a stroke is sent in numbered batches", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    stroke.extend([[1, 1]]);
+    stroke.extend([
+      [2, 2],
+      [3, 3],
+    ]);
+    stroke.end();
+    expect(socket().sent_ops()).toEqual([
+      "hello",
+      "stroke.begin",
+      "stroke.extend",
+      "stroke.extend",
+      "stroke.end",
+    ]);
+    expect(
+      socket()
+        .of("stroke.extend")
+        .map(({ n, path }) => [n, path]),
+    ).toEqual([
+      [0, [[1, 1]]],
+      [
+        1,
+        [
+          [2, 2],
+          [3, 3],
+        ],
+      ],
+    ]);
+    const [begin] = socket().of("stroke.begin");
+    expect(begin).toMatchObject({ layer: 7, value: 3, radius_px: 12, shape: "disc", camera });
+    expect(begin).not.toHaveProperty("erase");
+  });
+
+  it("a long path is split at the server's limit of points", () => {
+    connect(); // path_points: 4
+    connection
+      .begin_stroke(stroke_options)!
+      .extend(Array.from({ length: 9 }, (_, i): [number, number] => [i, 0]));
+    const paths = socket()
+      .of("stroke.extend")
+      .map((message) => message.path);
+    expect(paths.every((path) => path.length <= 4)).toBe(true);
+    expect(paths.map((path) => path.map(([x]) => x))).toEqual([[0, 1, 2, 3], [4, 5, 6, 7], [8]]);
+  });
+
+  it("an erasing stroke has no value and may have its radius in millimetres", () => {
+    connect();
+    connection.begin_stroke({ ...stroke_options, erase: true, radius: { mm: 2.5 } });
+    const [begin] = socket().of("stroke.begin");
+    expect(begin).toMatchObject({ erase: true, radius_mm: 2.5 });
+    expect(begin).not.toHaveProperty("value");
+    expect(begin).not.toHaveProperty("radius_px");
+  });
+
+  it("a stroke names the shape of its brush, and the slant that it reaches where there is a limit", () => {
+    connect();
+    connection.begin_stroke({ ...stroke_options, shape: 12, max_angle_deg: 60 });
+    connection.begin_stroke({ ...stroke_options, shape: "square" });
+    const [limited, plain] = socket().of("stroke.begin");
+    expect(limited).toMatchObject({ shape: 12, max_angle_deg: 60 });
+    expect(plain).toMatchObject({ shape: "square" });
+    expect(plain).not.toHaveProperty("max_angle_deg");
+  });
+
+  it("what is applied still counts as unsaved until it is saved", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    stroke.extend([[1, 1]]);
+    stroke.end();
+    expect(saving()).toEqual({ waiting: 1, failing: false });
+    socket().receive({ op: "applied", stroke: stroke.stroke, n: 0, sequence: 5 });
+    expect(saving()).toEqual({ waiting: 1, failing: false });
+    socket().receive({ op: "saved", stroke: stroke.stroke, n: 0, sequence: 5 });
+    expect(saving()).toEqual({ waiting: 0, failing: false });
+  });
+});
+
+describe("a lost connection", () => {
+  it("is opened again with growing pauses, until close", () => {
+    const pauses: number[] = [];
+    for (let attempt = 0; attempt < 8; ++attempt) {
+      const before = sockets.length;
+      socket().lose();
+      expect(connection.state).toBe("lost");
+      let waited_ms = 0;
+      while (sockets.length === before && waited_ms < 60_000) {
+        vi.advanceTimersByTime(50);
+        waited_ms += 50;
+      }
+      pauses.push(waited_ms);
+    }
+    expect(pauses).toEqual([250, 500, 1000, 2000, 4000, 8000, 8000, 8000]);
+    socket().lose();
+    connection.close();
+    const count = sockets.length;
+    vi.advanceTimersByTime(60_000);
+    expect(sockets.length).toBe(count);
+  });
+
+  it("is opened at once when a person asks", () => {
+    connect();
+    socket().lose();
+    connection.check();
+    expect(sockets.length).toBe(2);
+    connect();
+    vi.advanceTimersByTime(60_000);
+    expect(sockets.length).toBe(2);
+  });
+
+  it("resends exactly what was not saved, in order and under the same ids", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    for (let i = 0; i < 4; ++i) stroke.extend([[i, i]]);
+    stroke.end();
+    const before = socket();
+    before.receive({ op: "saved", stroke: stroke.stroke, n: 0, sequence: 1 });
+    before.lose();
+    expect(saving()).toEqual({ waiting: 3, failing: false });
+    vi.advanceTimersByTime(300);
+    connect([{ stroke: stroke.stroke, n: 1 }]); // the answer for 1 was lost on its way
+    const again = socket().sent.filter((message) => message.op !== "hello");
+    const wanted = before.sent.filter(
+      (message) => message.op !== "hello" && !(message.op === "stroke.extend" && message.n <= 1),
+    );
+    expect(again).toEqual(wanted);
+    expect(again.map((message) => message.op)).toEqual([
+      "stroke.begin",
+      "stroke.extend",
+      "stroke.extend",
+      "stroke.end",
+    ]);
+    expect(saving()).toEqual({ waiting: 2, failing: false });
+  });
+
+  it("keeps what is not saved beyond the page, and nothing else", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    stroke.extend([[1, 1]]);
+    stroke.extend([[2, 2]]);
+    stroke.end();
+    connection.send_change({ op: "undo", id: "u", layer: 7 });
+    expect(shelved.map(({ op }) => op)).toEqual([
+      "stroke.begin",
+      "stroke.extend",
+      "stroke.extend",
+      "stroke.end",
+      "undo",
+    ]);
+    socket().receive({ op: "saved", stroke: stroke.stroke, n: 0, sequence: 1 });
+    expect(shelved.map(({ op }) => op)).toEqual([
+      "stroke.begin",
+      "stroke.extend",
+      "stroke.end",
+      "undo",
+    ]);
+    socket().receive({ op: "saved", stroke: stroke.stroke, n: 1, sequence: 2 });
+    expect(shelved.map(({ op }) => op)).toEqual(["undo"]);
+    socket().receive({
+      op: "problem",
+      ref: "u",
+      status: 409,
+      title: "Nothing to undo",
+      detail: "",
+    });
+    expect(shelved).toEqual([]);
+  });
+
+  it("sends what an earlier page left, before its own, and ends the stroke that was being drawn", async () => {
+    shelved = [
+      {
+        op: "stroke.begin",
+        id: "b",
+        stroke: "s",
+        layer: 7,
+        value: 3,
+        camera,
+        radius_px: 12,
+        shape: "disc",
+      },
+      { op: "stroke.extend", id: "e0", stroke: "s", n: 0, path: [[1, 1]] },
+      { op: "stroke.extend", id: "e1", stroke: "s", n: 1, path: [[2, 2]] },
+      { op: "undo", id: "u", layer: 7 },
+    ];
+    connect([{ stroke: "s", n: 0 }]); // whose answer the earlier page never heard
+    connection.send_change({ op: "redo", id: "mine", layer: 7 });
+    await vi.advanceTimersByTimeAsync(0);
+    expect(callbacks.taken_up.mock.calls).toEqual([[3]]);
+    expect(saving()).toEqual({ waiting: 3, failing: false });
+    expect(
+      socket()
+        .sent.slice(-5)
+        .map((message) => ("id" in message ? message.id : "")),
+    ).toEqual(["b", "e1", expect.any(String), "u", "mine"]);
+    expect(
+      socket()
+        .of("stroke.end")
+        .map(({ stroke }) => stroke),
+    ).toEqual(["s"]);
+    socket().receive({ op: "saved", stroke: "s", n: 1, sequence: 5 });
+    for (const id of ["u", "mine"]) socket().receive({ op: "saved", id, sequence: 6 });
+    expect([shelved, saving()]).toEqual([[], { waiting: 0, failing: false }]);
+  });
+
+  it("keeps nothing of a model that is gone", () => {
+    connect();
+    connection.send_change({ op: "undo", id: "u", layer: 7 });
+    connection.forget();
+    expect(shelved).toEqual([]);
+  });
+
+  it("sends nothing again when all was saved", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    stroke.extend([[1, 1]]);
+    stroke.end();
+    socket().receive({ op: "saved", stroke: stroke.stroke, n: 0, sequence: 1 });
+    socket().lose();
+    vi.advanceTimersByTime(300);
+    connect();
+    expect(socket().sent_ops()).toEqual(["hello"]);
+  });
+
+  it("goes on with a stroke that was being drawn", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    stroke.extend([[1, 1]]);
+    socket().lose();
+    stroke.extend([[2, 2]]);
+    vi.advanceTimersByTime(300);
+    connect();
+    stroke.extend([[3, 3]]);
+    stroke.end();
+    expect(socket().sent_ops()).toEqual([
+      "hello",
+      "stroke.begin",
+      "stroke.extend",
+      "stroke.extend",
+      "stroke.extend",
+      "stroke.end",
+    ]);
+    expect(
+      socket()
+        .of("stroke.extend")
+        .map((message) => message.n),
+    ).toEqual([0, 1, 2]);
+  });
+
+  it("resends no faster than the server takes, and new changes stay behind the old ones", () => {
+    connect(); // messages_per_second: 200
+    const stroke = connection.begin_stroke(stroke_options)!;
+    for (let i = 0; i < 250; ++i) stroke.extend([[i, i]]);
+    socket().lose();
+    vi.advanceTimersByTime(300);
+    connect();
+    stroke.extend([[999, 999]]);
+    expect(socket().of("stroke.extend").length).toBe(99);
+    vi.advanceTimersByTime(1000);
+    expect(socket().of("stroke.extend").length).toBe(199);
+    vi.advanceTimersByTime(1000);
+    expect(
+      socket()
+        .of("stroke.extend")
+        .map((message) => message.n),
+    ).toEqual(Array.from({ length: 251 }, (_, n) => n));
+  });
+
+  it.each([
+    ["changes wait", () => connection.begin_stroke(stroke_options)!.extend([[1, 1]])],
+    ["a picture is due", () => (connection.set_camera(camera, false), draw())],
+  ])(
+    "a server that stays silent while %s is asked for a sign of life, and counts as lost without one",
+    (_, act) => {
+      connect();
+      const first = socket();
+      act();
+      vi.advanceTimersByTime(9900);
+      expect(first.of("pick")).toEqual([]);
+      vi.advanceTimersByTime(200);
+      expect(first.of("pick").length).toBe(1);
+      vi.advanceTimersByTime(9500);
+      expect(connection.state).toBe("open");
+      vi.advanceTimersByTime(500);
+      expect(first.closed).toBe(true);
+      expect(connection.state).not.toBe("open");
+    },
+  );
+
+  it("a sign of life is enough, and nobody hears of it", () => {
+    connect();
+    connection.set_camera(camera, false);
+    draw();
+    vi.advanceTimersByTime(10_100);
+    socket().receive({ op: "picked", id: socket().of("pick")[0]!.id!, hit: false });
+    connection.check();
+    socket().receive({
+      op: "problem",
+      ref: socket().of("pick")[1]!.id!,
+      status: 409,
+      title: "No camera",
+      detail: "",
+    });
+    vi.advanceTimersByTime(600_000);
+    expect(connection.state).toBe("open");
+    expect(socket().of("pick").length).toBe(2); // what is idle is left alone
+    expect(callbacks.picked).not.toHaveBeenCalled();
+    expect(callbacks.problem).not.toHaveBeenCalled();
+  });
+
+  it("a connection that looks open is doubted when the network changed", () => {
+    connect();
+    const first = socket();
+    connection.check();
+    vi.advanceTimersByTime(10_100);
+    expect(first.closed).toBe(true);
+    expect(connection.state).toBe("lost");
+  });
+
+  it.each([
+    ["no handshake", () => {}],
+    ["no welcome", () => socket().open()],
+  ])("%s within 30 s counts as lost", (_, act) => {
+    act();
+    const first = socket();
+    vi.advanceTimersByTime(29_900);
+    expect(first.closed).toBe(false);
+    vi.advanceTimersByTime(200);
+    expect(first.closed).toBe(true);
+    expect(connection.state).toBe("lost");
+  });
+
+  it("what an old socket still says is not heard", () => {
+    connect();
+    const old = socket();
+    old.lose();
+    vi.advanceTimersByTime(300);
+    old.receive({ op: "presence", users: [] });
+    expect(callbacks.presence).not.toHaveBeenCalled();
+  });
+});
+
+describe("refusals", () => {
+  it("changes that could not be saved are sent again, and the page is told", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    stroke.extend([[1, 1]]);
+    stroke.end();
+    const sent = socket().sent.slice(1);
+    const extend = socket().of("stroke.extend")[0]!;
+    socket().sent = [];
+    socket().receive({ op: "unsaved", ids: [extend.id] });
+    expect(saving()).toEqual({ waiting: 1, failing: true });
+    vi.advanceTimersByTime(300);
+    expect(socket().sent).toEqual(sent);
+    socket().receive({ op: "saved", stroke: stroke.stroke, n: 0, sequence: 9 });
+    expect(saving()).toEqual({ waiting: 0, failing: false });
+  });
+
+  it("a passing refusal is tried again with growing pauses and told once", () => {
+    connect();
+    const id = connection.send_change({
+      op: "undo",
+      id: "11111111-1111-4111-8111-111111111111",
+      layer: 7,
+    })!;
+    for (const pause_ms of [250, 500, 1000]) {
+      socket().sent = [];
+      socket().receive({
+        op: "problem",
+        ref: id,
+        status: 503,
+        title: "Database gone",
+        detail: "Wait.",
+      });
+      vi.advanceTimersByTime(pause_ms - 10);
+      expect(socket().sent).toEqual([]);
+      vi.advanceTimersByTime(20);
+      expect(socket().sent_ops()).toEqual(["undo"]);
+    }
+    expect(callbacks.problem).toHaveBeenCalledTimes(1);
+    expect(saving()).toEqual({ waiting: 1, failing: true });
+  });
+
+  it("a batch that came out of order because the one before was refused for the moment goes again with it", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    stroke.extend([[1, 1]]);
+    stroke.extend([[2, 2]]);
+    const [first, second] = socket().of("stroke.extend");
+    socket().sent = [];
+    socket().receive({
+      op: "problem",
+      ref: first!.id,
+      status: 429,
+      title: "Too many messages",
+      detail: "Later.",
+    });
+    socket().receive({
+      op: "problem",
+      ref: second!.id,
+      status: 409,
+      title: "Batch out of order",
+      detail: "0 is next.",
+    });
+    vi.advanceTimersByTime(300);
+    expect(socket().of("stroke.extend")).toEqual([first, second]);
+    expect(saving()).toEqual({ waiting: 2, failing: true });
+  });
+
+  it("a refused stroke is given up as a whole and told once", () => {
+    connect();
+    const stroke = connection.begin_stroke(stroke_options)!;
+    stroke.extend([[1, 1]]);
+    const begin = socket().of("stroke.begin")[0]!;
+    const extend = socket().of("stroke.extend")[0]!;
+    socket().receive({
+      op: "problem",
+      ref: begin.id,
+      status: 404,
+      title: "No layer",
+      detail: "It was deleted.",
+    });
+    socket().receive({
+      op: "problem",
+      ref: extend.id,
+      status: 404,
+      title: "No stroke",
+      detail: "Unknown.",
+    });
+    stroke.extend([[2, 2]]);
+    stroke.end();
+    expect(socket().of("stroke.extend").length).toBe(1);
+    expect(callbacks.problem.mock.calls).toEqual([
+      [{ ref: begin.id, status: 404, title: "No layer", detail: "It was deleted." }],
+    ]);
+    expect(saving()).toEqual({ waiting: 0, failing: false });
+  });
+
+  it("a problem of something that changed nothing is only told", () => {
+    connect();
+    socket().receive({
+      op: "problem",
+      status: 422,
+      title: "Bad camera",
+      detail: "Singular.",
+      field: "view",
+    });
+    expect(callbacks.problem).toHaveBeenCalledTimes(1);
+    expect(connection.state).toBe("open");
+  });
+});
+
+describe("messages", () => {
+  it("frames are decoded, and acks name view and frame", () => {
+    connect();
+    const { hex } = golden.valid.find((vector) => vector.name === "keyframe")!;
+    socket().receive_raw(
+      new Uint8Array(hex.match(/../g)!.map((byte) => parseInt(byte, 16))).buffer,
+    );
+    expect(callbacks.frame.mock.lastCall?.[0].header).toMatchObject({ frame: 1, full_width: 1280 });
+    connection.ack(0, 1);
+    expect(socket().of("ack")).toEqual([{ op: "ack", view_id: 0, frame: 1 }]);
+  });
+
+  it("a broken frame or an unknown message is told, and the connection lives on", () => {
+    connect();
+    socket().receive_raw(new ArrayBuffer(3));
+    socket().receive_raw('{"op":"later"}');
+    socket().receive_raw("{");
+    expect(callbacks.problem).toHaveBeenCalledTimes(3);
+    expect(connection.state).toBe("open");
+  });
+
+  it("says all that a view shows at once, and again after it came back", () => {
+    connect();
+    connection.set_appearance(null, { mode: "museum" });
+    expect(socket().of("layers")).toHaveLength(0);
+    connection.set_layer_overrides([{ layer: 3, visible: false }]);
+    connection.set_appearance([{ look: 4, opacity: 0.5 }], {
+      mode: "raking",
+      direction: [1, 0, 1],
+    });
+    const said = socket().of("layers").at(-1)!;
+    expect(said).toMatchObject({
+      layers: [{ layer: 3 }],
+      looks: [{ look: 4 }],
+      light: { mode: "raking" },
+    });
+    connection.set_appearance(null, { mode: "museum" });
+    expect(socket().of("layers").at(-1)).toEqual({
+      op: "layers",
+      layers: [{ layer: 3, visible: false }],
+    });
+  });
+});

@@ -1,0 +1,548 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+
+import { ModelSession } from "../../src/shell/model-session";
+import { notices } from "../../src/ui/notices";
+import { check_connections, discard_unsaved, unsaved_changes } from "../../src/shell/sessions";
+import { texts } from "../../src/texts";
+import { Api } from "../../src/net/api";
+import { presence_palette } from "../../src/domain/palette";
+import type { Role, Welcome } from "../../src/core/protocol.gen";
+import type { Layer } from "../../src/core/types";
+import { FakeSocket, welcome } from "../fake-socket";
+
+const model = {
+  id: 1,
+  name: "Pot",
+  unit: "mm",
+  up: "z",
+  scale_verified: true,
+  bounds: { min: [0, 0, 0], max: [100, 100, 100] },
+} as unknown as Welcome["model"];
+const layer = (id: number, order: number): Layer => ({
+  id,
+  model: 1,
+  name: `L${id}`,
+  slug: `l${id}`,
+  kind: "numeric",
+  type: "u8",
+  resolution: 2048,
+  unit: "",
+  description: "",
+  labels: {},
+  descriptions: {},
+  palette: presence_palette("x", "#ff0000ff"),
+  opacity: 1,
+  visible: true,
+  locked: false,
+  review: false,
+  visibility: "public",
+  order,
+  sequence: 0,
+});
+
+let sockets: FakeSocket[];
+let answers: Map<string, [status: number, body: unknown]>; // by method and path
+let session: ModelSession;
+let told: string[];
+let unsubscribe: () => void;
+let kept: unknown[]; // of how layers are shown
+
+const socket = (): FakeSocket => sockets[sockets.length - 1]!;
+const settle = (): Promise<unknown> => vi.advanceTimersByTimeAsync(0);
+
+async function open(role: Role = "owner"): Promise<void> {
+  await session.open();
+  session.view.set_viewport(800, 600, 1);
+  join(role);
+}
+function join(role: Role = "owner", layers = [layer(7, 0), layer(8, 1)]): void {
+  socket().open();
+  socket().receive({ ...welcome(), role, model, layers });
+}
+/** A dab in the newest layer, not saved yet. Returns what saves it. */
+function paint(): () => void {
+  session.choose_tool("brush");
+  session.gestures.tool_down({ x: 5, y: 5 });
+  session.gestures.tool_up();
+  const { stroke } = socket().of("stroke.begin").at(-1)!;
+  return () => socket().receive({ op: "saved", stroke, n: 0, sequence: 1 });
+}
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  vi.stubGlobal("window", { location: { protocol: "http:", host: "here" }, devicePixelRatio: 1 });
+  vi.stubGlobal("requestAnimationFrame", (callback: () => void) => setTimeout(callback, 16));
+  sockets = [];
+  kept = [];
+  answers = new Map([["GET /api/v1/models/1", [200, model]]]);
+  const api = new Api(async (path, init) => {
+    if (path.startsWith("/api/v1/me/") && answers.has(`${init!.method} ${path}`))
+      kept.push(JSON.parse(init!.body as string));
+    const [status, body] = answers.get(`${init!.method} ${path}`) ?? [
+      500,
+      { title: `no answer for ${init!.method} ${path}` },
+    ];
+    return new Response(JSON.stringify(body), { status, headers: { ETag: '"1"' } });
+  });
+  session = new ModelSession(api, "1", (url, protocol) => {
+    sockets.push(new FakeSocket(url, protocol));
+    return socket();
+  });
+  told = [];
+  unsubscribe = notices.subscribe((shown) => (told = shown.map((notice) => notice.title)));
+});
+afterEach(() => {
+  discard_unsaved();
+  vi.advanceTimersByTime(60_000); // notices go
+  unsubscribe();
+  vi.unstubAllGlobals();
+  vi.useRealTimers();
+});
+
+describe("leaving a model", () => {
+  it("with everything saved ends the connection", async () => {
+    await open();
+    paint()();
+    session.close();
+    expect(socket().closed).toBe(true);
+  });
+
+  it("before it was open does not open it afterwards", async () => {
+    const opening = session.open();
+    session.close();
+    await opening;
+    expect(sockets).toEqual([]);
+  });
+
+  it("keeps the connection until all is saved, and says nothing", async () => {
+    await open();
+    const save = paint();
+    session.close();
+    expect(socket().closed).toBe(false);
+    expect(unsaved_changes()).toBe(1);
+    save();
+    expect(socket().closed).toBe(true);
+    expect(unsaved_changes()).toBe(0);
+    expect(told).toEqual([]);
+  });
+
+  it("ends the stroke that is being drawn, and its last points go out", async () => {
+    await open();
+    session.choose_tool("brush");
+    session.gestures.tool_down({ x: 5, y: 5 });
+    session.gestures.tool_move([{ x: 90, y: 5 }]);
+    session.close();
+    expect(
+      socket()
+        .of("stroke.extend")
+        .map((message) => message.path),
+    ).toEqual([[[5, 5]], [[90, 5]]]);
+    expect(socket().of("stroke.end").length).toBe(1);
+  });
+
+  it("without a connection: the person is told once, and the changes go out when it is back", async () => {
+    await open();
+    paint();
+    socket().lose();
+    session.close();
+    await vi.advanceTimersByTimeAsync(300);
+    socket().lose();
+    await vi.advanceTimersByTimeAsync(900);
+    expect(told).toEqual([texts.saving.left_behind(1, "Pot")]);
+    join();
+    const [begin] = socket().of("stroke.begin");
+    expect(socket().of("camera")).toEqual([]);
+    socket().receive({ op: "saved", stroke: begin!.stroke, n: 0, sequence: 1 });
+    expect(told).toContain(texts.saving.left_saved("Pot"));
+    expect(socket().closed).toBe(true);
+  });
+
+  it("signed out: what waits goes out after the next sign-in, but not in somebody else's name", async () => {
+    await open();
+    paint();
+    answers.set("GET /api/v1/models/1", [401, { title: "Not signed in" }]);
+    socket().lose();
+    await settle();
+    expect(session.signed_out).toBe(true);
+    session.close(); // the page shows the sign-in
+    check_connections();
+    join();
+    expect(session.signed_out).toBe(false);
+    expect(socket().of("stroke.extend").length).toBe(1);
+    expect(discard_unsaved()).toBe(1);
+    expect(socket().closed).toBe(true);
+  });
+
+  it("a model that was deleted takes what waits with it, and the person is told", async () => {
+    await open();
+    paint();
+    socket().receive({ op: "model", event: "deleted", model: 1 } as never);
+    expect(told).toEqual([texts.saving.lost_with_model(1, "Pot")]);
+    expect([session.deleted, unsaved_changes()]).toEqual([true, 0]);
+    session.close();
+    expect(told.length).toBe(1);
+  });
+});
+
+describe("the camera in mid-stroke", () => {
+  it("stays, whatever is pressed; a new size of the stage waits", async () => {
+    await open();
+    session.choose_tool("brush");
+    session.gestures.tool_down({ x: 5, y: 5 });
+    const before = session.view.camera.message();
+    session.view.standard_view("top");
+    session.view.fit();
+    session.view.set_perspective(false);
+    session.gestures.zoom(0.5, 9, 9);
+    session.view.set_viewport(400, 300, 1);
+    expect(session.view.camera.message()).toEqual(before);
+    session.gestures.tool_up();
+    expect([
+      session.view.camera.width,
+      session.view.camera.height,
+      session.view.camera.perspective,
+    ]).toEqual([400, 300, true]);
+    session.view.standard_view("top");
+    expect(session.view.camera.elevation).toBeCloseTo(Math.PI / 2);
+  });
+});
+
+describe("edits of whole areas", () => {
+  const edits = () =>
+    socket()
+      .of("edit")
+      .map(({ edit }) => edit);
+
+  it("a polygon is sent with the camera that it was drawn in, which stays meanwhile", async () => {
+    await open();
+    session.choose_tool("polygon");
+    const camera = session.view.camera.message();
+    for (const [x, y] of [
+      [5, 5],
+      [200, 5],
+      [200, 200],
+    ] as const) {
+      session.gestures.tool_down({ x, y });
+      session.gestures.tool_up();
+      session.gestures.zoom(0.5, 9, 9);
+    }
+    session.tools.key("Enter");
+    expect(edits()).toEqual([
+      {
+        op: "polygon",
+        value: 1,
+        camera,
+        path: [
+          [5, 5],
+          [200, 5],
+          [200, 200],
+        ],
+        through: false,
+      },
+    ]);
+    session.gestures.zoom(0.5, 9, 9);
+    expect(session.view.camera.message()).not.toEqual(camera);
+  });
+
+  it("the bucket fills what its panel says, or erases it", async () => {
+    await open();
+    session.choose_tool("bucket");
+    const at = { camera: session.view.camera.message(), x: 40, y: 50 };
+    const press = (): void => {
+      session.gestures.tool_down({ x: 40, y: 50 });
+      session.gestures.tool_up();
+    };
+    press();
+    session.painting.set_brush((brush) => (brush.areas = { erases: true, reach: "island" }));
+    press();
+    expect(edits()).toEqual([
+      { op: "fill", value: 1, mode: "connected", at },
+      { op: "fill", erase: true, mode: "island", at },
+    ]);
+  });
+
+  it("the person is told how much changed", async () => {
+    await open();
+    session.painting.fill(session.layers.all[0]!);
+    const { id } = socket().of("edit").at(-1)!;
+    const { stroke } = ((): { stroke: string } => {
+      paint();
+      return socket().of("stroke.begin").at(-1)!;
+    })();
+    socket().receive({
+      op: "applied",
+      stroke,
+      n: 0,
+      sequence: 1,
+      texels_changed: 5,
+      area_m2: 1,
+    } as never);
+    expect(told).toEqual([]);
+    socket().receive({
+      op: "applied",
+      id,
+      sequence: 2,
+      texels_changed: 500,
+      area_m2: 0.00023,
+    } as never);
+    expect(told).toEqual([texts.areas.changed("2.3 cm²")]);
+    socket().receive({
+      op: "applied",
+      id,
+      sequence: 2,
+      texels_changed: 500,
+      area_m2: 0.00023,
+    } as never);
+    expect(told.length).toBe(1);
+  });
+
+  it("a viewer is refused before anything is drawn", async () => {
+    await open("viewer");
+    session.choose_tool("lasso");
+    session.gestures.tool_down({ x: 5, y: 5 });
+    expect(session.tools.outline).toBe(null);
+    expect(told).toEqual([texts.brush.viewer_only]);
+  });
+});
+
+describe("what this person shows and hides", () => {
+  it("of a deleted layer is forgotten at once", async () => {
+    await open();
+    session.layers.set_visible(session.layers.all[0]!, false);
+    session.layers.set_opacity(session.layers.all[1]!, 0.5);
+    socket().receive({ op: "layer", event: "deleted", layer_id: 7 } as never);
+    expect(socket().of("layers").at(-1)!.layers).toEqual([{ layer: 8, opacity: 0.5 }]);
+  });
+  it("of a layer that was deleted while the connection was lost is forgotten, too", async () => {
+    await open();
+    session.layers.set_visible(session.layers.all[0]!, false);
+    socket().lose();
+    await vi.advanceTimersByTimeAsync(1000);
+    join("owner", [layer(8, 1)]);
+    expect(socket().of("layers")).toEqual([]);
+    session.layers.set_opacity(session.layers.all[0]!, 0.5);
+    expect(socket().of("layers").at(-1)!.layers).toEqual([{ layer: 8, opacity: 0.5 }]);
+  });
+});
+
+describe("roles", () => {
+  it.each<[Role, boolean, boolean]>([
+    ["viewer", false, false],
+    ["annotator", true, false],
+    ["curator", true, true],
+    ["administrator", true, true],
+    ["owner", true, true],
+  ])("%s", async (role, paints, curates) => {
+    await open(role);
+    expect([session.can_paint, session.can_curate]).toEqual([paints, curates]);
+  });
+
+  it("who paints on a layer that is locked sends nothing more, is told once, and goes on when it is unlocked", async () => {
+    const lock = (id: number, locked: boolean): void =>
+      socket().receive({
+        op: "layer",
+        event: "changed",
+        layer_id: id,
+        layer: { ...layer(id, id - 7), locked },
+      });
+    await open("annotator");
+    session.choose_tool("brush");
+    session.gestures.tool_down({ x: 5, y: 5 });
+    expect(session.painting.stroking).toBe(true);
+    lock(8, true);
+    expect(told).toEqual([texts.layers.locked]);
+    expect(session.locked_target?.id).toBe(8);
+    expect(session.painting.stroking).toBe(false);
+    const changes = (): string[] =>
+      socket()
+        .sent_ops()
+        .filter((op) => /^(stroke|edit|undo|redo)/.test(op));
+    const until_now = changes();
+    session.gestures.tool_move([{ x: 90, y: 5 }]);
+    session.gestures.tool_up();
+    for (const name of ["brush", "eraser", "polygon", "lasso", "bucket"] as const) {
+      session.choose_tool(name);
+      session.gestures.tool_down({ x: 5, y: 5 });
+      session.gestures.tool_up();
+      expect(session.tools.outline).toBe(null);
+    }
+    session.undo();
+    session.redo();
+    session.painting.fill(session.layers.find(8)!);
+    expect(changes()).toEqual(until_now);
+    expect(until_now.at(-1)).toBe("stroke.end");
+    expect(told).toEqual([texts.layers.locked]);
+    // What was on its way is refused in the server's words: they say nothing new.
+    socket().receive({
+      op: "problem",
+      title: "Locked, says the server",
+      status: 403,
+      detail: "in its language",
+      field: "layer",
+    });
+    expect(told).toEqual([texts.layers.locked]);
+
+    session.layers.select(session.layers.find(7)!);
+    expect(session.locked_target).toBe(null);
+    session.layers.select(session.layers.find(8)!);
+    session.choose_tool("orbit"); // who only looks is not in the way of a lock
+    expect(session.locked_target).toBe(null);
+    lock(8, false);
+    paint()();
+    expect(changes().length).toBe(until_now.length + 3);
+  });
+
+  it("a curator paints on a locked layer", async () => {
+    await session.open();
+    join("curator", [{ ...layer(7, 0), locked: true }]);
+    session.view.set_viewport(800, 600, 1);
+    paint()();
+    expect(session.locked_target).toBe(null);
+    expect(told).toEqual([]);
+  });
+
+  it("who may only look chooses no tool that changes anything, takes nothing back, and is told why", async () => {
+    await open("viewer");
+    for (const name of ["brush", "eraser", "polygon", "lasso", "bucket", "line", "point"] as const)
+      session.choose_tool(name);
+    expect(session.tools.active).toBe("orbit");
+    session.undo();
+    session.redo();
+    expect(
+      socket()
+        .sent_ops()
+        .filter((op) => op === "undo" || op === "redo"),
+    ).toEqual([]);
+    expect(told).toEqual([texts.brush.viewer_only]);
+    session.choose_tool("pick");
+    expect(session.tools.active).toBe("pick");
+  });
+
+  it("before the server has said who this is, tools that change anything wait, and nothing is said", async () => {
+    await session.open();
+    session.choose_tool("brush");
+    expect([session.tools.active, told.length]).toEqual(["orbit", 0]);
+  });
+
+  it("that changes while a model is open is told, and puts the brush away where it may no longer be used", async () => {
+    await open("annotator");
+    session.choose_tool("brush");
+    socket().lose();
+    await vi.advanceTimersByTimeAsync(1000);
+    join("viewer");
+    expect([session.can_paint, session.tools.active]).toEqual([false, "orbit"]);
+    expect(told).toEqual([texts.people.role_now("viewer")]);
+    socket().lose();
+    await vi.advanceTimersByTimeAsync(10_000);
+    join("curator");
+    expect(session.can_curate).toBe(true);
+    expect(told.at(-1)).toBe(texts.people.role_now("curator"));
+  });
+});
+
+describe("how a person shows the layers", () => {
+  const kKeep = "PUT /api/v1/me/models/1/view";
+  const shown = (): unknown[] =>
+    session.layers.all.map((layer) => [
+      layer.id,
+      session.layers.visible(layer),
+      session.layers.opacity(layer),
+    ]);
+  const told_server = (): unknown => socket().of("layers").at(-1)?.layers;
+
+  it("is kept for them alone, and what is as everybody has it is not kept", async () => {
+    await open();
+    answers.set(kKeep, [200, { layers: [] }]);
+    session.layers.set_visible(session.layers.all[0]!, false);
+    session.layers.set_opacity(session.layers.all[1]!, 0.4);
+    expect(kept).toEqual([]);
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(kept).toEqual([
+      {
+        layers: [
+          { layer: 7, visible: false },
+          { layer: 8, opacity: 0.4 },
+        ],
+      },
+    ]);
+    session.layers.set_visible(session.layers.all[0]!, true);
+    session.layers.flush();
+    await settle();
+    expect(kept.at(-1)).toEqual({ layers: [{ layer: 8, opacity: 0.4 }] });
+    session.layers.reset_overrides();
+    session.close(); // at once
+    await settle();
+    expect(kept.at(-1)).toEqual({ layers: [] });
+  });
+
+  it("is there when the model is opened, and what this page has not sent yet is newer", async () => {
+    await session.open();
+    session.view.set_viewport(800, 600, 1);
+    const again = (): void => {
+      socket().open();
+      socket().receive({
+        ...welcome(),
+        role: "viewer",
+        model,
+        layers: [layer(7, 0), layer(8, 1)],
+        personal_view: { layers: [{ layer: 7, visible: false, order: 4 }, { layer: 99 }] },
+      });
+    };
+    again();
+    expect(shown()).toEqual([
+      [8, true, 1],
+      [7, false, 1],
+    ]);
+    expect(told_server()).toEqual([{ layer: 7, visible: false, order: 4 }]);
+    session.layers.set_visible(session.layers.find(7)!, true);
+    await vi.advanceTimersByTimeAsync(1000); // refused: the server is away
+    socket().lose();
+    await vi.advanceTimersByTimeAsync(1000);
+    answers.set(kKeep, [200, { layers: [] }]);
+    again();
+    await settle();
+    expect(session.layers.visible(session.layers.find(7)!)).toBe(true);
+    expect(kept.at(-1)).toEqual({ layers: [{ layer: 7, order: 4 }] });
+  });
+
+  it("has an order of their own, which changes no layer for others", async () => {
+    await open("viewer");
+    answers.set(kKeep, [200, { layers: [] }]);
+    session.layers.move(session.layers.all[0]!, 1);
+    expect(session.layers.all.map(({ id, order }) => [id, order])).toEqual([
+      [8, 1],
+      [7, 0],
+    ]);
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(kept).toEqual([
+      {
+        layers: [
+          { layer: 8, order: 0 },
+          { layer: 7, order: 1 },
+        ],
+      },
+    ]);
+    expect(session.layers.has_overrides).toBe(true);
+  });
+
+  it("is not what a named view shows, but for what they change there", async () => {
+    await open();
+    answers.set(kKeep, [200, { layers: [] }]);
+    const back = session.layers.show_view({
+      layers: [
+        { layer: 7, visible: false },
+        { layer: 8, opacity: 0.2 },
+      ],
+    });
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(kept).toEqual([]);
+    session.layers.set_visible(session.layers.find(8)!, false);
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(kept).toEqual([{ layers: [{ layer: 8, visible: false }] }]);
+    back();
+    expect(shown()).toEqual([
+      [7, true, 1],
+      [8, false, 1],
+    ]);
+  });
+});
