@@ -1,7 +1,7 @@
 // Elements that show a ModelSession are drawn again when something in it changes.
 
 import type { ReactiveController, ReactiveControllerHost } from "lit";
-import type { ModelSession } from "../shell/model-session";
+import type { ModelSession } from "./model-session";
 
 /**
  * To be called in the constructor. Follows the session that the element has, for as long as the

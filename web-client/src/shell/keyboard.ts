@@ -1,9 +1,9 @@
-// Keys of the model page, and of choices. A key that someone types into a field, or that a dialog
-// is open for, is not one of these.
+// Keys of the model page. A key that someone types into a field, or that a dialog is open for, is
+// not one of these (`ui/keyboard`).
 
 import type { StandardView } from "../math/camera";
 import type { ToolName } from "../tools/tool";
-import type { ModelSession } from "./model-session";
+import type { OpenModelSession } from "./open-model-session";
 
 const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom"];
 const kTools: Record<string, ToolName> = {
@@ -26,28 +26,12 @@ const kArrows: Record<string, [number, number]> = {
   ArrowUp: [0, 1],
   ArrowDown: [0, -1],
 };
-const kArrowStep = 0.04; // share of the window per key press
-
-/**
- * Whether the event's innermost target takes typed text or has its own use for keys, or lies in
- * something open.
- */
-export function is_for_field(event: KeyboardEvent): boolean {
-  const path = event.composedPath(); // across shadow roots, which closest() does not leave
-  const [target] = path;
-  if (!(target instanceof HTMLElement)) return false;
-  if (path.some((each) => each instanceof HTMLElement && each.matches("dialog, [popover]")))
-    return true;
-  if (target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement) return true;
-  if (target instanceof HTMLInputElement)
-    return target.type !== "range" || event.key.startsWith("Arrow");
-  return target.getAttribute("role") === "separator" || target.isContentEditable;
-}
+const kArrowStep = 0.04;
 
 /** Does what the key stands for; false when it stands for nothing here. */
 export function handle_key(
   event: KeyboardEvent,
-  session: ModelSession,
+  session: OpenModelSession,
   show: (dialog: "help" | "figure") => void,
 ): boolean {
   const { key } = event;
@@ -128,17 +112,4 @@ export function handle_key(
   if (!view) return false;
   session.view.standard_view(view);
   return true;
-}
-
-/** Where an arrow key leads from the choice `at` of `count`; null for other keys. */
-export function arrow_step(key: string, at: number, count: number): number | null {
-  const step = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1 }[key];
-  return step === undefined || count === 0 ? null : (at + step + count) % count;
-}
-
-/** The innermost element that takes keys; null: none in particular. */
-export function has_keyboard(): HTMLElement | null {
-  let active = document.activeElement;
-  while (active?.shadowRoot?.activeElement) active = active.shadowRoot.activeElement;
-  return active instanceof HTMLElement && active !== document.body ? active : null;
 }

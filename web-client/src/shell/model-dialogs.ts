@@ -12,7 +12,7 @@ import "../features/layers/map-dialog";
 import "../features/layers/orthophoto-dialog";
 import "../features/records/photos-dialog";
 import "../features/records/record-dialog";
-import "../features/import/scale-dialog";
+import "../features/home/scale-dialog";
 import "./sheets";
 import "../features/layers/statistics-dialog";
 import "../features/layers/template-dialog";

@@ -9,7 +9,7 @@ import { label_of } from "../domain/cells";
 import type { Project, TourEntry } from "../core/protocol.gen";
 import type { Column, Layer, Me, Model, Role } from "../core/types";
 import { kPaintingTools, type ToolName } from "../tools/tool";
-import "../features/account/account-menu";
+import "../ui/account-menu";
 import "../ui/status-page";
 import type { WhereRequest } from "../features/painting/brush-panel";
 import "../features/painting/brush-panel";
@@ -20,7 +20,8 @@ import "../features/activity/activity-panel";
 import "../features/review/review-panel";
 import { ask, modal_is_open } from "../ui/dialog";
 import { icon, logo } from "../ui/icons";
-import { handle_key, is_for_field } from "./keyboard";
+import { handle_key } from "./keyboard";
+import { is_for_field } from "../ui/keyboard";
 import { growing, growth } from "../ui/growth";
 import "../features/records/hover-card";
 import type { LayerPanelRequest } from "../features/layers/layer-panel";
@@ -28,7 +29,7 @@ import "../features/layers/layer-panel";
 import "../features/painting/paint-chip";
 import { model_styles } from "./model-styles";
 import "../features/measuring/measure-panel";
-import { ModelSession } from "./model-session";
+import { OpenModelSession } from "./open-model-session";
 import { notices } from "../ui/notices";
 import { has_part, load_part_later } from "./page-parts";
 import "../features/records/record-card";
@@ -47,18 +48,20 @@ import "./stage";
 import type { StrataStage } from "./stage";
 import { styled } from "../ui/styled";
 import { shared_styles } from "../ui/styles";
-import type { TablePanelRequest } from "../features/tables/table-panel";
+import type { TablePanelRequest } from "../session/requests";
 import "../features/tables/table-panel";
+import "../features/tours/tour-list";
+import "../features/views/view-list";
 import type { TableView } from "../features/tables/table-view";
 import { texts } from "../texts";
 import "../features/presence/together-bar";
 import "./tool-rail";
 import "../features/onboarding/onboarding";
 import type { StrataTour } from "../features/onboarding/onboarding";
-import type { TourRequest } from "../features/tours/tour-list";
+import type { TourRequest } from "../session/requests";
 import "../features/painting/value-readout";
 import { wants_less_motion } from "../session/view-control";
-import type { ViewRequest } from "../features/views/view-list";
+import type { ViewRequest } from "../session/requests";
 import "../features/appearance/view-panel";
 
 type OpenDialog =
@@ -95,7 +98,7 @@ export class StrataModelPage extends LitElement {
   @query("strata-stage") private stage_!: StrataStage | null;
   @query("strata-tour") private tour_!: StrataTour | null;
   @query(".options") private options_!: HTMLElement | null;
-  private session_: ModelSession | null = null;
+  private session_: OpenModelSession | null = null;
   private asked_scale_ = false;
   private measures_ = false;
   private tool_: ToolName | null = null; // whose options are in sight
@@ -128,7 +131,7 @@ export class StrataModelPage extends LitElement {
   override willUpdate(changed: PropertyValues<this>): void {
     if (!changed.has("model_id")) return;
     this.session_?.close();
-    this.session_ = new ModelSession(this.api, this.model_id);
+    this.session_ = new OpenModelSession(this.api, this.model_id);
     this.missing_ = this.tour_editor_ = null;
     this.asked_scale_ = false;
     this.read_address();
@@ -157,7 +160,7 @@ export class StrataModelPage extends LitElement {
     else style.removeProperty("--beneath");
   }
 
-  private async open(session: ModelSession): Promise<void> {
+  private async open(session: OpenModelSession): Promise<void> {
     session.subscribe(() => this.on_session(session));
     try {
       await session.open();
@@ -169,7 +172,7 @@ export class StrataModelPage extends LitElement {
     }
   }
 
-  private on_session(session: ModelSession): void {
+  private on_session(session: OpenModelSession): void {
     if (session !== this.session_) return;
     if (session.deleted) this.missing_ = kNotFound;
     if (session.signed_out) this.dispatchEvent(new CustomEvent("signed-out"));
@@ -189,7 +192,7 @@ export class StrataModelPage extends LitElement {
   }
 
   /** What is measured is told in the panel. */
-  private show_measuring(session: ModelSession): void {
+  private show_measuring(session: OpenModelSession): void {
     const measures = session.tools.active === "measure";
     if (measures && !this.measures_) this.panel_shown_ = true;
     this.measures_ = measures;
@@ -207,7 +210,7 @@ export class StrataModelPage extends LitElement {
   }
 
   /** What can be chosen for the tool in hand, from where the panel lies over the model. */
-  private show_options(session: ModelSession): void {
+  private show_options(session: OpenModelSession): void {
     if (session.tables.view) session.tables.close();
     this.panel_shown_ = true;
     this.tool_ = null; // brought into sight with the next update
@@ -229,7 +232,7 @@ export class StrataModelPage extends LitElement {
    * To the comment or view that the address names, once it can be gone to; from then on the address
    * names what is looked at.
    */
-  private follow_address(session: ModelSession): void {
+  private follow_address(session: OpenModelSession): void {
     const { comments, view, views } = session;
     if (view.frames_drawn === 0) return;
     const [comment, kept] = [this.wanted_comment_, this.wanted_view_];
@@ -311,7 +314,7 @@ export class StrataModelPage extends LitElement {
     else this.dialog_ = request;
   }
 
-  private header(session: ModelSession): TemplateResult {
+  private header(session: OpenModelSession): TemplateResult {
     const { model } = session;
     return html`<header>
       <a class="home" href=${model && is_one_of_several(model.project, this.projects) ? path_of_project(model.project) : "/"} title=${texts.model.back} aria-label=${texts.model.back} @click=${follow}>${logo()}</a>
@@ -360,7 +363,7 @@ export class StrataModelPage extends LitElement {
     </header>`;
   }
 
-  private saving(session: ModelSession): TemplateResult {
+  private saving(session: OpenModelSession): TemplateResult {
     const { waiting, failing } = session.saving;
     const lost = session.connection_state !== "open";
     const state = waiting === 0 ? "saved" : failing || lost ? "not-saved" : "saving";
@@ -380,7 +383,7 @@ export class StrataModelPage extends LitElement {
     </div>`;
   }
 
-  private banner(session: ModelSession): TemplateResult {
+  private banner(session: OpenModelSession): TemplateResult {
     const reconnects = session.connection_state === "connecting" && session.view.frames_drawn > 0;
     if (session.connection_state !== "lost" && !reconnects) {
       return html``;
@@ -393,7 +396,7 @@ export class StrataModelPage extends LitElement {
     </div>`;
   }
 
-  private panel(session: ModelSession): TemplateResult {
+  private panel(session: OpenModelSession): TemplateResult {
     const paints = kPaintingTools.includes(session.tools.active);
     const request = (event: CustomEvent<LayerPanelRequest | WhereRequest>): void => {
       this.dialog_ = event.detail;
@@ -434,7 +437,7 @@ export class StrataModelPage extends LitElement {
     </aside>`;
   }
 
-  private table(session: ModelSession, view: TableView): TemplateResult {
+  private table(session: OpenModelSession, view: TableView): TemplateResult {
     return html`<section class="table" aria-label=${texts.tables.panel}>
       <div
         class="splitter across"
@@ -459,7 +462,7 @@ export class StrataModelPage extends LitElement {
     </section>`;
   }
 
-  private dialog(session: ModelSession): TemplateResult {
+  private dialog(session: OpenModelSession): TemplateResult {
     const closed = (): void => {
       this.dialog_ = null;
     };
@@ -638,7 +641,11 @@ function follow_drag(event: PointerEvent, move: (at: PointerEvent) => void): voi
   );
 }
 
-async function drop_column(session: ModelSession, view: TableView, column: Column): Promise<void> {
+async function drop_column(
+  session: OpenModelSession,
+  view: TableView,
+  column: Column,
+): Promise<void> {
   const words = texts.tables;
   if (
     !(await ask({
@@ -668,5 +675,5 @@ function give_back_keyboard(event: MouseEvent): void {
 }
 
 /** The layer as it is now: the request may be older. */
-const newest = (session: ModelSession, layer: Layer): Layer =>
+const newest = (session: OpenModelSession, layer: Layer): Layer =>
   session.layers.all.find((each) => each.id === layer.id) ?? layer;

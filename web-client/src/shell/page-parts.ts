@@ -5,18 +5,24 @@
 import { notices } from "../ui/notices";
 import { texts } from "../texts";
 
-const kParts = {
-  home: () => import("../features/home/home-page"),
-  model: () => import("./model-page"),
-  model_dialogs: () => import("./model-dialogs"),
-  join: () => import("../features/account/join-page"),
-  sign_in: () => import("../features/account/sign-in"),
-  account: () => import("../features/account/account-dialog"),
-  people: () => import("../features/account/people-dialog"),
-  kiosks: () => import("../features/account/kiosks-dialog"),
-  preferences: () => import("../features/account/preferences-fields"),
-};
-export type PagePart = keyof typeof kParts;
+export type PagePart =
+  | "home"
+  | "model"
+  | "model_dialogs"
+  | "join"
+  | "sign_in"
+  | "account"
+  | "people"
+  | "kiosks"
+  | "preferences";
+
+/** The import of each. They are passed in, because a piece may ask for another one itself. */
+export type PartLoads = Readonly<Record<PagePart, () => Promise<unknown>>>;
+
+let loads: PartLoads;
+export function set_part_loads(known: PartLoads): void {
+  loads = known;
+}
 
 const here = new Set<PagePart>();
 const loading = new Map<PagePart, Promise<void>>();
@@ -24,7 +30,7 @@ const loading = new Map<PagePart, Promise<void>>();
 function load(part: PagePart): Promise<void> {
   const under_way = loading.get(part);
   if (under_way) return under_way;
-  const loaded = kParts[part]()
+  const loaded = loads[part]()
     .then(() => void here.add(part))
     .finally(() => loading.delete(part));
   loading.set(part, loaded);

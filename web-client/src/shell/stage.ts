@@ -9,7 +9,7 @@ import { StageInput } from "../ui/input";
 import { metres_per, scale_bar } from "../domain/measure";
 import { color_of, css_color } from "../domain/palette";
 import { follow_session } from "../session/follow-session";
-import type { ModelSession } from "./model-session";
+import type { OpenModelSession } from "./open-model-session";
 import { measure_overlay } from "../features/measuring/measure-overlay";
 import { notices } from "../ui/notices";
 import { on_theme, stage_background } from "../ui/preferences";
@@ -26,7 +26,7 @@ const kScaleBar_px = 150;
 
 @customElement("strata-stage")
 export class StrataStage extends LitElement {
-  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) session!: OpenModelSession;
   @query("canvas") private canvas_!: HTMLCanvasElement;
   @query(".surface") private surface_!: HTMLElement;
 

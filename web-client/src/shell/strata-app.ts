@@ -7,7 +7,7 @@ import { keyed } from "lit/directives/keyed.js";
 import { Api, ApiError } from "../net/api";
 import type { Project } from "../core/protocol.gen";
 import type { Me } from "../core/types";
-import type { AccountRequest } from "../features/account/account-menu";
+import type { AccountRequest } from "../ui/account-menu";
 import "../ui/status-page";
 import { ask } from "../ui/dialog";
 import { invitation_of } from "../features/account/entry";
@@ -19,10 +19,10 @@ import {
   type ImportEntry,
   type ImportResult,
   type Scan,
-} from "../features/import/imports";
+} from "../features/home/imports";
 import { notices } from "../ui/notices";
 import "./notices-view";
-import { has_part, load_part_later } from "./page-parts";
+import { has_part, load_part_later, set_part_loads } from "./page-parts";
 import { curates, kDefaultProject } from "../features/home/project-list";
 import {
   may_leave_page,
@@ -34,9 +34,26 @@ import {
   route_of,
   type Route,
 } from "../ui/routes";
-import { check_connections, discard_unsaved, keep_views, unsaved_changes } from "./sessions";
+import {
+  check_connections,
+  discard_unsaved,
+  keep_views,
+  unsaved_changes,
+} from "../session/sessions";
 import { shared_styles } from "../ui/styles";
 import { texts } from "../texts";
+
+set_part_loads({
+  home: () => import("../features/home/home-page"),
+  model: () => import("./model-page"),
+  model_dialogs: () => import("./model-dialogs"),
+  join: () => import("../features/account/join-page"),
+  sign_in: () => import("../features/account/sign-in"),
+  account: () => import("../features/account/account-dialog"),
+  people: () => import("../features/account/people-dialog"),
+  kiosks: () => import("../features/account/kiosks-dialog"),
+  preferences: () => import("../features/account/preferences-fields"),
+});
 
 @customElement("strata-app")
 export class StrataApp extends LitElement {

@@ -7,7 +7,7 @@ import { kChangingTools, type ToolName } from "../tools/tool";
 import { follow_session } from "../session/follow-session";
 import { icon } from "../ui/icons";
 import "../ui/menu";
-import type { ModelSession } from "./model-session";
+import type { OpenModelSession } from "./open-model-session";
 import { ScrollFade } from "../ui/scroll-fade";
 import { shared_styles } from "../ui/styles";
 import { texts } from "../texts";
@@ -33,7 +33,7 @@ const kViews: StandardView[] = ["front", "back", "left", "right", "top", "bottom
 
 @customElement("strata-tool-rail")
 export class StrataToolRail extends LitElement {
-  @property({ attribute: false }) session!: ModelSession;
+  @property({ attribute: false }) session!: OpenModelSession;
 
   constructor() {
     super();

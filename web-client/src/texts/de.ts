@@ -10,7 +10,7 @@
 //   hatch Schraffur · orthophoto Orthofoto · reading Messpunkt · site (of a server) Server · invitation Einladung · token Token
 
 import { format_count } from "../core/locale";
-import type { Texts } from "./index";
+import type { Texts } from "./shape";
 import { count, plural } from "./count";
 
 const what_changed = (created: number, changed: number, deleted: number): string =>

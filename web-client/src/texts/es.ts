@@ -11,7 +11,7 @@
 //   roughness rugosidad · hatch tramado · orthophoto ortofoto · reading lectura · site (of a server) servidor · invitation invitación
 
 import { format_count } from "../core/locale";
-import type { Texts } from "./index";
+import type { Texts } from "./shape";
 import { count as count_of, plural } from "./count";
 
 /** Whole millions take "de": "1.000.000 de capas". */

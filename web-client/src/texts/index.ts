@@ -1,25 +1,12 @@
 // Every word the page shows, in the language of this person. What the server says (problems, steps
 // of work) is English, whatever the page's language.
 //
-// English is the measure: `Texts` is made from it, so a translation that lacks a text, has one too
+// English is the measure: `Texts` (`shape.ts`) is made from it, so a translation that lacks a text, has one too
 // many or takes other arguments does not compile.
 
 import { set_locale, type PageLanguage } from "../core/locale";
 import { say_own_problems_in } from "../core/problems";
-
-/**
- * The shape of the texts without their words. Lists keep their length: each line of the help is
- * there in each language.
- */
-type Shape<T> = T extends string
-  ? string
-  : T extends number
-    ? number
-    : T extends (...args: infer Arguments) => unknown
-      ? (...args: Arguments) => string
-      : { readonly [Key in keyof T]: Shape<T[Key]> };
-
-export type Texts = Shape<typeof import("./en").texts>;
+import type { Texts } from "./shape";
 
 /**
  * How many arguments each text takes. TypeScript lets a function leave out arguments; a translation

@@ -4,7 +4,7 @@
 
 import type { Point } from "../net/connection";
 import type { PointerSample } from "../ui/input";
-import type { Tool } from "./tool";
+import type { Outline, Tool } from "./tool";
 
 export interface OutlineHost {
   /** False when there is nothing to paint on; the host has then told the person why. */
@@ -16,19 +16,6 @@ export interface OutlineHost {
   /** Window pixels per CSS pixel. */
   scale(): number;
   outline_changed(): void;
-}
-
-/** What is drawn over the picture. */
-export interface Outline {
-  points: readonly Point[];
-  /** Those that were pressed one by one. */
-  corners: readonly Point[];
-  /** Where the pointer is, if a line leads there. */
-  pointer: Point | null;
-  /** The next press at the first point closes it. */
-  closable: boolean;
-  /** It goes round an area; otherwise it is a line. */
-  area: boolean;
 }
 
 export const kMostPoints = 4096;

@@ -1,7 +1,7 @@
 // Keeps one tool active, and sends it the stage's drags.
 
 import type { PointerSample } from "../ui/input";
-import type { Outline } from "./outline";
+import type { Outline } from "./tool";
 import type { Tool, ToolName } from "./tool";
 
 export class ToolManager {

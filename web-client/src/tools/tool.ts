@@ -1,7 +1,7 @@
 // A tool is what the left button, the pen or one finger does on the stage.
 
 import type { PointerSample } from "../ui/input";
-import type { Outline } from "./outline";
+import type { Point } from "../net/connection";
 
 export type ToolName =
   | "orbit"
@@ -47,4 +47,17 @@ export interface Tool {
   key?(key: string): boolean;
   /** What it has drawn so far. */
   readonly outline?: Outline | null;
+}
+
+/** What is drawn over the picture. */
+export interface Outline {
+  points: readonly Point[];
+  /** Those that were pressed one by one. */
+  corners: readonly Point[];
+  /** Where the pointer is, if a line leads there. */
+  pointer: Point | null;
+  /** The next press at the first point closes it. */
+  closable: boolean;
+  /** It goes round an area; otherwise it is a line. */
+  area: boolean;
 }

@@ -1,7 +1,7 @@
 // One choice among several, as buttons: one stop of the Tab key, and the arrow keys choose.
 
 import { html, type TemplateResult } from "lit";
-import { arrow_step } from "../shell/keyboard";
+import { arrow_step } from "./keyboard";
 
 export interface RadioChoice<T> {
   value: T;

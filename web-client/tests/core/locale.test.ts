@@ -1,7 +1,8 @@
 import { afterEach, describe, expect, it } from "vitest";
 
 import { told_date, told_time } from "../../src/domain/times";
-import { load_texts, texts, type Texts } from "../../src/texts";
+import { load_texts, texts } from "../../src/texts";
+import type { Texts } from "../../src/texts/shape";
 import { cell_text, label_of, parse_cell } from "../../src/domain/cells";
 import {
   format_count,

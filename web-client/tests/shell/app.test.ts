@@ -1,13 +1,10 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import {
-  BrushSettings,
-  describe_value,
-  value_problem,
-} from "../../src/features/painting/brush-settings";
+import { BrushSettings } from "../../src/features/painting/brush-settings";
+import { describe_value, value_problem } from "../../src/session/layer-values";
 import type { DroppedFile } from "../../src/ui/drop";
-import { choose_scans } from "../../src/features/import/imports";
-import { arrow_step } from "../../src/shell/keyboard";
+import { choose_scans } from "../../src/features/home/imports";
+import { arrow_step } from "../../src/ui/keyboard";
 import { layer_changes } from "../../src/features/layers/layer-changes";
 import { notices } from "../../src/ui/notices";
 import { PickProbe, type PickPurpose } from "../../src/session/pick-probe";

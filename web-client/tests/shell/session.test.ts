@@ -1,8 +1,8 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { ModelSession } from "../../src/shell/model-session";
+import { OpenModelSession } from "../../src/shell/open-model-session";
 import { notices } from "../../src/ui/notices";
-import { check_connections, discard_unsaved, unsaved_changes } from "../../src/shell/sessions";
+import { check_connections, discard_unsaved, unsaved_changes } from "../../src/session/sessions";
 import { texts } from "../../src/texts";
 import { Api } from "../../src/net/api";
 import { presence_palette } from "../../src/domain/palette";
@@ -42,7 +42,7 @@ const layer = (id: number, order: number): Layer => ({
 
 let sockets: FakeSocket[];
 let answers: Map<string, [status: number, body: unknown]>; // by method and path
-let session: ModelSession;
+let session: OpenModelSession;
 let told: string[];
 let unsubscribe: () => void;
 let kept: unknown[]; // of how layers are shown
@@ -84,7 +84,7 @@ beforeEach(() => {
     ];
     return new Response(JSON.stringify(body), { status, headers: { ETag: '"1"' } });
   });
-  session = new ModelSession(api, "1", (url, protocol) => {
+  session = new OpenModelSession(api, "1", (url, protocol) => {
     sockets.push(new FakeSocket(url, protocol));
     return socket();
   });

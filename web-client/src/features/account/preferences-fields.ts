@@ -13,7 +13,7 @@ import {
   keep_theme,
   kThemes,
 } from "../../ui/preferences";
-import { discard_unsaved, unsaved_changes } from "../../shell/sessions";
+import { discard_unsaved, unsaved_changes } from "../../session/sessions";
 import { shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
 

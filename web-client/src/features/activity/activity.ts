@@ -7,20 +7,18 @@ import { name_in_text } from "../../domain/completion";
 import type { Activity } from "../../core/protocol.gen";
 import { ReadAgain } from "../../net/read-again";
 import type { Layer, Model } from "../../core/types";
-import type { Comments } from "../comments/comments";
-import type { LayerList } from "../layers/layer-list";
 import { notices } from "../../ui/notices";
 import { navigate, path_of_model } from "../../ui/routes";
-import type { Tables } from "../tables/tables";
 import type { ViewControl } from "../../session/view-control";
+import type { CommentsPart, LayersPart, TablesPart } from "../../session/parts";
 
 const kAtOnce = 50;
 
 export interface ActivitiesHost {
   readonly view: ViewControl;
-  readonly layers: LayerList;
-  readonly tables: Tables;
-  readonly comments: Comments;
+  readonly layers: LayersPart;
+  readonly tables: TablesPart;
+  readonly comments: CommentsPart;
   model(): Model | null;
   changed(): void;
 }

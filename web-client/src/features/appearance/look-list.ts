@@ -8,7 +8,7 @@ import { ask, ask_text } from "../../ui/dialog";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { list_head_styles } from "../../ui/panel-styles";
 import { shared_styles } from "../../ui/styles";

@@ -6,7 +6,7 @@ import { repeat } from "lit/directives/repeat.js";
 import type { Thread, ThreadState } from "../../domain/comments";
 import { format_count } from "../../core/locale";
 import { called } from "../../domain/people";
-import { FoldingPanel, folding_styles } from "../../ui/folding-panel";
+import { FoldingPanel, folding_styles } from "../../session/folding-panel";
 import { icon } from "../../ui/icons";
 import { panel_line_styles } from "../../ui/panel-styles";
 import { person_mark, person_mark_styles } from "../../ui/person-mark";

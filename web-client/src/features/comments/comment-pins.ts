@@ -10,7 +10,7 @@ import type { Vec3 } from "../../math/vector";
 import { kPaintingTools } from "../../tools/tool";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { shared_styles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { texts } from "../../texts";

@@ -28,12 +28,11 @@ import type { Layer, Model } from "../../core/types";
 import type { Vec3 } from "../../math/vector";
 import { Kept } from "../../core/kept";
 import { KnownItems } from "../../net/known-items";
-import type { LayerList } from "../layers/layer-list";
 import { notices } from "../../ui/notices";
 import { PinSight, type PinPlace } from "../../session/pin-sight";
-import type { Tables } from "../tables/tables";
 import { texts } from "../../texts";
 import type { ViewControl } from "../../session/view-control";
+import type { LayersPart, TablesPart } from "../../session/parts";
 
 const words = texts.comments;
 const kAround = 0.12; // of the model's radius: what is shown around a comment's place
@@ -61,8 +60,8 @@ export type DraftOf = "new" | `reply ${number}` | `edit ${number}`;
 
 export interface CommentsHost {
   readonly view: ViewControl;
-  readonly layers: LayerList;
-  readonly tables: Tables;
+  readonly layers: LayersPart;
+  readonly tables: TablesPart;
   model(): Model | null;
   here(): readonly PresenceUser[];
   /** Somebody began to write, and wants to do nothing else with the pointer. */

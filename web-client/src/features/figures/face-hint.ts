@@ -3,7 +3,7 @@
 
 import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property, query } from "lit/decorators.js";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
 

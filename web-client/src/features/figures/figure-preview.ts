@@ -7,7 +7,7 @@ import { ApiError } from "../../net/api";
 import { preview_request } from "../../domain/figures";
 import type { FigureRequest } from "../../core/protocol.gen";
 import type { ProblemBody } from "../../core/types";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
 

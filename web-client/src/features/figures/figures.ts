@@ -5,7 +5,7 @@ import type { Api } from "../../net/api";
 import type { Face, FigureWords } from "../../domain/figures";
 import type { FigureRequest } from "../../core/protocol.gen";
 import type { Job } from "../../core/types";
-import type { LayerJobs } from "../layers/layer-jobs";
+import type { LayerJobs } from "../../session/layer-jobs";
 import { notices } from "../../ui/notices";
 import { save_blob } from "../../ui/save-from";
 import { texts } from "../../texts";

@@ -6,7 +6,7 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, type Api } from "../../net/api";
 import { label_of } from "../../domain/cells";
 import type { Table } from "../../core/protocol.gen";
-import { open_bin } from "./trash-dialog";
+import { open_bin } from "../../ui/trash-dialog";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import { icon } from "../../ui/icons";

@@ -21,11 +21,11 @@ import {
 } from "../../domain/palette";
 import type { Column, ColumnClasses } from "../../core/protocol.gen";
 import type { Layer, Palette, PalettePoint } from "../../core/types";
-import { describe_value } from "../painting/brush-settings";
+import { describe_value } from "../../session/layer-values";
 import "../../ui/dialog";
 import { follow_session } from "../../session/follow-session";
 import { class_range, value_label } from "./legend";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { number_input } from "../../ui/number-input";
 import { choices_styles, shared_styles } from "../../ui/styles";

@@ -15,7 +15,7 @@ import {
 } from "../../domain/completion";
 import { format_area } from "../../domain/measure";
 import { follow_session } from "../../session/follow-session";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
 

@@ -28,7 +28,7 @@ import { icon } from "../../ui/icons";
 import "../../ui/labels-field";
 import type { StrataLabelsField } from "../../ui/labels-field";
 import { layer_changes, type LayerWanted } from "./layer-changes";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { number_input } from "../../ui/number-input";
 import { radio_group } from "../../ui/radio-group";

@@ -7,17 +7,17 @@ import { repeat } from "lit/directives/repeat.js";
 import { description_in, label_of } from "../../domain/cells";
 import { is_as_computed, value_range, type Layer, type LayerPatch } from "../../core/types";
 import { ask_to_bin, tell_binned } from "../../ui/trash";
-import { open_bin_of } from "../home/trash-dialog";
+import { open_bin_of } from "../../ui/trash-dialog";
 import { ask } from "../../ui/dialog";
 import { DragOrder } from "../../ui/drag-order";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
-import { unlock_label } from "./layer-lock";
+import { unlock_label } from "../../session/layer-lock";
 import { layer_job_row, layer_job_styles } from "./layer-job-row";
 import { can_be_colored } from "./color-dialog";
 import { layer_chip, legend, legend_styles } from "./legend";
 import "../../ui/menu";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { drag_styles, shared_styles } from "../../ui/styles";
 import {
@@ -27,7 +27,7 @@ import {
   save_features,
   save_raster,
 } from "./raster-files";
-import type { TermsRequest } from "../tables/terms-dialog";
+import type { TermsRequest } from "../../session/requests";
 import { texts } from "../../texts";
 import { visibility_badge } from "../../ui/visibility";
 

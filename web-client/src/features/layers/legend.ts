@@ -6,9 +6,9 @@ import { format_number, ticks } from "../../domain/measure";
 import { css_color, css_gradient, kNoValueColor, swatch_style } from "../../domain/palette";
 import type { Layer, Palette, PalettePoint } from "../../core/types";
 import type { Column, Table } from "../../core/protocol.gen";
-import { describe_value, type RecordLabels } from "../painting/brush-settings";
+import { describe_value, type RecordLabels } from "../../session/layer-values";
 import { styled } from "../../ui/styled";
-import type { TermTree } from "../tables/term-tree";
+import type { TermTree } from "../../session/fields/term-tree";
 import { texts } from "../../texts";
 
 export const legend_styles = css`

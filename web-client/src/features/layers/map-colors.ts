@@ -5,7 +5,7 @@ import { css, html, LitElement, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
 import { format_fixed, read_number } from "../../core/locale";
 import type { Layer } from "../../core/types";
-import { describe_value } from "../painting/brush-settings";
+import { describe_value } from "../../session/layer-values";
 import type { ColorRow } from "./map-file";
 import { number_input } from "../../ui/number-input";
 import { styled } from "../../ui/styled";

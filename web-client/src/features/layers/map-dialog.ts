@@ -38,14 +38,14 @@ import {
   type PictureMode,
 } from "./map-file";
 import { direction_field, found_line, progress_line, world_field } from "./map-place";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { number_input } from "../../ui/number-input";
 import { radio_group } from "../../ui/radio-group";
 import { Sending, type Begin } from "../../ui/sending";
 import { files_styles, form_styles, number_field_styles, shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
-import "../painting/value-picker";
+import "../../session/fields/value-picker";
 
 const words = texts.maps;
 const kFirstLine_bytes = 65536;

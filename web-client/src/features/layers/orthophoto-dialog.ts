@@ -25,7 +25,7 @@ import {
   type CrsAnswer,
 } from "./map-crs";
 import { direction_field, found_line, progress_line, world_field } from "./map-place";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { Sending } from "../../ui/sending";
 import { files_styles, form_styles, shared_styles } from "../../ui/styles";

@@ -5,7 +5,7 @@ import { page_locale } from "../../core/locale";
 import type { Layer } from "../../core/types";
 import { format_area } from "../../domain/measure";
 import { ask } from "../../ui/dialog";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { save_from } from "../../ui/save-from";
 import { texts } from "../../texts";

@@ -5,7 +5,7 @@ import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
 import type { Model, VertexPropertyName } from "../../core/types";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { number_input } from "../../ui/number-input";
 import {
   kRays,

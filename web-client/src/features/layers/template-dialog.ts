@@ -10,7 +10,7 @@ import type { Template, TemplateTable } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import { icon } from "../../ui/icons";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { shared_styles } from "../../ui/styles";
 import { styled } from "../../ui/styled";

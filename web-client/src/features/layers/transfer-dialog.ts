@@ -10,7 +10,7 @@ import type { Layer, Model } from "../../core/types";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import { layer_chip } from "./legend";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { number_input } from "../../ui/number-input";
 import { other_models } from "./shape-kinds";
 import { form_styles, shared_styles } from "../../ui/styles";

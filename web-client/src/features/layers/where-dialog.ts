@@ -10,12 +10,12 @@ import "../../ui/dialog";
 import "./expression-field";
 import type { StrataExpressionField } from "./expression-field";
 import { follow_session } from "../../session/follow-session";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { radio_group } from "../../ui/radio-group";
 import { form_styles, shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
-import "../painting/value-picker";
+import "../../session/fields/value-picker";
 
 @customElement("strata-where-dialog")
 export class StrataWhereDialog extends LitElement {

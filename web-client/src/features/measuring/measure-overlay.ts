@@ -4,8 +4,8 @@
 import { html, nothing, svg, type TemplateResult } from "lit";
 import type { OrbitCamera } from "../../math/camera";
 import type { Vec3 } from "../../math/vector";
-import type { ModelSession } from "../../shell/model-session";
-import { length_so_far } from "../painting/outline-overlay";
+import type { ModelSession } from "../../session/model-session";
+import { length_so_far } from "../../session/line-length";
 import { faces } from "../../session/pin-sight";
 
 interface Seen {

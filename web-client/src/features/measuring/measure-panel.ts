@@ -10,7 +10,7 @@ import type { Model } from "../../core/types";
 import { length, subtract } from "../../math/vector";
 import { follow_session } from "../../session/follow-session";
 import { kMostPlaces, type MeasuredProfile, type Way } from "./measuring";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import "./profile-plot";
 import type { StrataProfilePlot } from "./profile-plot";

@@ -21,16 +21,16 @@ import {
 import type { Layer, Model } from "../../core/types";
 import type { Vec3 } from "../../math/vector";
 import { kSnap_px } from "../../tools/outline";
-import { LineMeasure } from "../records/line-measure";
-import type { LayerList } from "../layers/layer-list";
+import { LineMeasure } from "../../session/line-measure";
 import { notices } from "../../ui/notices";
 import { faces } from "../../session/pin-sight";
 import { texts } from "../../texts";
 import type { ViewControl } from "../../session/view-control";
+import type { LayersPart } from "../../session/parts";
 
 export interface MeasuringHost {
   readonly view: ViewControl;
-  readonly layers: LayerList;
+  readonly layers: LayersPart;
   model(): Model | null;
   changed(): void;
 }

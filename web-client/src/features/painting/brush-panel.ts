@@ -8,19 +8,20 @@ import { read_number, typed_number } from "../../core/locale";
 import type { MarkKind } from "../../domain/marks";
 import { format_length, format_number } from "../../domain/measure";
 import type { Layer } from "../../core/types";
-import { describe_value, kWidths, type WidthUnit } from "./brush-settings";
+import { kWidths, type WidthUnit } from "./brush-settings";
+import { describe_value } from "../../session/layer-values";
 import { ask } from "../../ui/dialog";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
-import { unlock_label, why_locked } from "../layers/layer-lock";
-import type { ModelSession } from "../../shell/model-session";
+import { unlock_label, why_locked } from "../../session/layer-lock";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { number_input } from "../../ui/number-input";
 import { radio_group } from "../../ui/radio-group";
 import { number_field_styles, shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "./shape-picker";
-import "./value-picker";
+import "../../session/fields/value-picker";
 
 const kSliderSteps = 1000;
 

@@ -1,10 +1,8 @@
 // What is painted with: width, shape, reach, and one value per layer.
 
 import { purpose_of } from "../../domain/palette";
-import { holds_fractions, value_range, type Layer } from "../../core/types";
-import { format_number } from "../../domain/measure";
+import { holds_fractions, type Layer } from "../../core/types";
 import type { ToolShape } from "../../core/protocol.gen";
-import { texts } from "../../texts";
 
 export type WidthUnit = "px" | "mm";
 
@@ -64,45 +62,4 @@ function first_value(layer: Layer): number {
       return holds_fractions(layer.type) ? Number(middle.toPrecision(3)) : Math.round(middle);
     }
   }
-}
-
-/** Why a value cannot be painted in the layer, in plain words; null when it can. */
-export function value_problem(layer: Layer, value: number): string | null {
-  if (!Number.isFinite(value)) return texts.brush.bad_value;
-  if (!holds_fractions(layer.type) && !Number.isInteger(value)) return texts.brush.whole_number;
-  const [low, high] = value_range(layer.type);
-  if (value < low || value > high)
-    return texts.brush.out_of_range(format_number(low), format_number(high));
-  return null;
-}
-
-/** What records are called; null where that is not known. */
-export interface RecordLabels {
-  label(table: number, key: number): string | null;
-  /** Of a list of terms, in the person's language; null for other tables. */
-  term(table: number, key: number): string | null;
-}
-
-/**
- * A value as people read it: its term, the label of its class, the name of its record, or the
- * number with its unit.
- */
-export function describe_value(
-  layer: Layer,
-  value: number,
-  records: RecordLabels | null = null,
-): string {
-  const term = layer.table === undefined ? null : (records?.term(layer.table, value) ?? null);
-  if (term !== null) return term;
-  const by_value = layer.palette.mode === "categorical" && !layer.palette.column;
-  const label = by_value ? layer.palette.points.find((p) => p.at === value)?.label : "";
-  if (label) return label;
-  if (layer.kind === "database") {
-    return (
-      (layer.table === undefined ? null : records?.label(layer.table, value)) ??
-      texts.layers.record_number(value)
-    );
-  }
-  if (layer.palette.mode === "categorical") return texts.layers.class_number(value);
-  return `${format_number(value, 4)}${layer.unit ? ` ${layer.unit}` : ""}`;
 }

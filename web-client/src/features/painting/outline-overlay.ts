@@ -1,17 +1,11 @@
 // What polygon, lasso and line have drawn so far, over the picture.
 
 import { html, nothing, svg, type TemplateResult } from "lit";
-import { beside } from "../../ui/beside";
-import type { Point } from "../../net/connection";
-import { format_length } from "../../domain/measure";
 import { color_of, css_color } from "../../domain/palette";
-import { kSnap_px, type Outline } from "../../tools/outline";
-import type { ModelSession } from "../../shell/model-session";
-import { styled } from "../../ui/styled";
-import type { ViewControl } from "../../session/view-control";
-
-const kLength = { width: 96, height: 28 }; // room for how long a line is, CSS pixels
-const kGap_px = 14;
+import { kSnap_px } from "../../tools/outline";
+import type { Outline } from "../../tools/tool";
+import type { ModelSession } from "../../session/model-session";
+import { length_so_far } from "../../session/line-length";
 
 export function outline_overlay(
   session: ModelSession,
@@ -42,31 +36,4 @@ export function outline_overlay(
       )}
     </svg>
     ${area ? nothing : length_so_far(session.view, session.marks.metres_so_far, pointer ?? points[points.length - 1]!)}`;
-}
-
-/**
- * Beside the end of a line that is being drawn, at a window pixel. Who cannot see it is told when
- * the line is finished.
- */
-export function length_so_far(
-  { camera, scale }: ViewControl,
-  metres: number | null,
-  [x, y]: Point,
-): TemplateResult | typeof nothing {
-  if (metres === null) return nothing;
-  const end = [x / scale, y / scale] as const;
-  const place = beside(
-    end,
-    kLength,
-    { width: camera.width / scale, height: camera.height / scale },
-    kGap_px,
-  );
-  if (!place) return nothing;
-  const at = {
-    left: `${place.left}px`,
-    top: `${place.top}px`,
-    width: `${kLength.width}px`,
-    "justify-content": place.left < end[0] ? "end" : "start",
-  };
-  return html`<div class="length numeric" aria-hidden="true" ${styled(at)}><b>${format_length(metres)}</b></div>`;
 }

@@ -7,18 +7,19 @@ import type { PointerSample } from "../../ui/input";
 import { format_area, metres_per } from "../../domain/measure";
 import type { Applied, Edit, Picked } from "../../core/protocol.gen";
 import type { Layer, Model } from "../../core/types";
-import { why_locked } from "../layers/layer-lock";
-import { BrushSettings, describe_value, type RecordLabels, value_problem } from "./brush-settings";
-import type { LayerList } from "../layers/layer-list";
+import { why_locked } from "../../session/layer-lock";
+import { BrushSettings } from "./brush-settings";
+import { describe_value, type RecordLabels, value_problem } from "../../session/layer-values";
 import { notices } from "../../ui/notices";
 import type { PointerWatch } from "../../session/pointer-watch";
 import { texts } from "../../texts";
 import type { ViewControl } from "../../session/view-control";
+import type { LayersPart } from "../../session/parts";
 
 export interface PaintingHost {
   readonly connection: Connection;
   readonly view: ViewControl;
-  readonly layers: LayerList;
+  readonly layers: LayersPart;
   readonly pointer: PointerWatch;
   model(): Model | null;
   records: RecordLabels;

@@ -6,7 +6,7 @@ import { customElement, property, query, state } from "lit/decorators.js";
 import { ApiError, name_of_file } from "../../net/api";
 import { in_square, kShapeSide, likely_part, to_shape, type ShapePart } from "../../domain/shape";
 import "../../ui/dialog";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { radio_group } from "../../ui/radio-group";
 import { form_styles, shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";

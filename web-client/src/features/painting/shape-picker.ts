@@ -9,7 +9,7 @@ import { FileDrop } from "../../ui/drop";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { radio_group, type RadioChoice } from "../../ui/radio-group";
 import "./shape-dialog";

@@ -9,7 +9,7 @@ import { ink_on, type PersonHere } from "../../domain/people-here";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { shared_styles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { texts } from "../../texts";

@@ -6,7 +6,7 @@ import { customElement, property } from "lit/decorators.js";
 import { repeat } from "lit/directives/repeat.js";
 import { ink_on } from "../../domain/people-here";
 import { follow_session } from "../../session/follow-session";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import type { PersonCursor } from "./people-cursors";
 import { shared_styles } from "../../ui/styles";
 import { styled } from "../../ui/styled";

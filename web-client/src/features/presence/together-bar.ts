@@ -8,7 +8,7 @@ import { called } from "../../domain/people";
 import { ink_on } from "../../domain/people-here";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { shared_styles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { texts } from "../../texts";

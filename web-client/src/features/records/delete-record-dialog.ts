@@ -6,9 +6,9 @@ import { customElement, property, state } from "lit/decorators.js";
 import { ApiError, type TexelsOfDeleted } from "../../net/api";
 import { tell_binned } from "../../ui/trash";
 import "../../ui/dialog";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { radio_group } from "../../ui/radio-group";
-import "./record-chooser";
+import "../../session/fields/record-chooser";
 import { shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
 

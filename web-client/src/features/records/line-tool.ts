@@ -3,7 +3,8 @@
 
 import type { Point } from "../../net/connection";
 import type { PointerSample } from "../../ui/input";
-import { PlacesTool, type Outline, type OutlineHost } from "../../tools/outline";
+import { PlacesTool, type OutlineHost } from "../../tools/outline";
+import type { Outline } from "../../tools/tool";
 import type { Tool } from "../../tools/tool";
 
 const kMostPoints = 1000; // that the server looks at

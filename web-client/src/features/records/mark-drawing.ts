@@ -16,20 +16,18 @@ import {
   type Step,
 } from "../../domain/surface-line";
 import type { Model } from "../../core/types";
-import type { Outline } from "../../tools/outline";
-import type { LayerList } from "../layers/layer-list";
-import { LineMeasure } from "./line-measure";
+import type { Outline } from "../../tools/tool";
+import { LineMeasure } from "../../session/line-measure";
 import { notices } from "../../ui/notices";
-import type { Painting } from "../painting/painting";
-import type { Tables } from "../tables/tables";
 import { texts } from "../../texts";
 import type { ViewControl } from "../../session/view-control";
+import type { LayersPart, PaintingPart, TablesPart } from "../../session/parts";
 
 export interface MarkDrawingHost {
   readonly view: ViewControl;
-  readonly layers: LayerList;
-  readonly painting: Painting;
-  readonly tables: Tables;
+  readonly layers: LayersPart;
+  readonly painting: PaintingPart;
+  readonly tables: TablesPart;
   model(): Model | null;
   changed(): void;
 }

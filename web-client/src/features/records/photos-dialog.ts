@@ -7,7 +7,7 @@ import { ApiError } from "../../net/api";
 import { label_column, label_of } from "../../domain/cells";
 import type { AttachmentMatches, Column, MatchedName } from "../../core/protocol.gen";
 import "../../ui/dialog";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { choices_styles, shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";

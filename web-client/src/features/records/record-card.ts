@@ -8,12 +8,12 @@ import { css_color, record_color } from "../../domain/palette";
 import type { Table, TableRecord } from "../../core/protocol.gen";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
-import type { ModelSession } from "../../shell/model-session";
-import { measures_of } from "./record-measures";
-import { shown_value } from "./shown-value";
+import type { ModelSession } from "../../session/model-session";
+import { measures_of } from "../../session/fields/record-measures";
+import { shown_value } from "../../session/fields/shown-value";
 import { shared_styles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
-import type { TablePanelRequest } from "../tables/table-panel";
+import type { TablePanelRequest } from "../../session/requests";
 import { texts } from "../../texts";
 
 const kMostLines = 6;

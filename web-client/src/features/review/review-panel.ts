@@ -10,7 +10,7 @@ import { format_area } from "../../domain/measure";
 import { called } from "../../domain/people";
 import type { Review, WaitingStroke } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
-import { FoldingPanel, folding_styles } from "../../ui/folding-panel";
+import { FoldingPanel, folding_styles } from "../../session/folding-panel";
 import { icon } from "../../ui/icons";
 import { panel_line_styles } from "../../ui/panel-styles";
 import { person_mark, person_mark_styles } from "../../ui/person-mark";

@@ -7,17 +7,17 @@ import { place_like } from "../../math/fit-to-window";
 import type { LayerEvent, Review, ReviewQueue, WaitingStroke } from "../../core/protocol.gen";
 import { ReadAgain } from "../../net/read-again";
 import type { Layer } from "../../core/types";
-import type { LayerList } from "../layers/layer-list";
 import { notices } from "../../ui/notices";
 import { texts } from "../../texts";
 import type { ViewControl } from "../../session/view-control";
+import type { LayersPart } from "../../session/parts";
 
 const words = texts.review;
 const kAtOnce = 200; // strokes of a layer that are listed; the oldest come first
 
 export interface ReviewsHost {
   readonly view: ViewControl;
-  readonly layers: LayerList;
+  readonly layers: LayersPart;
   me(): string;
   /** What somebody is called. */
   name_of(user: string): string;

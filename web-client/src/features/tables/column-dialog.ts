@@ -25,7 +25,7 @@ import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import "../../ui/labels-field";
 import type { StrataLabelsField } from "../../ui/labels-field";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { form_styles, shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
 import { visibility_choice } from "../../ui/visibility";

@@ -18,7 +18,7 @@ import { count_values, type ValueCounts } from "../../domain/value-counts";
 import { compare_words, format_count, read_number, typed_number } from "../../core/locale";
 import type { Column } from "../../core/protocol.gen";
 import { follow_session } from "../../session/follow-session";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { number_input } from "../../ui/number-input";
 import { form_styles, shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";

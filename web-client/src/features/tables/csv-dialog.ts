@@ -6,7 +6,7 @@ import { customElement, property, state } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
 import type { RecordsReport } from "../../core/protocol.gen";
 import "../../ui/dialog";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { is_useful, records_report, report_styles } from "./records-report";
 import { shared_styles } from "../../ui/styles";

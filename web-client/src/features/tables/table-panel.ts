@@ -11,10 +11,10 @@ import { format_area } from "../../domain/measure";
 import { css_color, record_color } from "../../domain/palette";
 import type { CellValue, Column, Table, TableRecord } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
-import { open_bin_of } from "../home/trash-dialog";
+import { open_bin_of } from "../../ui/trash-dialog";
 import type { CellEdit } from "./cell-edits";
-import "./cell-input";
-import { may_be_text, takes_typing, type StrataCellInput } from "./cell-input";
+import "../../session/fields/cell-input";
+import { may_be_text, takes_typing, type StrataCellInput } from "../../session/fields/cell-input";
 import "./column-filter";
 import { ask } from "../../ui/dialog";
 import { FileDrop } from "../../ui/drop";
@@ -22,29 +22,21 @@ import { follow_session } from "../../session/follow-session";
 import { growth } from "../../ui/growth";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
-import { measures_of, type RecordMeasure } from "../records/record-measures";
-import type { RecordClaim } from "../records/record-editors";
+import { measures_of, type RecordMeasure } from "../../session/fields/record-measures";
+import type { RecordClaim } from "../../session/record-editors";
 import { save_from } from "../../ui/save-from";
-import { shown_value } from "../records/shown-value";
+import { shown_value } from "../../session/fields/shown-value";
 import { shared_styles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
 import { table_styles } from "./table-styles";
 import type { TableView } from "./table-view";
-import type { TermsRequest } from "./terms-dialog";
 import { terms_type } from "./terms-files";
 import { texts } from "../../texts";
 import { visibility_badge } from "../../ui/visibility";
 import { told_clock } from "../../domain/times";
-
-export type TablePanelRequest =
-  | TermsRequest
-  | { dialog: "record"; layer: Layer; key: number | null }
-  | { dialog: "delete-record"; layer: Layer; key: number }
-  | { dialog: "column"; table: number; column: Column | null }
-  | { dialog: "csv"; table: number; file: File }
-  | { dialog: "photos"; table: number; files: File[] };
+import type { TablePanelRequest } from "../../session/requests";
 
 const kRow_px = 32;
 const kHead_px = 34;

@@ -12,7 +12,7 @@ import type {
 } from "../../core/protocol.gen";
 import { CellEdits } from "./cell-edits";
 import { notices } from "../../ui/notices";
-import { RecordRows } from "../records/record-rows";
+import { RecordRows } from "./record-rows";
 import { texts } from "../../texts";
 
 const kRefreshAfter_ms = 250; // a stroke is many edits, and records often come several at once

@@ -14,10 +14,10 @@ import type {
 } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
 import { notices } from "../../ui/notices";
-import { RecordNames, type OtherNames } from "../records/record-names";
-import { RecordShelf } from "../records/record-cache";
+import { RecordNames, type OtherNames } from "./record-names";
+import { RecordShelf } from "./record-cache";
 import { TableView } from "./table-view";
-import { TermTree } from "./term-tree";
+import { TermTree } from "../../session/fields/term-tree";
 import { texts } from "../../texts";
 
 export interface TablesHost {

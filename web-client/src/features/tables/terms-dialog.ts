@@ -9,15 +9,12 @@ import type { RecordsReport, Table } from "../../core/protocol.gen";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import "../../ui/file-choice";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { is_useful, records_report, report_styles } from "./records-report";
 import { shared_styles } from "../../ui/styles";
 import { kTermsEndings, terms_type } from "./terms-files";
 import { texts } from "../../texts";
-
-/** `table`: the list that gets them; null: a new one. */
-export type TermsRequest = { dialog: "terms"; table: number | null; file: File | null };
 
 const words = texts.terms_dialog;
 

@@ -28,7 +28,7 @@ import { ask } from "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { number_input } from "../../ui/number-input";
 import { hold_page } from "../../ui/routes";

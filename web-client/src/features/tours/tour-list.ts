@@ -9,15 +9,12 @@ import { ask } from "../../ui/dialog";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { list_head_styles, list_row_styles } from "../../ui/panel-styles";
 import { shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
-
-/** The tour's editor (without `tour`, of a new one), or its links for kiosks. */
-export type TourRequest =
-  { dialog: "tour"; tour: TourEntry | null } | { dialog: "kiosks"; tour: TourEntry };
+import type { TourRequest } from "../../session/requests";
 
 const words = texts.tours;
 

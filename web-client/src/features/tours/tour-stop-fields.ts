@@ -18,7 +18,7 @@ import type { TourTransition } from "../../core/protocol.gen";
 import type { Layer } from "../../core/types";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { number_input } from "../../ui/number-input";
 import "../../ui/ordered-choice";

@@ -12,7 +12,7 @@ import { DragOrder } from "../../ui/drag-order";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { drag_styles, shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "../../ui/thumbnail";

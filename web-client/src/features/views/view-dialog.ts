@@ -6,7 +6,7 @@ import { customElement, property } from "lit/decorators.js";
 import { ApiError } from "../../net/api";
 import type { View } from "../../core/protocol.gen";
 import type { ViewContent } from "../../domain/views";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import "../../ui/naming-dialog";
 import type { Called } from "../../ui/naming-dialog";
 import { notices } from "../../ui/notices";

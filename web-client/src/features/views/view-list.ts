@@ -10,21 +10,13 @@ import { ask } from "../../ui/dialog";
 import { follow_session } from "../../session/follow-session";
 import { icon } from "../../ui/icons";
 import "../../ui/menu";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { list_head_styles, list_row_styles } from "../../ui/panel-styles";
 import { shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
 import "../../ui/thumbnail";
-
-/**
- * The dialog that names a view; without `view` what is seen is kept as a new one. Or the one that
- * draws it to scale; without `view` what is seen.
- */
-export interface ViewRequest {
-  dialog: "view" | "figure";
-  view: View | null;
-}
+import type { ViewRequest } from "../../session/requests";
 
 const words = texts.kept_views;
 const kAtOnce = 50;

@@ -5,23 +5,21 @@ import { ApiError, type Api } from "../../net/api";
 import { place_like } from "../../math/fit-to-window";
 import type { View, ViewEvent } from "../../core/protocol.gen";
 import type { ViewContent } from "../../domain/views";
-import type { Appearance } from "../appearance/appearance";
 import { KnownItems } from "../../net/known-items";
-import type { LayerList } from "../layers/layer-list";
 import { notices } from "../../ui/notices";
 import { hash_of_view, path_of_model } from "../../ui/routes";
-import type { Tables } from "../tables/tables";
 import { texts } from "../../texts";
 import type { ViewControl } from "../../session/view-control";
+import type { AppearancePart, LayersPart, TablesPart } from "../../session/parts";
 
 const words = texts.kept_views;
 const kMostSaid = 300; // characters of a view's text in a notice
 
 export interface ViewsHost {
   readonly view: ViewControl;
-  readonly layers: LayerList;
-  readonly appearance: Appearance;
-  readonly tables: Tables;
+  readonly layers: LayersPart;
+  readonly appearance: AppearancePart;
+  readonly tables: TablesPart;
   /** Runs the action now, or as soon as no stroke is under way. */
   when_free(action: () => void): void;
   can_curate(): boolean;

@@ -3,7 +3,7 @@ import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { FacePick } from "../../../src/features/figures/face-pick";
 import { Figures } from "../../../src/features/figures/figures";
-import { is_busy, LayerJobs } from "../../../src/features/layers/layer-jobs";
+import { is_busy, LayerJobs } from "../../../src/session/layer-jobs";
 import { notices, type Notice } from "../../../src/ui/notices";
 import { texts } from "../../../src/texts";
 import { Api, ApiError } from "../../../src/net/api";

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { is_busy, LayerJobs } from "../../../src/features/layers/layer-jobs";
+import { is_busy, LayerJobs } from "../../../src/session/layer-jobs";
 import {
   kShapeGroups,
   other_models,

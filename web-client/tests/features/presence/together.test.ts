@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { ModelSession } from "../../../src/shell/model-session";
+import { OpenModelSession } from "../../../src/shell/open-model-session";
 import { notices, type Notice } from "../../../src/ui/notices";
 import { texts } from "../../../src/texts";
 import { Api } from "../../../src/net/api";
@@ -42,7 +42,7 @@ const layer = {
 const words = texts.together;
 
 let sockets: FakeSocket[];
-let session: ModelSession;
+let session: OpenModelSession;
 let told: readonly Notice[];
 let unsubscribe: () => void;
 let calm: boolean;
@@ -91,7 +91,7 @@ beforeEach(async () => {
     const body = list ? { [list]: [], total: 0 } : model;
     return new Response(JSON.stringify(body), { status: 200, headers: { ETag: '"1"' } });
   });
-  session = new ModelSession(api, "1", (url, protocol) => {
+  session = new OpenModelSession(api, "1", (url, protocol) => {
     sockets.push(new FakeSocket(url, protocol));
     return socket();
   });

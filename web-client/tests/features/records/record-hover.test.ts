@@ -1,7 +1,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import { RecordHover, type RecordAt } from "../../../src/features/records/record-hover";
-import { RecordShelf } from "../../../src/features/records/record-cache";
+import { RecordShelf } from "../../../src/features/tables/record-cache";
 import { Api } from "../../../src/net/api";
 import { first_picture, telling_columns } from "../../../src/domain/cells";
 import type { Column, ColumnKind } from "../../../src/core/protocol.gen";

@@ -6,8 +6,8 @@ import {
   of_kind,
   type ColumnWanted,
 } from "../../../src/features/tables/column-changes";
-import { RecordNames } from "../../../src/features/records/record-names";
-import { kPageRows, RecordRows } from "../../../src/features/records/record-rows";
+import { RecordNames } from "../../../src/features/tables/record-names";
+import { kPageRows, RecordRows } from "../../../src/features/tables/record-rows";
 import { Tables } from "../../../src/features/tables/tables";
 import { Api, ApiError, type RecordQuery } from "../../../src/net/api";
 import {

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from "vitest";
 
-import { describe_value } from "../../../src/features/painting/brush-settings";
+import { describe_value } from "../../../src/session/layer-values";
 import {
   folded_at_first,
   path_to,
@@ -8,9 +8,9 @@ import {
   terms_with,
   tree_step,
   type TermRow,
-} from "../../../src/features/tables/term-rows";
+} from "../../../src/session/fields/term-rows";
 import { kTermsEndings, terms_type } from "../../../src/features/tables/terms-files";
-import { kMostTerms, TermTree } from "../../../src/features/tables/term-tree";
+import { kMostTerms, TermTree } from "../../../src/session/fields/term-tree";
 import { Api } from "../../../src/net/api";
 import { label_of_record } from "../../../src/domain/cells";
 import { record_palette } from "../../../src/domain/palette";

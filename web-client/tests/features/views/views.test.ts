@@ -1,10 +1,10 @@
 import fc from "fast-check";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { ModelSession } from "../../../src/shell/model-session";
+import { OpenModelSession } from "../../../src/shell/open-model-session";
 import { notices, type Notice } from "../../../src/ui/notices";
 import { hash_of_view, view_of } from "../../../src/ui/routes";
-import { discard_unsaved } from "../../../src/shell/sessions";
+import { discard_unsaved } from "../../../src/session/sessions";
 import { texts } from "../../../src/texts";
 import { Api } from "../../../src/net/api";
 import type { CameraMessage } from "../../../src/math/camera";
@@ -215,7 +215,7 @@ describe("the address of a view", () => {
 let sockets: FakeSocket[];
 let answers: Map<string, [status: number, body: unknown]>; // by method and path
 let calls: { method: string; path: string; body: unknown; headers: Record<string, string> }[];
-let session: ModelSession;
+let session: OpenModelSession;
 let told: readonly Notice[];
 let unsubscribe: () => void;
 let less_motion: boolean;
@@ -283,7 +283,7 @@ beforeEach(() => {
       headers: { ETag: '"1"' },
     });
   });
-  session = new ModelSession(api, "1", (url, protocol) => {
+  session = new OpenModelSession(api, "1", (url, protocol) => {
     sockets.push(new FakeSocket(url, protocol));
     return socket();
   });

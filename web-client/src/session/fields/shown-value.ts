@@ -6,7 +6,7 @@ import { format_list } from "../../core/locale";
 import { holds_marks, marks_of, summary_of } from "../../domain/marks";
 import { format_length } from "../../domain/measure";
 import type { CellValue, Column } from "../../core/protocol.gen";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../model-session";
 import { texts } from "../../texts";
 
 const kMostPictures = 4; // in a cell

@@ -7,15 +7,15 @@ import { ApiError } from "../../net/api";
 import { read_number } from "../../core/locale";
 import { css_color, purpose_of } from "../../domain/palette";
 import type { Layer } from "../../core/types";
-import { describe_value, value_problem } from "./brush-settings";
-import { follow_session } from "../../session/follow-session";
-import type { ModelSession } from "../../shell/model-session";
+import { describe_value, value_problem } from "../layer-values";
+import { follow_session } from "../follow-session";
+import type { ModelSession } from "../model-session";
 import { number_input } from "../../ui/number-input";
 import { radio_group } from "../../ui/radio-group";
-import "../records/record-chooser";
+import "./record-chooser";
 import { styled } from "../../ui/styled";
 import { number_field_styles, shared_styles } from "../../ui/styles";
-import "../tables/term-chooser";
+import "./term-chooser";
 import { texts } from "../../texts";
 
 @customElement("strata-value-picker")

@@ -4,14 +4,14 @@
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property, query, state } from "lit/decorators.js";
 import { live } from "lit/directives/live.js";
-import { follow_session } from "../../session/follow-session";
+import { follow_session } from "../follow-session";
 import { icon } from "../../ui/icons";
-import { arrow_step } from "../../shell/keyboard";
-import type { ModelSession } from "../../shell/model-session";
+import { arrow_step } from "../../ui/keyboard";
+import type { ModelSession } from "../model-session";
 import { shared_styles } from "../../ui/styles";
 import { styled } from "../../ui/styled";
-import { terms_with } from "../tables/term-rows";
-import type { TermTree } from "../tables/term-tree";
+import { terms_with } from "./term-rows";
+import type { TermTree } from "./term-tree";
 import { texts } from "../../texts";
 
 /** One that may be chosen. */

@@ -1,8 +1,8 @@
 // Why a layer may not be changed, and what makes it free, in words.
 
-import { label_of } from "../../domain/cells";
-import { is_as_computed, type Layer } from "../../core/types";
-import { texts } from "../../texts";
+import { label_of } from "../domain/cells";
+import { is_as_computed, type Layer } from "../core/types";
+import { texts } from "../texts";
 
 export const why_locked = (layer: Layer): string =>
   is_as_computed(layer)

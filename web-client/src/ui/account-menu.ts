@@ -3,13 +3,13 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { customElement, property } from "lit/decorators.js";
-import { called, initials, name_with } from "../../domain/people";
-import { may_administer, type Me } from "../../core/types";
-import { icon } from "../../ui/icons";
-import "../../ui/menu";
-import { styled } from "../../ui/styled";
-import { shared_styles } from "../../ui/styles";
-import { texts } from "../../texts";
+import { called, initials, name_with } from "../domain/people";
+import { may_administer, type Me } from "../core/types";
+import { icon } from "./icons";
+import "./menu";
+import { styled } from "./styled";
+import { shared_styles } from "./styles";
+import { texts } from "../texts";
 
 export type AccountRequest = "account" | "people" | "kiosks" | "preferences" | "sign-out";
 

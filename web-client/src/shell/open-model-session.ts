@@ -54,8 +54,8 @@ import { Appearance } from "../features/appearance/appearance";
 import { Comments } from "../features/comments/comments";
 import { FacePick } from "../features/figures/face-pick";
 import { Figures } from "../features/figures/figures";
-import { LayerJobs } from "../features/layers/layer-jobs";
-import { why_locked } from "../features/layers/layer-lock";
+import { LayerJobs } from "../session/layer-jobs";
+import { why_locked } from "../session/layer-lock";
 import { LayerList } from "../features/layers/layer-list";
 import { MarkDrawing } from "../features/records/mark-drawing";
 import { Measuring } from "../features/measuring/measuring";
@@ -63,10 +63,10 @@ import { notices } from "../ui/notices";
 import { Painting } from "../features/painting/painting";
 import { PeopleCursors } from "../features/presence/people-cursors";
 import { PointerWatch } from "../session/pointer-watch";
-import { RecordEditors } from "../features/records/record-editors";
+import { RecordEditors } from "../session/record-editors";
 import { RecordHover, type RecordAt } from "../features/records/record-hover";
 import { Reviews } from "../features/review/reviews";
-import { forget, remember } from "./sessions";
+import { forget, remember } from "../session/sessions";
 import { Tables } from "../features/tables/tables";
 import { texts } from "../texts";
 import { Together, type Shown } from "../features/presence/together";
@@ -74,8 +74,9 @@ import { ToolShapes } from "../features/painting/tool-shapes";
 import { Tours } from "../features/tours/tours";
 import { ViewControl, wants_less_motion } from "../session/view-control";
 import { Views } from "../features/views/views";
+import type { ModelSession } from "../session/model-session";
 
-export class ModelSession {
+export class OpenModelSession implements ModelSession {
   model: Model | null = null;
   deleted = false;
   signed_out = false; // the server no longer knows who this is

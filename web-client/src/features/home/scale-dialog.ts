@@ -11,7 +11,7 @@ import type { ScaleProposal } from "../../core/protocol.gen";
 import type { Model, Unit } from "../../core/types";
 import "../../ui/dialog";
 import type { StrataDialog } from "../../ui/dialog";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../../session/model-session";
 import { notices } from "../../ui/notices";
 import { radio_group } from "../../ui/radio-group";
 import { shared_styles } from "../../ui/styles";

@@ -1,9 +1,9 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
-import { LineMeasure } from "../../../src/features/records/line-measure";
-import { beside } from "../../../src/ui/beside";
-import type { Point } from "../../../src/net/connection";
-import type { MarkPlace } from "../../../src/core/protocol.gen";
+import { LineMeasure } from "../../src/session/line-measure";
+import { beside } from "../../src/ui/beside";
+import type { Point } from "../../src/net/connection";
+import type { MarkPlace } from "../../src/core/protocol.gen";
 
 const kLong_ms = 10_000;
 

@@ -2,7 +2,7 @@
 // into. It is advice, so that people do not surprise each other: what protects the data is the
 // record's version, and without a connection everybody writes as they like.
 
-import type { RecordEditor, RecordEditors as EditorsMessage } from "../../core/protocol.gen";
+import type { RecordEditor, RecordEditors as EditorsMessage } from "../core/protocol.gen";
 
 export interface RecordEditorsHost {
   /** Nothing is sent while there is no connection. */

@@ -2,8 +2,8 @@
 // new, one part at a time and not too often: a long line must not cost more with every move of the
 // pointer.
 
-import type { Point } from "../../net/connection";
-import type { Outline } from "../../tools/outline";
+import type { Point } from "../net/connection";
+import type { Outline } from "../tools/tool";
 
 const kAskEvery_ms = 80;
 

@@ -14,12 +14,12 @@ import {
 } from "../../domain/cells";
 import { holds_marks, marks_of } from "../../domain/marks";
 import type { CellValue, Column } from "../../core/protocol.gen";
-import type { ModelSession } from "../../shell/model-session";
-import "../records/files-field";
-import type { StrataFilesField } from "../records/files-field";
-import "../records/marks-field";
-import type { StrataMarksField } from "../records/marks-field";
-import { StrataRecordChooser } from "../records/record-chooser";
+import type { ModelSession } from "../model-session";
+import "./files-field";
+import type { StrataFilesField } from "./files-field";
+import "./marks-field";
+import type { StrataMarksField } from "./marks-field";
+import { StrataRecordChooser } from "./record-chooser";
 import { number_field_styles, shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
 

@@ -1,7 +1,7 @@
 import { describe, expect, it, vi } from "vitest";
 import { ApiError, type Api } from "../../../src/net/api";
 import type { Job } from "../../../src/core/types";
-import { Imports, type Scan } from "../../../src/features/import/imports";
+import { Imports, type Scan } from "../../../src/features/home/imports";
 
 const scan: Scan = {
   files: [{ file: new File(["ply"], "mesh.ply"), path: "mesh.ply" }],

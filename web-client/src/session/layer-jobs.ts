@@ -3,10 +3,10 @@
 // themselves come to the page like anyone's, when they are done; a file stays listed until it is
 // saved.
 
-import { ApiError, type Api } from "../../net/api";
-import type { FigureRequest } from "../../core/protocol.gen";
-import type { Job, LayerCreate, ProblemBody, Transfer, TransferReport } from "../../core/types";
-import { follow_job, job_is_over } from "../../net/follow-job";
+import { ApiError, type Api } from "../net/api";
+import type { FigureRequest } from "../core/protocol.gen";
+import type { Job, LayerCreate, ProblemBody, Transfer, TransferReport } from "../core/types";
+import { follow_job, job_is_over } from "../net/follow-job";
 
 export interface LayerJob {
   key: number;

@@ -7,7 +7,7 @@ import { label_of } from "../../domain/cells";
 import { describe_mark, type MarkKind } from "../../domain/marks";
 import type { Column, Mark } from "../../core/protocol.gen";
 import { icon } from "../../ui/icons";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../model-session";
 import { shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";
 

@@ -9,7 +9,7 @@ import { format_bytes } from "../../domain/measure";
 import type { Attachment, Column, Visibility } from "../../core/protocol.gen";
 import { FileDrop } from "../../ui/drop";
 import { icon } from "../../ui/icons";
-import type { ModelSession } from "../../shell/model-session";
+import type { ModelSession } from "../model-session";
 import { notices } from "../../ui/notices";
 import { shared_styles } from "../../ui/styles";
 import { texts } from "../../texts";

@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from "vitest";
 
-import { RecordEditors } from "../../../src/features/records/record-editors";
+import { RecordEditors } from "../../src/session/record-editors";
 
 type Said = { table: number; key: number; editing: boolean; take_over?: boolean };
 let said: Said[];

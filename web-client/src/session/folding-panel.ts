@@ -3,11 +3,11 @@
 
 import { css, html, LitElement, nothing, type TemplateResult } from "lit";
 import { property } from "lit/decorators.js";
-import { follow_session } from "../session/follow-session";
-import { icon } from "./icons";
+import { follow_session } from "./follow-session";
+import { icon } from "../ui/icons";
 import { Kept } from "../core/kept";
-import type { ModelSession } from "../shell/model-session";
-import { shared_styles } from "./styles";
+import type { ModelSession } from "./model-session";
+import { shared_styles } from "../ui/styles";
 
 export const folding_styles = [
   shared_styles,

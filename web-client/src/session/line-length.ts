@@ -1,0 +1,40 @@
+// How long the line is that is being drawn, over the picture.
+
+import { html, nothing, type TemplateResult } from "lit";
+import { beside } from "../ui/beside";
+import type { Point } from "../net/connection";
+import { format_length } from "../domain/measure";
+import { styled } from "../ui/styled";
+import type { ViewControl } from "./view-control";
+
+const kLength = { width: 96, height: 28 };
+
+// room for how long a line is, CSS pixels
+const kGap_px = 14;
+
+/**
+ * Beside the end of a line that is being drawn, at a window pixel. Who cannot see it is told when
+ * the line is finished.
+ */
+export function length_so_far(
+  { camera, scale }: ViewControl,
+  metres: number | null,
+  [x, y]: Point,
+): TemplateResult | typeof nothing {
+  if (metres === null) return nothing;
+  const end = [x / scale, y / scale] as const;
+  const place = beside(
+    end,
+    kLength,
+    { width: camera.width / scale, height: camera.height / scale },
+    kGap_px,
+  );
+  if (!place) return nothing;
+  const at = {
+    left: `${place.left}px`,
+    top: `${place.top}px`,
+    width: `${kLength.width}px`,
+    "justify-content": place.left < end[0] ? "end" : "start",
+  };
+  return html`<div class="length numeric" aria-hidden="true" ${styled(at)}><b>${format_length(metres)}</b></div>`;
+}

@@ -1,0 +1,15 @@
+// The shape of the texts of the page. English is the measure.
+
+/**
+ * The shape of the texts without their words. Lists keep their length: each line of the help is
+ * there in each language.
+ */
+type Shape<T> = T extends string
+  ? string
+  : T extends number
+    ? number
+    : T extends (...args: infer Arguments) => unknown
+      ? (...args: Arguments) => string
+      : { readonly [Key in keyof T]: Shape<T[Key]> };
+
+export type Texts = Shape<typeof import("./en").texts>;

@@ -1,0 +1,116 @@
+// Which file of the page imports which, types included, and what is wrong with that.
+
+import { readdirSync, readFileSync } from "node:fs";
+import { join, posix } from "node:path";
+import ts from "typescript";
+
+export interface Import {
+  to: string;
+  /** Nothing of it is left when the page runs. */
+  type_only: boolean;
+}
+/** Files by their path within `src`, with `/` between its parts. */
+export type ImportGraph = ReadonlyMap<string, readonly Import[]>;
+
+/** Lower folders first: a file imports from its own folder and from those before it. */
+const kFolders = [
+  "core",
+  "texts",
+  "math",
+  "net",
+  "domain",
+  "ui",
+  "tools",
+  "session",
+  "features",
+  "shell",
+];
+/** What the kiosk's page is made of; the words of the workbench are not loaded for it. */
+const kOfKiosk = ["core", "math", "net", "domain", "ui", "tools", "session", "kiosk"];
+/** Decides whether the workbench or the kiosk is loaded. */
+const kEntry = "shell/main.ts";
+/** The interface that names the parts of all features. */
+const kSession = "session/model-session.ts";
+
+export function read_imports(root: string): ImportGraph {
+  const files = readdirSync(root, { recursive: true, encoding: "utf8" })
+    .map((file) => file.replaceAll("\\", "/"))
+    .filter((file) => file.endsWith(".ts"));
+  const known = new Set(files);
+  return new Map(
+    files.map((file) => {
+      const found = imports_of(file, readFileSync(join(root, file), "utf8"));
+      return [file, found.flatMap((each) => resolve(each, known))];
+    }),
+  );
+}
+
+/** Targets as they are written, from the folder of the file. */
+export function imports_of(file: string, code: string): Import[] {
+  const found: Import[] = [];
+  const add = (specifier: ts.Node | undefined, type_only: boolean): void => {
+    if (specifier && ts.isStringLiteralLike(specifier) && specifier.text.startsWith("."))
+      found.push({ to: posix.join(posix.dirname(file), specifier.text), type_only });
+  };
+  const visit = (node: ts.Node): void => {
+    if (ts.isImportDeclaration(node)) add(node.moduleSpecifier, is_of_types(node.importClause));
+    else if (ts.isExportDeclaration(node)) add(node.moduleSpecifier, node.isTypeOnly);
+    else if (ts.isImportTypeNode(node) && ts.isLiteralTypeNode(node.argument))
+      add(node.argument.literal, true);
+    else if (ts.isCallExpression(node) && node.expression.kind === ts.SyntaxKind.ImportKeyword)
+      add(node.arguments[0], false);
+    ts.forEachChild(node, visit);
+  };
+  visit(ts.createSourceFile(file, code, ts.ScriptTarget.Latest, true));
+  return found;
+}
+
+function is_of_types(clause: ts.ImportClause | undefined): boolean {
+  if (!clause || clause.isTypeOnly) return clause !== undefined;
+  const { namedBindings: named } = clause;
+  return (
+    !clause.name &&
+    named !== undefined &&
+    ts.isNamedImports(named) &&
+    named.elements.length > 0 &&
+    named.elements.every((each) => each.isTypeOnly)
+  );
+}
+
+function resolve({ to, type_only }: Import, known: ReadonlySet<string>): Import[] {
+  const file = [`${to}.ts`, `${to}/index.ts`].find((each) => known.has(each));
+  return file ? [{ to: file, type_only }] : [];
+}
+
+const folder_of = (file: string): string => file.slice(0, file.indexOf("/"));
+const feature_of = (file: string): string => file.split("/")[1]!;
+
+function may_import(from: string, { to, type_only }: Import): boolean {
+  const [own, other] = [folder_of(from), folder_of(to)];
+  if (own === "kiosk") return kOfKiosk.includes(other);
+  if (other === "kiosk") return from === kEntry;
+  if (own === "features" && other === "features") return feature_of(from) === feature_of(to);
+  if (from === kSession && other === "features") return type_only;
+  return kFolders.includes(own) && kFolders.indexOf(other) <= kFolders.indexOf(own);
+}
+
+/** Imports that lead from a lower folder to a higher one, or from one feature to another. */
+export const wrong_imports = (graph: ImportGraph): string[] =>
+  [...graph].flatMap(([from, imports]) =>
+    imports.filter((each) => !may_import(from, each)).map(({ to }) => `${from} imports ${to}`),
+  );
+
+/** Files that import each other in a circle: one circle for each file that is found again. */
+export function circles(graph: ImportGraph): string[] {
+  const found: string[] = [];
+  const done = new Set<string>();
+  const visit = (file: string, way: readonly string[]): void => {
+    const at = way.indexOf(file);
+    if (at >= 0) found.push([...way.slice(at), file].join(" → "));
+    if (at >= 0 || done.has(file)) return;
+    for (const { to } of graph.get(file) ?? []) visit(to, [...way, file]);
+    done.add(file);
+  };
+  for (const file of graph.keys()) visit(file, []);
+  return found;
+}
